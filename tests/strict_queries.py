@@ -18,7 +18,8 @@ def strict_queries(monkeypatch: pytest.MonkeyPatch) -> None:
     """What a query reads otherwise raises; only one that has read `inputs.everything` may read what it likes."""
     may_read: list[bool] = []  # each query that is open, and each input that is read
     compute: Callable[..., object] = Store._compute
-    read: Callable[..., object] = Store.read
+    read: Callable[..., object] = Store._read
+    ask: Callable[..., object] = Store.ask
 
     def computed(store: Store[Workspace], answer: object) -> object:
         may_read.append(False)
@@ -27,14 +28,18 @@ def strict_queries(monkeypatch: pytest.MonkeyPatch) -> None:
         finally:
             may_read.pop()
 
-    def reading(store: Store[Workspace], topic: Hashable, of: Callable[..., object], *key: Hashable) -> object:
+    def reading(store: Store[Workspace], key: tuple[Any, ...]) -> object:
         may_read.append(True)
         try:
-            return read(store, topic, of, *key)
+            return read(store, key)
         finally:
             may_read.pop()
-            if of.__name__ == inputs.everything.__name__ and may_read:
-                may_read[-1] = True
+
+    def asked(store: Store[Workspace], query: Callable[..., object], *key: Hashable) -> object:
+        answer = ask(store, query, *key)
+        if query is inputs.everything and may_read:
+            may_read[-1] = True
+        return answer
 
     def attribute(owner: object, name: str) -> Any:
         if may_read and not may_read[-1] and not name.startswith("__"):
@@ -42,6 +47,7 @@ def strict_queries(monkeypatch: pytest.MonkeyPatch) -> None:
         return object.__getattribute__(owner, name)
 
     monkeypatch.setattr(Store, "_compute", computed)
-    monkeypatch.setattr(Store, "read", reading)
+    monkeypatch.setattr(Store, "_read", reading)
+    monkeypatch.setattr(Store, "ask", asked)
     for kind in (Workspace, File, Scope):
         monkeypatch.setattr(kind, "__getattribute__", attribute)

@@ -73,6 +73,7 @@ from btq_lang.diagnostics.model import Diagnostic, Place
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.scan import line_start
+from btq_lang.workspace import inputs
 from btq_lang.workspace.config import configured
 from btq_lang.workspace.findings import Findings, Reported
 from btq_lang.workspace.item_index import Facts
@@ -342,7 +343,7 @@ def reported_in_file(store: Store[Workspace], viewpoint: str, is_alone: bool) ->
             is_alone and type(facts.item) is syntax.Include,
             has_target or id(facts.item) in demanded,
         )
-        for facts in lookups.items(store, viewpoint)
+        for facts in store.ask(lookups.items, viewpoint)
     ]
     wrong = tuple([each for each in found if each is not None])
     is_refused = version3.refuses([one for each in wrong for one in each.diagnostics])
@@ -351,7 +352,7 @@ def reported_in_file(store: Store[Workspace], viewpoint: str, is_alone: bool) ->
 
 def _newer(store: Store[Workspace], viewpoint: str) -> tuple[Reported, ...]:
     """The only finding of a file for version 4 that version 3 refuses; none if the project does not select it."""
-    root = next((facts for facts in lookups.items(store, viewpoint) if type(facts.item) is syntax.Root), None)
+    root = next((facts for facts in store.ask(lookups.items, viewpoint) if type(facts.item) is syntax.Root), None)
     if root is None:
         return ()
     view = View(store, viewpoint, root)
@@ -389,8 +390,8 @@ def _errors_in(store: Store[Workspace], viewpoint: str) -> tuple[tuple[Place, st
     build writes and which is seldom checked itself, all errors."""
     view = View(store, viewpoint)
     if not view.is_xml:
-        return view.look_up(lookups.syntax_errors)
-    found = findings_of(view.workspace, viewpoint, view.ask(reported_in_file, True)).diagnostics
+        return view.ask(lookups.syntax_errors)
+    found = findings_of(view.ask(inputs.everything), viewpoint, view.ask(reported_in_file, True)).diagnostics
     errors = [each for each in found if each.effective_severity is Severity.ERROR]
     return tuple([(Place(each.span, viewpoint), each.message) for each in errors])
 

@@ -9,12 +9,14 @@ from typing import Final
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.versions import PORTS_OF_SUBTREE
+from btq_lang.checks import lookups
 from btq_lang.checks.entries import handling
 from btq_lang.checks.flow import below, calls_of
 from btq_lang.checks.view import View, declared_ports
 from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.syntax.tree import Tree, port_named
 from btq_lang.util.spelling import did_you_mean, near
+from btq_lang.workspace import inputs
 from btq_lang.workspace.inputs import of_scope
 from btq_lang.workspace.queries import Store, on_circle
 from btq_lang.workspace.workspace import Workspace
@@ -28,7 +30,7 @@ def unread_argument(view: View) -> Iterator[Diagnostic]:
         tree = seen.id.text if seen.id is not None else ""
         for pair in seen.node.attributes:
             name = pair.key.text
-            if not is_port_name(name) or (tree, name) in reported or not view.defines(Kind.TREE, tree):
+            if not is_port_name(name) or (tree, name) in reported or not view.ask(lookups.is_defined, Kind.TREE, tree):
                 continue
             declared = declared_ports(view, tree)
             if port_named(declared, name) or (declared and PORTS_OF_SUBTREE.holds(view.target)):
@@ -47,7 +49,7 @@ def unread_port(view: View) -> Iterator[Diagnostic]:
     for owner in view.owners:
         is_of_tree = isinstance(owner, Tree) or owner.category.raw == "SubTree"
         tree = owner.name.text if is_of_tree and owner.name is not None else ""
-        for port in owner.ports if tree and view.defines(Kind.TREE, tree) else ():
+        for port in owner.ports if tree and view.ask(lookups.is_defined, Kind.TREE, tree) else ():
             name = port.id.text if port.id is not None else ""
             if port.id is None or not is_port_name(name) or view.ask(_is_named, tree, name):
                 continue
@@ -73,7 +75,7 @@ def _meant(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> tup
 def _is_named(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
     """Whether anything in a tree may read or write an entry."""
     view = View(store, viewpoint)
-    own, found = view.ask(handling, tree), view.definition(Kind.TREE, tree)
+    own, found = view.ask(handling, tree), view.ask(inputs.definition, Kind.TREE, tree)
     if own.is_open or own.has_strangers or found is None or name in view.ask(_words, tree):
         return True
     if any(seen.kind is None and not seen.is_subtree for seen in view.seen_in(*found).all):
@@ -88,7 +90,7 @@ def _is_named(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> 
 def _words(store: Store[Workspace], viewpoint: str, tree: str) -> frozenset[str]:
     """All words in the values of a tree's attributes: programs read names of entries from some, whatever their form."""
     view = View(store, viewpoint)
-    found = view.definition(Kind.TREE, tree)
+    found = view.ask(inputs.definition, Kind.TREE, tree)
     words: set[str] = set()
     for seen in view.seen_in(*found).given if found is not None else ():
         for pair in seen.node.attributes:

@@ -11,6 +11,7 @@ from typing import Final
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import Dimension, parse_unit
 from btq_lang.catalog.verbs import VERBS
+from btq_lang.checks import lookups
 from btq_lang.checks.one_run import same_in_every_run
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, write_fix
@@ -46,7 +47,10 @@ def impossible_bound(view: View) -> Iterator[Diagnostic]:
 def uses_of_gauge(view: View) -> Iterator[Diagnostic]:
     """`uses … of` a signal that is neither a counter nor a level, so that its use is undefined."""
     for _, claim in _claims(view):
-        if claim.resource is None or (declaration := view.declaration(Kind.SIGNAL, claim.resource.text)) is None:
+        if (
+            claim.resource is None
+            or (declaration := view.ask(lookups.declaration, Kind.SIGNAL, claim.resource.text)) is None
+        ):
             continue
         signal = declaration.symbol.target
         if not isinstance(signal, syntax.Signal) or signal.unit is None or signal.unit.text in ("bool", "text"):

@@ -11,6 +11,7 @@ from btq_lang.catalog.nav2 import TREE_OF_GOAL
 from btq_lang.checks import lookups
 from btq_lang.checks.view import View
 from btq_lang.util.reach import knots, reached
+from btq_lang.workspace import inputs
 from btq_lang.workspace.inputs import of_scope
 from btq_lang.workspace.queries import Store, hub
 from btq_lang.workspace.symbols import Use
@@ -51,14 +52,14 @@ def has_gaps(store: Store[Workspace], viewpoint: str) -> bool:
     """Whether a SubTree names no tree or an unknown one, so that it is not known which trees are reached."""
     view = View(store, viewpoint)
     known = dict(view.ask(_graph))
-    return not view.is_complete or any(name not in known for called, _ in known.values() for name in called)
+    return not view.ask(inputs.is_complete) or any(name not in known for called, _ in known.values() for name in called)
 
 
 @of_scope
 def _graph(store: Store[Workspace], viewpoint: str) -> tuple[tuple[str, Runs], ...]:
     """All trees in scope."""
     view = View(store, viewpoint)
-    return tuple([(name, view.ask(_runs, name)) for name in view.names(Kind.TREE)])
+    return tuple([(name, view.ask(_runs, name)) for name in view.ask(inputs.names, Kind.TREE)])
 
 
 @of_scope
@@ -75,7 +76,7 @@ def _circles(store: Store[Workspace], viewpoint: str) -> dict[str, tuple[str, ..
     The trees of the file come first: included XML may not know that it is in one.
     """
     graph = {name: called for name, (called, _) in store.ask(_graph, viewpoint)}
-    names = dict.fromkeys((*lookups.own_trees(store, viewpoint), *graph))
+    names = dict.fromkeys((*store.ask(lookups.own_trees, viewpoint), *graph))
     places = {name: place for place, name in enumerate(names)}
     found: dict[str, tuple[str, ...]] = {}
     for knot in knots(graph):
@@ -87,7 +88,7 @@ def _circles(store: Store[Workspace], viewpoint: str) -> dict[str, tuple[str, ..
 @hub
 def _missed(store: Store[Workspace], viewpoint: str) -> Set[str]:
     view = View(store, viewpoint)
-    mains = view.look_up(lookups.main_trees)
+    mains = view.ask(lookups.main_trees)
     if not mains or view.ask(has_gaps) or not view.is_read:
         return frozenset()
     known = dict(view.ask(_graph))
@@ -100,8 +101,8 @@ def _missed(store: Store[Workspace], viewpoint: str) -> Set[str]:
 def _uncreated(store: Store[Workspace], viewpoint: str) -> Set[str]:
     """Those of all trees in scope; an unknown tree matters only if a main tree reaches it."""
     view = View(store, viewpoint)
-    mains = view.look_up(lookups.main_trees)
-    if not mains or not view.is_complete or not view.is_read:
+    mains = view.ask(lookups.main_trees)
+    if not mains or not view.ask(inputs.is_complete) or not view.is_read:
         return frozenset()
     known = dict(view.ask(_graph))
     created = _run_from(mains, known)
@@ -138,7 +139,7 @@ def _turned(graph: Iterable[tuple[str, Iterable[str]]]) -> dict[str, tuple[str, 
 @of_scope
 def _runs(store: Store[Workspace], viewpoint: str, tree: str) -> Runs:
     view = View(store, viewpoint)
-    found = view.definition(Kind.TREE, tree)
+    found = view.ask(inputs.definition, Kind.TREE, tree)
     if found is None:
         return (), ()
     uses = found[1].summary.uses
@@ -146,7 +147,9 @@ def _runs(store: Store[Workspace], viewpoint: str, tree: str) -> Runs:
     subtrees = view.seen_in(*found).subtrees
     declared = {seen.id.text for seen in subtrees if seen.id is not None}  # by a model, perhaps
     meant = [name for use in uses for name in (_meant(use), _for_goal(use)) if name and name not in declared]
-    trees = {name for name in (*meant, *declared) if name not in called and view.defines(Kind.TREE, name)}
+    trees = {
+        name for name in (*meant, *declared) if name not in called and view.ask(lookups.is_defined, Kind.TREE, name)
+    }
     called.update(dict.fromkeys(sorted(declared & trees)))
     called.update(dict.fromkeys("" for seen in subtrees if seen.id is None))
     return tuple(called), tuple([name for name in meant if name in trees])

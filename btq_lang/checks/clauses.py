@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from btq_lang.checks import lookups
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, Tag, replace_fix
 from btq_lang.syntax import tree as syntax
@@ -26,7 +27,7 @@ def duplicate_clause(view: View) -> Iterator[Diagnostic]:
         for clause in requirement.clauses:
             if type(clause) in _ONCE and (counts := first.setdefault(type(clause), clause)) is not clause:
                 # If one of several equal definitions lacked it, it would contradict the others.
-                is_alone = not view.is_repeated(symbol.kind, symbol.name)
+                is_alone = not view.ask(lookups.is_repeated, symbol.kind, symbol.name)
                 yield _duplicate(view, counts, clause, is_alone)
 
 

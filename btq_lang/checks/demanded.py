@@ -14,6 +14,7 @@ from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.durations import Term
 from btq_lang.requirements.model import Applied, Claim, Signal, Span
 from btq_lang.requirements.nodes import mission
+from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.resolved import ResolvedNode, tree_nodes
 
@@ -60,7 +61,7 @@ def judge_of(view: View) -> Judge:
     """The judge of enforceability, as if all files were written into one."""
     from btq_lang.btcpp.enforceability import Judge  # few missions have a claim that is to be enforced
 
-    return Judge(view.store, view.path, lambda: view.ask(mission), files=None, is_shared=view.is_included)
+    return Judge(view.store, view.path, lambda: view.ask(mission), files=None, is_shared=view.ask(inputs.is_included))
 
 
 def _node(applied: Applied, claim: Claim, budgets: Budgets) -> ResolvedNode | None:

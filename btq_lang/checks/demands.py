@@ -35,9 +35,9 @@ def demands_by_item(store: Store[Workspace], viewpoint: str) -> ByItem:
     if not store.ask(is_measured, viewpoint):
         return {}
     found: list[Found] = []
-    for tree in inputs.trees(store, viewpoint):
+    for tree in store.ask(inputs.trees, viewpoint):
         found += store.ask(_of_tree, viewpoint, *tree)[0]
-    for name in inputs.names(store, viewpoint, Kind.REQUIREMENT):
+    for name in store.ask(inputs.names, viewpoint, Kind.REQUIREMENT):
         found += store.ask(_of_requirement, viewpoint, name)
     found += store.ask(_of_signals, viewpoint)
     # Each once, for a claim may apply to nodes of many trees.  They are compared, for hashing one would hash the whole
@@ -102,7 +102,7 @@ def _of_signals(store: Store[Workspace], viewpoint: str) -> tuple[Found, ...]:
     """What is wrong with signals, and with the guards that read them."""
     from btq_lang.checks.signals import of_signals  # as above
 
-    trees = inputs.trees(store, viewpoint)
+    trees = store.ask(inputs.trees, viewpoint)
     guards = [guard for tree in trees for guard in store.ask(_of_tree, viewpoint, *tree)[1]]
     return _here(viewpoint, of_signals(View(store, viewpoint), guards))
 

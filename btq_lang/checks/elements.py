@@ -31,7 +31,7 @@ def refused_element(view: View) -> Iterator[Diagnostic]:
     item = view.item
     is_model_read = any(map(PORTS_OF_SUBTREE.holds, view.engines))
     is_palette = lookups.is_palette(item)
-    first = view.look_up(lookups.first_palette) if is_palette or isinstance(item, Verbatim) else None
+    first = view.ask(lookups.first_palette) if is_palette or isinstance(item, Verbatim) else None
     if is_palette and first is not None and first is not view.facts:
         related = (Related(Place(_head(first.item), view.path, first.item), "the first one"),)
         message = "the engine refuses a second TreeNodesModel in one file"

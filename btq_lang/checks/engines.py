@@ -12,14 +12,14 @@ from btq_lang.workspace.workspace import Workspace
 
 def engines_of(store: Store[Workspace], viewpoint: str) -> tuple[str, ...]:
     """The versions that a file must hold for, oldest first."""
-    project = inputs.project(store)
+    project = store.ask(inputs.project)
     return project.engines if project.written_for else store.ask(declared_engines, viewpoint) or VERSIONS
 
 
 def declared_engines(store: Store[Workspace], viewpoint: str) -> tuple[str, ...]:
     """The versions that a file is written for, whatever takes it; empty if nothing says so."""
-    distribution, signs = lookups.distribution(store, viewpoint), lookups.signs(store, viewpoint)
-    return written_for(inputs.project(store), distribution, signs)
+    distribution, signs = store.ask(lookups.distribution, viewpoint), store.ask(lookups.signs, viewpoint)
+    return written_for(store.ask(inputs.project), distribution, signs)
 
 
 def is_for_version_3(store: Store[Workspace], viewpoint: str) -> bool:
@@ -36,17 +36,17 @@ def is_for_version_4(store: Store[Workspace], viewpoint: str) -> bool:
 
 def old_words(store: Store[Workspace], viewpoint: str) -> tuple[str, ...]:
     """What in an XML file only version 3 of the engine understands; empty if its project names that version."""
-    signs = lookups.signs(store, viewpoint)
+    signs = store.ask(lookups.signs, viewpoint)
     if signs is None or not signs.old:
         return ()
-    project = inputs.project(store)
-    of_project = written_for(project, lookups.distribution(store, viewpoint), None)
+    project = store.ask(inputs.project)
+    of_project = written_for(project, store.ask(lookups.distribution, viewpoint), None)
     return () if is_before_4(of_project[-1]) else signs.old
 
 
 def is_newer_than_engine(store: Store[Workspace], viewpoint: str) -> bool:
     """Whether an XML file says that it is for version 4, and its project that the engine is version 3."""
-    signs = lookups.signs(store, viewpoint)
+    signs = store.ask(lookups.signs, viewpoint)
     if signs is None or not (signs.is_new or signs.format not in ("", VERSION_3[:1])):
         return False
     return is_before_4(store.ask(engines_of, viewpoint)[-1])

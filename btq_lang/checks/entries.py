@@ -72,11 +72,11 @@ def blackboards(store: Store[Workspace], viewpoint: str) -> Blackboards:
 def handling(store: Store[Workspace], viewpoint: str, tree: str) -> Handling:
     """What a tree does with entries."""
     view = View(store, viewpoint)
-    found = view.definition(Kind.TREE, tree)
+    found = view.ask(inputs.definition, Kind.TREE, tree)
     item = found[1].item if found is not None else None
     if found is None or not isinstance(item, Tree):
         return Handling((), (), frozenset(), (), True, False)
-    model = view.find(Kind.MODEL, tree)
+    model = view.ask(lookups.meaning, Kind.MODEL, tree)
     declared = model.ports if model is not None else ()
     nodes = view.seen_in(*found)
     touches = [Touch(each.name, each.reads, each.writes, each.creates) for each in view.ask(mentions, *found)]
@@ -86,7 +86,7 @@ def handling(store: Store[Workspace], viewpoint: str, tree: str) -> Handling:
         frozenset(_bare_values(nodes.given)),
         tuple([call for seen in nodes.all if (call := _call(view, seen)) is not None]),
         _has_verbatim(item, nodes.all)
-        or bool(inputs.entry(store, *found).diagnostics)
+        or bool(store.ask(inputs.entry, *found).diagnostics)
         or any(map(_names_by_value, nodes.given))
         or any(not touch.name.removeprefix("@").isidentifier() for touch in touches),
         any(_is_stranger(view, seen) for seen in nodes.all),
@@ -174,10 +174,10 @@ class Blackboards:
         self._ports: set[Name] = set()
         self._signals = view.ask(signal_entries)
         self.root_names: dict[str, int] = {}
-        for name, direction in view.look_up(lookups.outside_entries):
+        for name, direction in view.ask(lookups.outside_entries):
             touch = Touch(name, direction != "output", direction != "input", direction != "input")
             self._uses.setdefault(("", name), []).append(touch)
-        trees = {tree: view.ask(handling, tree) for tree in view.names(Kind.TREE)}
+        trees = {tree: view.ask(handling, tree) for tree in view.ask(inputs.names, Kind.TREE)}
         self._roots = frozenset([tree for tree in trees if not view.ask(callers, tree)])
         for tree, handled in trees.items():
             self._add(tree, handled, trees)
@@ -303,7 +303,7 @@ def _has_verbatim(tree: Tree, seen: Iterable[ResolvedNode]) -> bool:
 def signal_entries(store: Store[Workspace], viewpoint: str) -> frozenset[Name]:
     """The entries that signals are read from."""
     view = View(store, viewpoint)
-    found = [view.find(Kind.SIGNAL, name) for name in view.names(Kind.SIGNAL)]
+    found = [view.ask(lookups.meaning, Kind.SIGNAL, name) for name in view.ask(inputs.names, Kind.SIGNAL)]
     signals = [each.target for each in found if each is not None]
     sources = [each.source for each in signals if isinstance(each, Signal) and each.source is not None]
     return frozenset([("", source.text.strip("{}").removeprefix("@")) for source in sources])
@@ -312,7 +312,7 @@ def signal_entries(store: Store[Workspace], viewpoint: str) -> frozenset[Name]:
 def _use(view: View, seen: ResolvedNode, pair: Pair) -> tuple[bool, bool, bool]:
     """Whether a port reads, writes and creates the entry that it is given."""
     if seen.is_subtree:
-        unknown = seen.node.id is None or not view.defines(Kind.TREE, seen.node.id.text)
+        unknown = seen.node.id is None or not view.ask(lookups.is_defined, Kind.TREE, seen.node.id.text)
         return unknown, unknown, unknown
     port = port_of(view, seen, pair.key.text)
     return port is None or port.direction != "output", port is None or port.direction != "input", True

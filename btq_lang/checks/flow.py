@@ -23,6 +23,7 @@ from btq_lang.checks.entries import Call, Touch, handling, signal_entries
 from btq_lang.checks.view import View, declared_ports
 from btq_lang.syntax.tree import port_named
 from btq_lang.util.record import Record
+from btq_lang.workspace import inputs
 from btq_lang.workspace.inputs import of_scope
 from btq_lang.workspace.queries import Store, on_circle
 from btq_lang.workspace.workspace import Workspace
@@ -76,7 +77,7 @@ def uses(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> Use:
     if port_named(declared_ports(view, tree), name) is not None:
         found |= Use.GIVEN
     running = view.ask(callers, tree)
-    if not running or tree in view.look_up(lookups.main_trees):
+    if not running or tree in view.ask(lookups.main_trees):
         found |= Use.OUTSIDE | view.ask(of_program, name)
     for caller in running:
         for call in view.ask(handling, caller).calls:
@@ -126,7 +127,7 @@ def _above(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> Use
 def _of_root(store: Store[Workspace], viewpoint: str, name: str) -> Use:
     """What may happen to an entry of the root blackboard that is named with its `@`."""
     view = View(store, viewpoint)
-    trees = [(tree, view.ask(below, tree)) for tree in view.names(Kind.TREE)]
+    trees = [(tree, view.ask(below, tree)) for tree in view.ask(inputs.names, Kind.TREE)]
     found = [each.uses.get(f"@{name}", Use(0)) | each.any for _, each in trees]
     found += [each.of(name) for tree, each in trees if not view.ask(callers, tree)]
     return reduce(or_, found, Use.OUTSIDE | view.ask(of_program, name))
@@ -139,7 +140,7 @@ def of_program(store: Store[Workspace], viewpoint: str, name: str) -> Use:
     found = view.ask(_with_sign).get(name, Use(0))
     if ("", name) in view.ask(signal_entries):
         found |= Use.GIVEN
-    for entry, direction in view.look_up(lookups.outside_entries):
+    for entry, direction in view.ask(lookups.outside_entries):
         if entry == name:
             found |= Use.READ if direction != "output" else Use(0)
             found |= Use.WRITTEN | Use.CREATED if direction != "input" else Use(0)
@@ -151,7 +152,7 @@ def _with_sign(store: Store[Workspace], viewpoint: str) -> dict[str, Use]:
     """The entries of the root blackboard that trees name with its `@`."""
     view = View(store, viewpoint)
     found: dict[str, Use] = {}
-    for tree in view.names(Kind.TREE):
+    for tree in view.ask(inputs.names, Kind.TREE):
         for touch in view.ask(handling, tree).touches:
             if touch.name[:1] == "@":
                 found[touch.name[1:]] = found.get(touch.name[1:], Use(0)) | _use(touch)

@@ -27,7 +27,7 @@ def missing_include(view: View) -> Iterator[Diagnostic]:
     if not isinstance(include, Include) or include.path is None or is_of_package(include):
         return
     path = include.path.text
-    if view.look_up(lookups.included, view.facts) is not None:
+    if view.ask(lookups.included, view.facts) is not None:
         return
     folder = posixpath.dirname(view.path)
     fixes = tuple(
@@ -48,8 +48,8 @@ def cyclic_include(view: View) -> Iterator[Diagnostic]:
     include = view.item
     if not isinstance(include, Include) or include.path is None:
         return
-    target = view.look_up(lookups.included, view.facts)
-    if target is None or view.path not in lookups.closure(view.store, target):
+    target = view.ask(lookups.included, view.facts)
+    if target is None or view.path not in view.store.ask(lookups.closure, target):
         return
     how = "itself" if target == view.path else f"`{include.path.text}`, which includes this file again"
     message = f"this file includes {how}"
@@ -64,10 +64,10 @@ def include_with_errors(view: View, errors_in: ErrorsIn) -> Iterator[Diagnostic]
         errors_in: the query for the errors that keep a file from being read.
     """
     include = view.item
-    target = view.look_up(lookups.included, view.facts)
+    target = view.ask(lookups.included, view.facts)
     if target is None or not isinstance(include, Include) or include.path is None:
         return
-    for path in reversed(lookups.closure(view.store, target)):
+    for path in reversed(view.store.ask(lookups.closure, target)):
         errors = view.store.ask(errors_in, path) if path != view.path else ()
         if not errors:
             continue
@@ -75,7 +75,7 @@ def include_with_errors(view: View, errors_in: ErrorsIn) -> Iterator[Diagnostic]
         shown = posixpath.relpath(path, posixpath.dirname(view.path) or ".")
         which = f"`{shown}`" if path == target else f"`{shown}`, which that file includes,"
         notes: tuple[str, ...] = ("`btq build` refuses every file that includes it",)
-        if len(errors) > 1 and lookups.is_xml(view.store, path):  # XML in a folder is checked only if it is named
+        if len(errors) > 1 and view.store.ask(lookups.is_xml, path):  # XML in a folder is checked only if it is named
             notes += (f"run `btq check {shown}` to see all of them",)
         yield Diagnostic(
             "include-with-errors",
@@ -94,7 +94,7 @@ def is_reported_beside(diagnostic: Diagnostic, checked: Container[str]) -> bool:
 
 def include_fix(view: View, path: str) -> Fix:
     """The fix that includes another file, after the existing includes."""
-    at, line = include_line(view.look_up(lookups.head), view.path, path)
+    at, line = include_line(view.ask(lookups.head), view.path, path)
     shown = posixpath.relpath(path, posixpath.dirname(view.path) or ".")
     return Fix(f"Include `{shown}`", (Change(Place(Span(at, at), view.path), line),))
 
@@ -111,5 +111,5 @@ def include_line(head: tuple[int, str], path: str, other: str) -> tuple[int, str
 
 def _meant(view: View, path: str) -> tuple[str, ...]:
     name = posixpath.basename(path)
-    others = view.look_up(lookups.other_files)
+    others = view.ask(lookups.other_files)
     return tuple([other for other in others if posixpath.basename(other) == name][:3]) or near(path, others)

@@ -16,6 +16,7 @@ from btq_lang.checks.pointers import passed_on
 from btq_lang.checks.ports import adding_fix
 from btq_lang.checks.view import View, ports_beside
 from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.workspace import inputs
 from btq_lang.workspace.queries import Store, hub, on_circle
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
@@ -25,7 +26,7 @@ _InTree: TypeAlias = "tuple[tuple[tuple[str, str], ...], tuple[tuple[str, tuple[
 
 def isolated_node(view: View) -> Iterator[Diagnostic]:
     """A SubTree that does not pass what nodes of Nav2 in its tree take from the blackboard when they are created."""
-    if not view.seen.subtrees or view.look_up(lookups.distribution) is None:
+    if not view.seen.subtrees or view.ask(lookups.distribution) is None:
         return
     is_old = is_before_4(view.target)
     for seen in view.seen.subtrees:
@@ -62,8 +63,8 @@ def _in_tree(store: Store[Workspace], viewpoint: str, tree: str) -> _InTree:
     from btq_lang.catalog.nav2.creation import created_with  # only for Nav2
 
     view = View(store, viewpoint)
-    distribution = view.look_up(lookups.distribution)
-    definition = view.definition(Kind.TREE, tree)
+    distribution = view.ask(lookups.distribution)
+    definition = view.ask(inputs.definition, Kind.TREE, tree)
     if distribution is None or definition is None:
         return (), ()
     nodes = view.seen_in(*definition)

@@ -49,7 +49,7 @@ def _given(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
         for seen, key in entries.sure
         if not any(is_pointer(value.text) for value in map(seen.node.attribute, _PORTS) if value is not None)
     }
-    return frozenset(written).union(*(view.ask(_passed, *tree) for tree in inputs.trees(store, viewpoint)))
+    return frozenset(written).union(*(view.ask(_passed, *tree) for tree in store.ask(inputs.trees, viewpoint)))
 
 
 def _passed(store: Store[Workspace], viewpoint: str, path: str, tree: Facts) -> frozenset[str]:

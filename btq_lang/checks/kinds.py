@@ -18,7 +18,7 @@ from btq_lang.checks.engines import is_for_version_3, old_words
 from btq_lang.checks.lookups import Declaration
 from btq_lang.checks.missing_ids import missing_id
 from btq_lang.checks.own_lines import has_bare_label, label_as_child
-from btq_lang.checks.view import COUNTS, SECOND, View, misspelt_clause
+from btq_lang.checks.view import COUNTS, SECOND, View, has_names, is_first_tree, misspelt_clause, near_names
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.claims import VERB_WORDS
@@ -28,6 +28,7 @@ from btq_lang.syntax.tree import Model, Tree, Word, quote, written
 from btq_lang.util.record import replace
 from btq_lang.util.spelling import did_you_mean, distance, without_digits
 from btq_lang.util.text import Span
+from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode
@@ -51,7 +52,7 @@ def unknown_node(view: View) -> Iterator[Diagnostic]:
                 yield replace(found, severity=Severity.ERROR)
         elif name is None:
             continue
-        elif view.defines(Kind.TREE, name.text):
+        elif view.ask(lookups.is_defined, Kind.TREE, name.text):
             if view.tree_name is None or view.tree_name.text != name.text:  # else the tree's name is the mistake
                 yield _tree_as_node(view, seen, name)
         elif view.is_pooled(Kind.MODEL, name.text):
@@ -133,9 +134,9 @@ def _missing(tag: str, engines: tuple[str, ...]) -> list[str]:
 def no_models(view: View) -> Iterator[Diagnostic]:
     """A mission of many nodes with ports and not one model: an include may be missing, which nothing else would
     report."""
-    if view.is_xml or not view.is_first_tree or view.has_names(Kind.MODEL):
+    if view.is_xml or not view.ask(is_first_tree, view.facts) or view.ask(has_names, Kind.MODEL):
         return
-    given = view.ask(_given_ports) if view.is_complete and view.is_read else ()
+    given = view.ask(_given_ports) if view.ask(inputs.is_complete) and view.is_read else ()
     own = view.nodes
     if own and len(given) >= _MANY:
         shown = ", ".join(f"`{name}`" for name in given[:3])
@@ -147,7 +148,7 @@ def no_models(view: View) -> Iterator[Diagnostic]:
 def _given_ports(store: Store[Workspace], viewpoint: str) -> tuple[str, ...]:
     """The custom nodes of the file that have ports."""
     view = View(store, viewpoint)
-    found = (view.ask(_given_ports_in, tree) for tree in view.look_up(lookups.trees))
+    found = (view.ask(_given_ports_in, tree) for tree in view.ask(lookups.trees))
     return tuple(dict.fromkeys(name for names in found for name in names))
 
 
@@ -217,7 +218,7 @@ def duplicate_definition(view: View) -> Iterator[Diagnostic]:
         if (
             _is_same_model(other.symbol, symbol)
             or _is_of_node(view, other, symbol)
-            or lookups.is_cpp(view.store, other.path)
+            or view.store.ask(lookups.is_cpp, other.path)
         ):
             continue
         only_one = f"Nav2 registers a node `{symbol.name}`, and a program can register only one"
@@ -287,9 +288,9 @@ def _foreign(view: View, seen: ResolvedNode) -> ForeignName | None:
     if not (seen.node.children or (has_bare_label(view, seen.node) and not is_of_leaves(name.text))):
         return None
     foreign = foreign_name(name.text)
-    if foreign is None or view.defines(Kind.TREE, name.text) or view.is_pooled(Kind.MODEL, name.text):
+    if foreign is None or view.ask(lookups.is_defined, Kind.TREE, name.text) or view.is_pooled(Kind.MODEL, name.text):
         return None
-    return foreign if view.is_complete and not view.project.hides_nodes else None
+    return foreign if view.ask(inputs.is_complete) and not view.project.hides_nodes else None
 
 
 def _as_built_in(view: View, seen: ResolvedNode, name: Word, foreign: ForeignName) -> Fix:
@@ -320,15 +321,15 @@ def _aliased(view: View, seen: ResolvedNode, name: Word, message: str, meant: No
 
 
 def _unknown(view: View, seen: ResolvedNode, name: Word) -> Iterator[Diagnostic]:
-    is_complete = view.is_complete and not view.project.hides_nodes
-    has_palette = is_complete and view.look_up(lookups.has_palette)
+    is_complete = view.ask(inputs.is_complete) and not view.project.hides_nodes
+    has_palette = is_complete and view.ask(lookups.has_palette)
     if not has_palette and seen.node.category is not None:
         return  # written as a declaration: `Action Foo` declares such a node
-    likely = view.near(name.text, Kind.MODEL)
+    likely = view.ask(near_names, Kind.MODEL, name.text)
     is_parent = False  # and nothing else is known against its name
     if not has_palette:
         likely = tuple(meant for meant in likely if _is_slip(name.text, meant))
-        is_parent = not (is_complete and view.look_up(lookups.most_have_models))
+        is_parent = not (is_complete and view.ask(lookups.most_have_models))
         if not likely and is_parent and not (is_complete and _has_own_children(view, seen, name)):
             return
     if not likely and not view.is_first_use(seen.node, name.text):
@@ -336,7 +337,7 @@ def _unknown(view: View, seen: ResolvedNode, name: Word) -> Iterator[Diagnostic]
     fixes = tuple(replace_fix(f"Replace `{name.text}` with `{meant}`", name.span, written(meant)) for meant in likely)
     notes: tuple[str, ...] = ()
     if not likely:
-        category, ports, _ = view.look_up(lookups.custom_node, name.text)
+        category, ports, _ = view.ask(lookups.custom_node, name.text)
         fixes = (_declared(view, seen, f"{category} {written(name.text)}", ports),)
         shortest = f"a line `{category} {written(name.text)}`"
         if view.is_xml:
@@ -410,7 +411,7 @@ def _tree_as_node(view: View, seen: ResolvedNode, name: Word) -> Diagnostic:
 def _is_plain_call(view: View, seen: ResolvedNode, name: Word) -> bool:
     """Whether a node of a tree's name is nothing but that tree, once `SubTree` is before it: it gives no ports and
     needs none, and no circle of trees begins."""
-    node, tree = seen.node, view.definition(Kind.TREE, name.text)
+    node, tree = seen.node, view.ask(inputs.definition, Kind.TREE, name.text)
     if node.category or node.label or node.attributes or node.clauses or node.children or view.tree_name is None:
         return False
     needs_ports = tree is None or not isinstance(tree[1].item, Tree) or bool(tree[1].item.ports)
@@ -451,7 +452,7 @@ def _is_same_model(first: Symbol, second: Symbol) -> bool:
 
 def _is_of_node(view: View, other: Declaration, symbol: Symbol) -> bool:
     """Whether a symbol is the model of a node that a file of nodes declares with these ports and maybe more."""
-    return has_ports_of(other.symbol, symbol) and other.path in view.look_up(lookups.node_paths)
+    return has_ports_of(other.symbol, symbol) and other.path in view.ask(lookups.node_paths)
 
 
 # What version 2 wrote below a SubTree.

@@ -217,7 +217,7 @@ def _loops(node: ResolvedNode, top: ResolvedNode) -> list[tuple[ResolvedNode, in
 
 def _goal_clause(view: View, name: str) -> Goal | None:
     """The clause with a requirement's goal."""
-    found = inputs.definition(view.store, view.path, Kind.REQUIREMENT, name)
+    found = view.ask(inputs.definition, Kind.REQUIREMENT, name)
     written = inputs.symbol(found[1], Kind.REQUIREMENT, name).target if found is not None else None
     clauses = written.clauses if isinstance(written, WrittenRequirement) else ()
     return next((clause for clause in clauses if isinstance(clause, Goal)), None)

@@ -242,7 +242,7 @@ def _text_below(view: View, tree: Word, port: Word | None, value: Word | None) -
         return None
     if not is_port_name(port.text):
         return None
-    return view.look_up(lookups.text_below, tree.text, port.text)
+    return view.ask(lookups.text_below, tree.text, port.text)
 
 
 def _number_for_text(value: Word, met: tuple[Place, str, str], severity: Severity | None) -> Diagnostic:

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks import lookups
-from btq_lang.checks.view import View
+from btq_lang.checks.view import View, has_names
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.syntax.tree import Requirement
+from btq_lang.workspace import inputs
 from btq_lang.workspace.queries import Store, hub
 from btq_lang.workspace.workspace import Workspace
 
@@ -23,15 +24,15 @@ def is_measured(store: Store[Workspace], viewpoint: str) -> bool:
     """Whether any requirement in scope has a clause, or anything is declared for one: else nothing needs to be
     resolved."""
     view = View(store, viewpoint)
-    if view.has_names(Kind.SIGNAL) or view.has_names(Kind.CONTEXT):
+    if view.ask(has_names, Kind.SIGNAL) or view.ask(has_names, Kind.CONTEXT):
         return True
-    names = view.names(Kind.REQUIREMENT)
-    return any(view.ask(_has_clauses, name) for name in names) or view.look_up(lookups.has_apply)
+    names = view.ask(inputs.names, Kind.REQUIREMENT)
+    return any(view.ask(_has_clauses, name) for name in names) or view.ask(lookups.has_apply)
 
 
 def _has_clauses(store: Store[Workspace], viewpoint: str, name: str) -> bool:
     view = View(store, viewpoint)
-    meaning = view.find(Kind.REQUIREMENT, name)
+    meaning = view.ask(lookups.meaning, Kind.REQUIREMENT, name)
     written = meaning.target if meaning is not None else None
     return isinstance(written, Requirement) and bool(
         written.clauses or written.parameters or any(checkable for _, checkable in view.constraints(written))
@@ -54,7 +55,9 @@ def requirement_without_subject(view: View) -> Iterator[Diagnostic]:
         return
     names = [symbol.name for symbol in view.facts.summary.symbols]
     found = [each for name in names if view.defines_here(Kind.REQUIREMENT, name) for each in _found_in(view, name)]
-    if found and view.is_read and not view.is_included:  # last, for both often change with an edit elsewhere
+    if (
+        found and view.is_read and not view.ask(inputs.is_included)
+    ):  # last, for both often change with an edit elsewhere
         yield from found
 
 

@@ -19,6 +19,7 @@ from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix, write_fix
 from btq_lang.syntax.tree import Tree, Verbatim
 from btq_lang.util.spelling import distance, without_digits
+from btq_lang.workspace import inputs
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
 
@@ -37,7 +38,7 @@ def misspelt_entry(view: View) -> Iterator[Diagnostic]:
     if min(counts.values()) > 1:
         return
     others = dict.fromkeys((*counts, *(port.name.text for port in tree.ports if port.name is not None)))
-    if (outside := view.look_up(lookups.outside_entries)) and not view.ask(callers, tree.name.text):
+    if (outside := view.ask(lookups.outside_entries)) and not view.ask(callers, tree.name.text):
         others |= dict.fromkeys(name for name, _ in outside)
     if any(mention.name[:1] == "@" for mention in mentions):
         others |= dict.fromkeys(f"@{name}" for name in view.ask(_root_names))
@@ -49,7 +50,9 @@ def misspelt_entry(view: View) -> Iterator[Diagnostic]:
         for meant in _alike(mention.name, by_piece):
             if meant in reported or _stand_together(mentions, mention, meant):
                 continue
-            if view.ask(_is_meant, tree.name.text, mention.name, meant, meant in counts) and view.is_complete:
+            if view.ask(_is_meant, tree.name.text, mention.name, meant, meant in counts) and view.ask(
+                inputs.is_complete
+            ):
                 reported.add(mention.name)
                 yield _diagnostic(mentions, mention, meant, counts.get(meant) == 1)
                 break
@@ -61,7 +64,7 @@ def _misspelt_booleans(mentions: Iterable[Mention], view: View, tree: str) -> It
         meant = mention.name.lower()
         if not mention.in_script or mention.name == meant or meant not in ("true", "false"):
             continue
-        if not view.ask(_is_created, tree, mention.name) and view.is_complete:
+        if not view.ask(_is_created, tree, mention.name) and view.ask(inputs.is_complete):
             message = f"a script reads `{mention.name}` as the name of an entry; did you mean `{meant}`?"
             fix = write_fix(meant, mention.span)
             yield Diagnostic("misspelt-entry", mention.span, message, fixes=(fix,))

@@ -22,6 +22,7 @@ from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Pair
 from btq_lang.util.reach import reached
 from btq_lang.util.record import Record
+from btq_lang.workspace import inputs
 from btq_lang.workspace.inputs import of_scope
 from btq_lang.workspace.port_types import is_text
 from btq_lang.workspace.queries import Store, on_circle
@@ -60,7 +61,7 @@ _Types: TypeAlias = "dict[str, list[_Meeting]]"
 def entry_with_two_types(view: View) -> Iterator[Diagnostic]:
     """An entry that is assigned to ports of two types: the engine refuses to load the tree."""
     name = view.tree_name
-    if name is not None and view.look_up(lookups.has_pointers) and view.defines_here(Kind.TREE, name.text):
+    if name is not None and view.ask(lookups.has_pointers) and view.defines_here(Kind.TREE, name.text):
         yield from view.ask(_found_in, name.text)
 
 
@@ -138,7 +139,7 @@ def _is_first(view: View, tree: str, key: str) -> bool:
 
 
 def _nodes(view: View, tree: str) -> tuple[ResolvedNode, ...]:
-    found = view.definition(Kind.TREE, tree)
+    found = view.ask(inputs.definition, Kind.TREE, tree)
     return view.seen_in(*found).all if found is not None else ()
 
 
@@ -182,7 +183,7 @@ def _port(view: View, port: _Port) -> tuple[ResolvedNode, Pair]:
 
 
 def _related(view: View, port: _Port, message: str) -> Related:
-    tree = view.declaration(Kind.TREE, port.tree)
+    tree = view.ask(lookups.declaration, Kind.TREE, port.tree)
     assert tree is not None, "its nodes have been seen"
     return Related(Place(_port(view, port)[1].key.span, tree.path, tree.owner.item), message)
 

@@ -27,6 +27,7 @@ from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import is_name
 from btq_lang.util.record import replace
+from btq_lang.workspace import inputs
 from btq_lang.workspace.resolved import ResolvedNode
 
 Check = Callable[[View], Iterator[Diagnostic]]
@@ -59,7 +60,7 @@ def is_between(since: str, until: str, after: str, origin: str, target: str) -> 
 
 def new_in_target(view: View, checks: tuple[Check, ...], found: list[Diagnostic]) -> Iterator[Diagnostic]:
     """What the target refuses, or reads otherwise, and the version that the tree is for does not."""
-    workspace = view.workspace.moved
+    workspace = view.ask(inputs.everything).moved
     moved = View(workspace.store, view.path, view.facts)
     known = {(each.rule, each.span) for each in found if is_severe(each)}
     of_engine = [each for check in checks for each in check(moved)]
@@ -67,10 +68,10 @@ def new_in_target(view: View, checks: tuple[Check, ...], found: list[Diagnostic]
         if (each.rule, each.span) not in known and is_severe(each):
             yield of_target(each, workspace.project.target)
     target = view.project.moves_to
-    if target is None or target not in FILES or view.look_up(lookups.distribution) is None:
+    if target is None or target not in FILES or view.ask(lookups.distribution) is None:
         return
     known.update((each.rule, each.span) for each in of_engine)
-    moved = View(view.workspace.moved_nodes.store, view.path, view.facts)
+    moved = View(view.ask(inputs.everything).moved_nodes.store, view.path, view.facts)
     for each in (*entry_with_two_types(moved), *isolated_node(moved)):  # all else that changes is in a table
         if (each.rule, each.span) not in known:
             yield of_target(each, target.capitalize())

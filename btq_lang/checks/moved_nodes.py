@@ -25,7 +25,7 @@ Key = TypeVar("Key", bound=tuple[str, ...])
 
 def ports_in(view: View, distribution: str, node: str) -> frozenset[str] | None:
     """The names of the ports of a node in a distribution; None if it does not have the node."""
-    return lookups.ports_in_file(view.store, FILES[distribution], Kind.MODEL, node)
+    return view.store.ask(lookups.ports_in_file, FILES[distribution], Kind.MODEL, node)
 
 
 def changes_of(view: View, seen: ResolvedNode, name: Word, steps: tuple[str, ...]) -> Iterator[Diagnostic]:
@@ -53,7 +53,7 @@ def _collects(view: View, seen: ResolvedNode) -> bool:
     name = pointed_at("error_code_id", value.text) if value is not None else None
     if view.factory is None or not view.factory.entries:
         return True
-    return any(entry == name for entry, _ in view.look_up(lookups.outside_entries))
+    return any(entry == name for entry, _ in view.ask(lookups.outside_entries))
 
 
 def changed(view: View, seen: ResolvedNode, name: Word, change: Change) -> Iterator[Diagnostic]:

@@ -46,7 +46,7 @@ def moving_include(view: View) -> Iterator[Diagnostic]:
 def _steps(view: View) -> tuple[str, ...]:
     """The distribution that the trees are for, and those on the way to the target; empty if there is no way."""
     target = view.project.moves_to
-    origin = view.look_up(lookups.distribution) if target in DISTRIBUTIONS else None
+    origin = view.ask(lookups.distribution) if target in DISTRIBUTIONS else None
     if target is None or origin is None or origin == target:
         return ()
     start, end = DISTRIBUTIONS.index(origin), DISTRIBUTIONS.index(target)
@@ -55,7 +55,7 @@ def _steps(view: View) -> tuple[str, ...]:
 
 def _engine(view: View) -> str:
     """The version that the trees are for: by its syntax, its project, or its distribution; else the oldest known."""
-    distribution = view.look_up(lookups.distribution)
+    distribution = view.ask(lookups.distribution)
     of_distribution = ENGINES[distribution] if distribution is not None else None
     if is_before_4(view.target):
         is_declared = of_distribution is not None and is_before_4(of_distribution) and not view.project.pinned

@@ -16,6 +16,7 @@ from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Include, Model, Models, Tree, Verbatim, Word, is_name, models_in, written
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span
+from btq_lang.workspace import inputs
 from btq_lang.workspace.resolved import ResolvedNode
 
 _NO_NAMESPACES = ("it does not support XML namespaces: the prefix is part of the name",)
@@ -74,7 +75,12 @@ def duplicate_instance_name(view: View) -> Iterator[Diagnostic]:
 
 
 def _of_id(view: View, seen: ResolvedNode, name: Word, reason: str) -> Iterator[Diagnostic]:
-    if seen.is_subtree and name.text and not view.is_complete and not view.defines(Kind.TREE, name.text):
+    if (
+        seen.is_subtree
+        and name.text
+        and not view.ask(inputs.is_complete)
+        and not view.ask(lookups.is_defined, Kind.TREE, name.text)
+    ):
         yield _tree_name(view, name, reason, ())  # else it is reported at the tree, or as a missing tree
     elif not seen.is_subtree and seen.node.category is None and seen.kind is None:
         refused = _refused("node ID", name, reason, _explicit(seen, name))
@@ -109,7 +115,7 @@ def _of_instance(view: View, seen: ResolvedNode, label: Word, version: str) -> I
 def _nameless(view: View, tree: Tree) -> Iterator[Diagnostic]:
     """A tree without an ID: the engine accepts it only if it is alone."""
     elements = (Tree, Model, Models, Include, Verbatim)
-    read = [each for each in view.look_up(lookups.items) if isinstance(each.item, elements)]
+    read = [each for each in view.ask(lookups.items) if isinstance(each.item, elements)]
     if len(read) > 1 and not any(problem.span.start <= tree.end for problem in view.entry.diagnostics):
         span = Span(tree.start, tree.start + len("BehaviorTree"))
         notes = ("the engine accepts a tree without an ID only as the only tree of a file",)
@@ -123,7 +129,7 @@ def _tree_name(view: View, name: Word, reason: str, fixes: tuple[Fix, ...]) -> D
         notes = view.pin_note(lambda version: model_name_problem(name.text, version) is None)
         return replace(_refused("tree ID", name, reason), notes=notes)
     legal = legal_name(name.text)
-    taken = view.look_up(lookups.taken_names, name.text).get(legal)
+    taken = view.ask(lookups.taken_names, name.text).get(legal)
     note = f"`btq build` writes it as `{legal}`"
     if taken is not None:
         note = f"`btq build` cannot write it as `{legal}`, which is {taken}"
@@ -139,14 +145,14 @@ def _refused(what: str, name: Word, reason: str, fixes: tuple[Fix, ...] = ()) ->
 
 def _renamed(view: View, name: Word) -> tuple[Fix, ...]:
     """The fix that gives a tree a legal name, wherever it is named."""
-    declaration = view.declaration(Kind.TREE, name.text)
+    declaration = view.ask(lookups.declaration, Kind.TREE, name.text)
     if declaration is None or declaration.owner is not view.facts:
         return ()
     legal = legal_name(name.text)
-    taken = view.look_up(lookups.taken_names, name.text)
+    taken = view.ask(lookups.taken_names, name.text)
     while legal in taken:
         legal += "_"
-    places = (declaration.place, *view.look_up(lookups.uses_of_tree, name.text))
+    places = (declaration.place, *view.ask(lookups.uses_of_tree, name.text))
     changes = tuple(Change(place, written(legal)) for place in places)
     return (Fix(f"Rename it to `{legal}` everywhere", changes),)
 

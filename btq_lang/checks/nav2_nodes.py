@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2 import FILES
+from btq_lang.checks import lookups
 from btq_lang.checks.view import View
 from btq_lang.workspace.resolved import ResolvedNode
 
@@ -22,5 +23,5 @@ def of_distribution(view: View, seen: ResolvedNode, distribution: str) -> str | 
     """The ID of a node of Nav2; None for another one."""
     if seen.of_model is None or seen.id is None:
         return None
-    model = view.declaration(Kind.MODEL, seen.id.text)
+    model = view.ask(lookups.declaration, Kind.MODEL, seen.id.text)
     return seen.id.text if model is not None and model.path == FILES[distribution] else None

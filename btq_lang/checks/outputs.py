@@ -67,7 +67,7 @@ def _outputs(view: View, given: Iterable[ResolvedNode]) -> Iterator[tuple[Resolv
 
 def _is_custom(store: Store[Workspace], viewpoint: str) -> bool:
     """Whether the file assigns values to outputs as a rule."""
-    counts = [store.ask(_counts, viewpoint, tree) for tree in lookups.trees(store, viewpoint)]
+    counts = [store.ask(_counts, viewpoint, tree) for tree in store.ask(lookups.trees, viewpoint)]
     given, values = sum(each[0] for each in counts), sum(each[1] for each in counts)
     return values > 2 and (values > given / 2 or values > 9)
 
@@ -79,7 +79,7 @@ def _is_first_value(view: View, pair: Pair) -> bool:
 
 
 def _first_with_value(store: Store[Workspace], viewpoint: str) -> Facts | None:
-    trees = lookups.trees(store, viewpoint)
+    trees = store.ask(lookups.trees, viewpoint)
     return next((tree for tree in trees if store.ask(_counts, viewpoint, tree)[1]), None)
 
 

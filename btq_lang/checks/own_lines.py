@@ -11,6 +11,7 @@ from typing import Final
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import lookup
+from btq_lang.checks import lookups
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place
 from btq_lang.grammar.cursor import QUOTES
@@ -76,7 +77,11 @@ def _on_own_line(view: View, reported: Diagnostic) -> Diagnostic:
 
 
 def _is_node(view: View, word: str) -> bool:
-    return lookup(word) is not None or view.defines(Kind.MODEL, word) or view.defines(Kind.TREE, word)
+    return (
+        lookup(word) is not None
+        or view.ask(lookups.is_defined, Kind.MODEL, word)
+        or view.ask(lookups.is_defined, Kind.TREE, word)
+    )
 
 
 def _on_lines(view: View, node: Node, starts: Sequence[int]) -> tuple[Fix, ...]:

@@ -9,7 +9,8 @@ from functools import lru_cache
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, lookup, spellings
-from btq_lang.checks.view import View
+from btq_lang.checks import lookups
+from btq_lang.checks.view import View, has_names
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.claims import VERB_WORDS
@@ -97,14 +98,14 @@ def _first_name(store: Store[Workspace], viewpoint: str, legal: str) -> str | No
 @hub
 def _first_names(store: Store[Workspace], viewpoint: str) -> dict[str, str]:
     found: dict[str, str] = {}
-    for _, tree in reversed(inputs.trees(store, viewpoint)):
+    for _, tree in reversed(store.ask(inputs.trees, viewpoint)):
         found.update(store.ask(_names_in, tree))
     return found
 
 
 def _first_place(store: Store[Workspace], viewpoint: str, legal: str) -> Place | None:
     """The place of that placeholder's name."""
-    for path, tree in inputs.trees(store, viewpoint):
+    for path, tree in store.ask(inputs.trees, viewpoint):
         if legal in store.ask(_names_in, tree):
             name = next(name for name in _placeholders(tree) if _id_of(name.text) == legal)
             return Place(name.span, path, tree.item)
@@ -132,7 +133,7 @@ def _taken(view: View, name: str) -> str | None:
     """Why a placeholder cannot become a node of this ID."""
     if name in BUILTINS:
         return "which is a built-in node"
-    return "which is the name of a tree" if view.defines(Kind.TREE, name) else None
+    return "which is the name of a tree" if view.ask(lookups.is_defined, Kind.TREE, name) else None
 
 
 def _short_form(view: View, seen: ResolvedNode, name: str) -> Fix | None:
@@ -152,7 +153,7 @@ def _short_form(view: View, seen: ResolvedNode, name: str) -> Fix | None:
     changes = _replace_head(view.text, node, head)
     if changes is None:
         return None
-    return Fix(f"Write `{head}`", changes, not view.has_names(Kind.MODEL))
+    return Fix(f"Write `{head}`", changes, not view.ask(has_names, Kind.MODEL))
 
 
 def _as_kind(name: str) -> str:

@@ -26,6 +26,7 @@ from btq_lang.syntax.tree import Include, Meta, Node, Pair, Port, Root, Tree, Wo
 from btq_lang.util.record import replace
 from btq_lang.util.spelling import did_you_mean, distance, near
 from btq_lang.util.text import Span
+from btq_lang.workspace import inputs
 from btq_lang.workspace.port_types import as_kind
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode
@@ -262,7 +263,7 @@ def _ports(view: View, seen: ResolvedNode) -> KnownPorts | None:
     if seen.is_subtree:
         # The engine reads `default = ""` as none, requires outputs too, and adds up the models of a tree.
         name = seen.node.id
-        others = view.look_up(lookups.ports_of_models, Kind.MODEL, name.text) if name is not None else ()
+        others = view.ask(lookups.ports_of_models, Kind.MODEL, name.text) if name is not None else ()
         declared = {port.id.text: port for port in chain(ports_beside(view, seen), *others) if port.id is not None}
         ports = [replace(port, required=not port.default) for port in map(as_kind, declared.values())]
         return KnownPorts(tuple(ports)) if ports else None
@@ -286,12 +287,12 @@ def _may_have_more(view: View, seen: ResolvedNode) -> bool:
     if name is None or not (seen.is_subtree or seen.is_defined):
         return False
     kinds = (Kind.TREE, Kind.MODEL) if seen.is_subtree else (Kind.MODEL,)
-    return any(view.look_up(lookups.is_torn, kind, name.text) for kind in kinds)
+    return any(view.ask(lookups.is_torn, kind, name.text) for kind in kinds)
 
 
 def _model_ports(store: Store[Workspace], viewpoint: str, name: str) -> KnownPorts | None:
     """The ports of a node with a model; of several that differ, those that any has, required if all require them."""
-    models = [[*map(as_kind, ports)] for ports in lookups.ports_of_models(store, viewpoint, Kind.MODEL, name)]
+    models = [[*map(as_kind, ports)] for ports in store.ask(lookups.ports_of_models, viewpoint, Kind.MODEL, name)]
     needed = [{port.name for port in ports if port.required} for ports in models]
     first: dict[str, PortKind] = {}
     for port in chain(*models):
@@ -310,18 +311,23 @@ def _of_version_3(view: View, seen: ResolvedNode, key: str) -> tuple[str, ...]:
 def _of_model_in_xml(view: View, seen: ResolvedNode) -> str:
     """The rest of a sentence about a port, if only a model in XML says which ones a node has: it may be an old one."""
     name = seen.id if seen.is_defined and not (seen.kind or seen.is_subtree) else None
-    found = view.declaration(Kind.MODEL, name.text) if name is not None else None
-    origin = lookups.origin(view.store, found.path) if found is not None else None
+    found = view.ask(lookups.declaration, Kind.MODEL, name.text) if name is not None else None
+    origin = view.store.ask(lookups.origin, found.path) if found is not None else None
     if name is None or found is None or origin is None or origin.nodes is not None:
         return ""
-    if view.is_repeated(Kind.MODEL, name.text):
+    if view.ask(lookups.is_repeated, Kind.MODEL, name.text):
         return ""
     return f": its model in {view.project.shown(found.path)} lacks it"
 
 
 def _is_of_pool(view: View, seen: ResolvedNode) -> bool:
     """Whether only the model of a file that this one does not include declares a node."""
-    return seen.kind is None and seen.id is not None and seen.is_defined and not view.defines(Kind.MODEL, seen.id.text)
+    return (
+        seen.kind is None
+        and seen.id is not None
+        and seen.is_defined
+        and not view.ask(lookups.is_defined, Kind.MODEL, seen.id.text)
+    )
 
 
 def _needed(view: View, seen: ResolvedNode, missing: list[PortKind]) -> list[PortKind]:
@@ -333,13 +339,13 @@ def _needed(view: View, seen: ResolvedNode, missing: list[PortKind]) -> list[Por
     if not missing or seen.kind is not None or seen.is_subtree or seen.id is None:
         return missing
     name = seen.id.text
-    definition = view.definition(Kind.MODEL, name)
+    definition = view.ask(inputs.definition, Kind.MODEL, name)
     if definition is None:
         return []
-    origin = lookups.origin(view.store, definition[0])
+    origin = view.store.ask(lookups.origin, definition[0])
     if origin is None or origin.nodes is not None:
         return missing
-    _, used, uses = view.look_up(lookups.custom_node, name)
+    _, used, uses = view.ask(lookups.custom_node, name)
     given = {port.name for port in used}
     return missing if uses == 1 else [port for port in missing if port.name in given]
 

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import Dimension, dimension_name, parse_unit
+from btq_lang.checks import lookups
 from btq_lang.checks.measures import is_measured
 from btq_lang.checks.strings import in_source
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
 from btq_lang.syntax.tree import Requirement, Signal, Word
 from btq_lang.util.text import Span
+from btq_lang.workspace import inputs
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
 
@@ -27,7 +29,7 @@ def prose_constraint(view: View) -> Iterator[Diagnostic]:
         if requirement.text is None or requirement.clauses:
             continue
         found = _not_checked(view, requirement, symbol.name)
-        first = view.declaration(Kind.REQUIREMENT, symbol.name)
+        first = view.ask(lookups.declaration, Kind.REQUIREMENT, symbol.name)
         if not found or (first is not None and first.symbol is not symbol):
             continue
         signals = _signals(view)
@@ -77,8 +79,8 @@ def _as_clause(constraint: Constraint, signals: dict[str, Dimension]) -> str | N
 def _signals(view: View) -> dict[str, Dimension]:
     """The signals in scope, with what they measure."""
     found: dict[str, Dimension] = {}
-    for name in view.names(Kind.SIGNAL):
-        meaning = view.find(Kind.SIGNAL, name)
+    for name in view.ask(inputs.names, Kind.SIGNAL):
+        meaning = view.ask(lookups.meaning, Kind.SIGNAL, name)
         signal = meaning.target if meaning is not None else None
         unit = parse_unit(signal.unit.text) if isinstance(signal, Signal) and signal.unit is not None else None
         if unit is not None:
@@ -94,7 +96,7 @@ def _notes(clauses: tuple[str, ...]) -> tuple[str, ...]:
 
 def _fixes(view: View, text: Word, name: str, clauses: tuple[str, ...]) -> tuple[Fix, ...]:
     """The fixes that add the clauses; none if the text is repeated in other places, which would then differ."""
-    if not clauses or view.entry.diagnostics or view.is_repeated(Kind.REQUIREMENT, name):
+    if not clauses or view.entry.diagnostics or view.ask(lookups.is_repeated, Kind.REQUIREMENT, name):
         return ()
     added = " ".join(clauses)
     return (replace_fix(f"Add `{added}`", Span(text.end, text.end), f" {added}"),)

@@ -7,12 +7,14 @@ from collections.abc import Iterator
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, fold, successors
-from btq_lang.checks.view import View
+from btq_lang.checks import lookups
+from btq_lang.checks.view import View, near_names, quality_named
 from btq_lang.diagnostics.model import Diagnostic, Fix, Tag, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Qualities, Requirement, Satisfices, Satisfies, Tree, written
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.util.text import Span
+from btq_lang.workspace import inputs
 from btq_lang.workspace.symbols import Use
 
 
@@ -26,7 +28,7 @@ def quality_name(view: View) -> Iterator[Diagnostic]:
             fixes = tuple(replace_fix(f"Replace it with `{name}`", edition.span, name) for name in EDITIONS)
             yield Diagnostic("unknown-quality", edition.span, message, fixes=fixes)
     for use in view.uses(Kind.QUALITY):
-        match = view.quality(use.name) if use.name else None
+        match = view.ask(quality_named, use.name) if use.name else None
         if match is not None and match.kind == "unknown":
             yield from _unknown(view, use, match)
         elif match is not None and match.kind in ("alias", "other-edition"):
@@ -36,13 +38,13 @@ def quality_name(view: View) -> Iterator[Diagnostic]:
 
 
 def _unknown(view: View, use: Use, match: QualityMatch) -> Iterator[Diagnostic]:
-    if (meaning := view.find(Kind.REQUIREMENT, use.name)) is not None:
+    if (meaning := view.ask(lookups.meaning, Kind.REQUIREMENT, use.name)) is not None:
         takes_arguments = isinstance(meaning.target, Requirement) and bool(meaning.target.parameters)
         yield other_word(view, use, "unknown-quality", requirement=True, safe=not takes_arguments)
         return
-    own = tuple(written(name) for name in view.near(use.name, Kind.QUALITY))
+    own = tuple(written(name) for name in view.ask(near_names, Kind.QUALITY, use.name))
     meant = tuple(dict.fromkeys((*own, *match.near)))[:3]
-    if not meant and not view.is_complete:
+    if not meant and not view.ask(inputs.is_complete):
         return  # it may be declared on a line that could not be read
     message = f"unknown quality `{use.name}`{did_you_mean(meant)}"
     fixes = tuple(replace_fix(f"Replace `{use.name}` with `{name}`", _whole(view, use), name) for name in meant)
@@ -53,11 +55,11 @@ def _unknown(view: View, use: Use, match: QualityMatch) -> Iterator[Diagnostic]:
 def _old(view: View, use: Use, match: QualityMatch) -> Diagnostic:
     is_alias = match.kind == "alias"
     if not match.safe:
-        message = f"{view.edition} does not define `{use.name}`"
+        message = f"{view.ask(lookups.edition)} does not define `{use.name}`"
     elif is_alias:
         message = f"`{use.name}` is an alias of `{match.candidates[0].id}`"
     else:
-        message = f"`{use.name}` is called `{match.candidates[0].id}` in {view.edition}"
+        message = f"`{use.name}` is called `{match.candidates[0].id}` in {view.ask(lookups.edition)}"
     # "`x` is another word for y" adds nothing to such a message.
     notes = (match.explanation,) if match.explanation and not (is_alias and match.safe) else ()
     meant = [each.id for each in match.candidates[:3]]

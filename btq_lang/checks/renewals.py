@@ -112,9 +112,9 @@ def _renewing(
 def _writers(store: Store[Workspace], viewpoint: str, key: str) -> tuple[ResolvedNode, ...]:
     """The nodes that may write an entry of this name; empty if others may too, or if no node certainly does."""
     view = View(store, viewpoint)
-    if view.ask(nodes.mission) is None or not view.is_complete or not view.is_read:
+    if view.ask(nodes.mission) is None or not view.ask(inputs.is_complete) or not view.is_read:
         return ()
-    if view.is_included or inputs.has_xml(store, viewpoint):
+    if view.ask(inputs.is_included) or store.ask(inputs.has_xml, viewpoint):
         return ()
     entries = view.ask(all_entries)
     if any(each.is_open or key in each.mentioned for each in entries) or key in view.ask(_keys_of_defaults):
@@ -134,7 +134,7 @@ def _keys_of_defaults(store: Store[Workspace], viewpoint: str) -> frozenset[str]
     """The entries, without their `@`, that are defaults of ports of trees and models in scope."""
     view = View(store, viewpoint)
     found: set[str] = set()
-    for name in (*view.names(Kind.TREE), *view.names(Kind.MODEL)):
+    for name in (*view.ask(inputs.names, Kind.TREE), *view.ask(inputs.names, Kind.MODEL)):
         for port in declared_ports(view, name):
             text = port.default.text if port.default is not None else ""
             if is_pointer(text):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btq_lang.checks.clauses import with_blanks
-from btq_lang.checks.view import View
+from btq_lang.checks.view import View, quality_named
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.syntax import tree as syntax
 from btq_lang.util.text import Span
@@ -61,7 +61,7 @@ def _names(view: View, clause: syntax.NodeClause) -> Iterator[tuple[object, Span
     elif isinstance(clause, syntax.Satisfices):
         for quality in clause.qualities:
             name = quality.path.text
-            match = view.quality(name)
+            match = view.ask(quality_named, name)
             same = match.quality.id if match is not None and match.quality is not None else name
             # A quality that encloses requirements may be here for their sake.
             says = "quality", same, bool(quality.requirements) and quality.path.span

@@ -8,10 +8,11 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.qualities import other_word
-from btq_lang.checks.view import COUNTS, SECOND, View, misspelt_clause
+from btq_lang.checks.view import COUNTS, SECOND, View, has_trees, is_used, misspelt_clause, near_names, quality_named
 from btq_lang.diagnostics.model import Diagnostic, Related, Tag, replace_fix
 from btq_lang.syntax.tree import Claim, Context, OnViolation, Requirement, Signal, Tree, written
 from btq_lang.util.spelling import did_you_mean, near
+from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.symbols import Symbol, names_subject, same_requirement
@@ -21,18 +22,18 @@ from btq_lang.workspace.workspace import Workspace
 def unknown_requirement(view: View) -> Iterator[Diagnostic]:
     """A requirement that is named but defined nowhere."""
     for use in view.uses(Kind.REQUIREMENT):
-        if view.defines(Kind.REQUIREMENT, use.name):
+        if view.ask(lookups.is_defined, Kind.REQUIREMENT, use.name):
             continue
-        if not view.is_complete:
+        if not view.ask(inputs.is_complete):
             return
-        elsewhere = view.look_up(lookups.elsewhere, Kind.REQUIREMENT, use.name)
-        quality = view.quality(use.name)
+        elsewhere = view.ask(lookups.elsewhere, Kind.REQUIREMENT, use.name)
+        quality = view.ask(quality_named, use.name)
         if not elsewhere and (quality is None or quality.kind != "unknown"):
             is_exact = quality is None or quality.kind == "exact"
             yield other_word(view, use, "unknown-requirement", requirement=False, safe=is_exact)
             continue
         fixes = tuple(include_fix(view, path) for path in elsewhere[:3])
-        likely = view.near(use.name, Kind.REQUIREMENT)
+        likely = view.ask(near_names, Kind.REQUIREMENT, use.name)
         fixes += tuple(replace_fix(f"Replace `{use.name}` with `{name}`", use.span, written(name)) for name in likely)
         message = f"unknown requirement `{use.name}`{NOWHERE if elsewhere or not likely else did_you_mean(likely)}"
         meant = quality.near if quality is not None and not fixes else ()
@@ -62,14 +63,18 @@ def unused_requirement(view: View) -> Iterator[Diagnostic]:
         return
     if names_subject(requirement):
         return
-    if not view.has_trees or view.is_used_elsewhere:
+    if not view.ask(has_trees) or view.is_used_elsewhere:
         return  # a file of requirements, or a library: its users may be anywhere
     if not view.defines_here(Kind.REQUIREMENT, requirement.name.text):
         return
     name = requirement.name.text
-    if view.is_used(Kind.REQUIREMENT, name) or view.is_used(Kind.QUALITY, name) or view.ask(_is_misspelt_use, name):
+    if (
+        view.ask(is_used, Kind.REQUIREMENT, name)
+        or view.ask(is_used, Kind.QUALITY, name)
+        or view.ask(_is_misspelt_use, name)
+    ):
         return  # a quality or a node of this name, which probably means it, is reported
-    if not view.is_read or view.look_up(lookups.names_unknown_requirements):
+    if not view.is_read or view.ask(lookups.names_unknown_requirements):
         return  # its user may be on a line that could not be read, or misspell it
     message = f"unused requirement `{name}`: no `satisfies` or `apply` attaches it to a node"
     notes = (f"attach it to a node with `satisfies {written(name)}` or `apply`",)
@@ -95,9 +100,9 @@ def unused_word(view: View) -> Iterator[Diagnostic]:
     """A signal that no condition, no bound and no `uses` names, or a context that no condition names."""
     kind = Kind.SIGNAL if isinstance(view.item, Signal) else Kind.CONTEXT
     name = view.item.name if isinstance(view.item, Signal | Context) else None
-    if name is None or not view.has_trees or view.is_used_elsewhere:
+    if name is None or not view.ask(has_trees) or view.is_used_elsewhere:
         return  # a file of signals, or a library: their users may be anywhere
-    if not view.defines_here(kind, name.text) or view.look_up(lookups.is_asked_for, name.text):
+    if not view.defines_here(kind, name.text) or view.ask(lookups.is_asked_for, name.text):
         return
     if not view.ask(_is_meant, name.text) and view.is_read:  # else its user may be on a line that could not be read
         rule, users = ("unused-signal", "clause") if kind is Kind.SIGNAL else ("unused-context", "condition")
@@ -138,15 +143,15 @@ def _is_empty(requirement: Requirement) -> bool:
 def _is_meant(store: Store[Workspace], viewpoint: str, name: str) -> bool:
     """Whether something uses an undeclared name that looks like this one, which is reported already."""
     view = View(store, viewpoint)
-    asked = view.look_up(lookups.asked_for_in_vain)
-    declared = len(view.names(Kind.SIGNAL)) + len(view.names(Kind.CONTEXT))
+    asked = view.ask(lookups.asked_for_in_vain)
+    declared = len(view.ask(inputs.names, Kind.SIGNAL)) + len(view.ask(inputs.names, Kind.CONTEXT))
     if len(asked) * declared > _MOST_COMPARED:
         return True  # among so many unknown names there is a similar one to any
     return bool(near(name, asked, limit=1))
 
 
 def _is_misspelt_use(store: Store[Workspace], viewpoint: str, name: str) -> bool:
-    return any(name in store.ask(_misspelt_uses, facts) for facts in lookups.trees(store, viewpoint))
+    return any(name in store.ask(_misspelt_uses, facts) for facts in store.ask(lookups.trees, viewpoint))
 
 
 def _misspelt_uses(_: Store[Workspace], facts: Facts) -> frozenset[str]:

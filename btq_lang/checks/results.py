@@ -58,7 +58,7 @@ def results(view: View) -> Mapping[int, Results]:
 @inputs.of_scope
 def _of_tree(store: Store[Workspace], viewpoint: str, tree: str) -> Results:
     """The possible results of a tree by its name; all, if it runs itself."""
-    found = inputs.definition(store, viewpoint, Kind.TREE, tree)
+    found = store.ask(inputs.definition, viewpoint, Kind.TREE, tree)
     item = found[1].item if found is not None else None
     if found is None or not isinstance(item, Tree) or _is_filled_in(View(store, viewpoint), tree, item):
         return UNKNOWN
@@ -70,7 +70,7 @@ def _is_filled_in(view: View, name: str, tree: Tree) -> bool:
     """Whether a tree that does nothing is one in the place of which the program registers another: by its name,
     `__BringUp__`, or because C++ of the project has that name."""
     is_stub = len(tree.children) < 2 and all(isinstance(each, Node) and _succeeds(each) for each in tree.children)
-    return is_stub and (_TEMPLATE(name) is not None or view.look_up(lookups.is_in_cpp, name))
+    return is_stub and (_TEMPLATE(name) is not None or view.ask(lookups.is_in_cpp, name))
 
 
 def _succeeds(node: Node) -> bool:
@@ -97,7 +97,7 @@ def _of_node(view: View, seen: ResolvedNode, known: dict[int, Results]) -> Resul
         found = _of_known(seen.behavior, seen.node, children)
     elif not seen.node.children:
         name = seen.id.text if seen.id is not None and seen.is_defined and seen.stated_category == "Action" else None
-        at_once = name is not None and view.look_up(lookups.ends_at_once, Kind.MODEL, name)
+        at_once = name is not None and view.ask(lookups.ends_at_once, Kind.MODEL, name)
         found = _AT_ONCE if at_once else _CUSTOM.get(seen.stated_category or "", _UNKNOWN_LEAF)
     added = 0
     for pair in seen.node.attributes:

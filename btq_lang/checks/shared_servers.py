@@ -15,6 +15,7 @@ from btq_lang.checks.sorted_nodes import NO_NODES
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.util.reach import reached
+from btq_lang.workspace import inputs
 from btq_lang.workspace.queries import Store, hub, on_circle
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
@@ -22,7 +23,7 @@ from btq_lang.workspace.workspace import Workspace
 
 def shared_server(view: View) -> Iterator[Diagnostic]:
     """Two nodes in different children of one node that runs its children side by side, which call the same server."""
-    if view.look_up(lookups.distribution) is None:
+    if view.ask(lookups.distribution) is None:
         return
     for seen in view.seen.of_flow("parallel", "parallel-all", "together"):
         first: dict[str, ResolvedNode] = {}
@@ -58,7 +59,7 @@ def _calls(view: View, seen: ResolvedNode) -> tuple[tuple[str, str], ...]:
         return view.ask(_called, seen.node.id.text) if seen.node.id is not None else ()
     from btq_lang.catalog.nav2.creation import SERVERS  # only for Nav2
 
-    distribution = view.look_up(lookups.distribution)
+    distribution = view.ask(lookups.distribution)
     name = of_distribution(view, seen, distribution) if distribution is not None else None
     given = seen.node.attribute("server_name")
     if name is None or name not in SERVERS or (given is not None and is_pointer(given.text)):
@@ -78,7 +79,7 @@ def _called(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[tuple[s
 def _in_tree(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[tuple[tuple[str, str], ...], tuple[str, ...]]:
     """The servers that the nodes of a tree itself call, and the trees that it runs."""
     view = View(store, viewpoint)
-    definition = view.definition(Kind.TREE, tree)
+    definition = view.ask(inputs.definition, Kind.TREE, tree)
     nodes = view.seen_in(*definition) if definition is not None else NO_NODES
     calls = dict.fromkeys(call for seen in nodes.all if not seen.is_subtree for call in _calls(view, seen))
     trees = dict.fromkeys(seen.node.id.text for seen in nodes.subtrees if seen.node.id is not None)

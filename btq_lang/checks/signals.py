@@ -29,7 +29,7 @@ def of_signals(view: View, guards: Sequence[Guard]) -> Iterator[Found]:
     Args:
         guards: all claims for which the engine reads signals.
     """
-    names = inputs.names(view.store, view.path, Kind.SIGNAL)
+    names = view.ask(inputs.names, Kind.SIGNAL)
     signals = [found for name in names if (found := view.ask(reader.signal, name)[0]) is not None]
     here = [each for each in signals if each.place.path == view.path and each.key is not None]
     yield from _may_be_unset(view, guards)
@@ -59,9 +59,9 @@ def _never_written(view: View, here: list[Signal], guards: Sequence[Guard]) -> I
     """A signal whose blackboard entry no port and no script of the mission writes, if another entry has nearly the same
     name, or if a guard reads it; the robot's program may write it, so then it is a hint.  A guard reads the root
     blackboard, so what a tree writes into its own is another entry."""
-    if not view.ask(has_nodes) or not view.is_complete or not view.is_read:
+    if not view.ask(has_nodes) or not view.ask(inputs.is_complete) or not view.is_read:
         return
-    if view.is_included:
+    if view.ask(inputs.is_included):
         return  # it may be written in the files that include this one
     written = view.ask(written_keys)
     writes = [write for each in view.ask(all_entries) for write in each.writes] if guards else []
@@ -117,7 +117,11 @@ def _may_be_unset(view: View, guards: Iterable[Guard]) -> Iterator[Found]:
     reported: dict[str, tuple[Signal, list[Related]]] = {}
     for read, entries, place in guards:
         for entry in entries:
-            if entry.removeprefix("@") not in view.ask(written_keys) and view.is_read and not view.is_included:
+            if (
+                entry.removeprefix("@") not in view.ask(written_keys)
+                and view.is_read
+                and not view.ask(inputs.is_included)
+            ):
                 message = (
                     f"nothing in the mission writes `{entry}`: it ends if a guard reads it before anything writes it"
                 )

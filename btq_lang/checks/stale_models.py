@@ -18,7 +18,7 @@ def stale_model(view: View) -> Iterator[Diagnostic]:
     """A model with another category, or with a port that the C++ of its node has not, or has otherwise."""
     for symbol, other, _ in view.repeated(Kind.MODEL):
         model, of_code = symbol.target, other.symbol.target
-        is_cpp = lookups.is_cpp(view.store, other.path)
+        is_cpp = view.store.ask(lookups.is_cpp, other.path)
         if not (is_cpp and isinstance(model, Model) and isinstance(of_code, Model)):
             continue
         node = f"`{symbol.name}`"
@@ -41,7 +41,7 @@ def _of_port(view: View, model: Model, port: Port, other: lookups.Declaration) -
     ports = {each.id.text: each for each in of_code.ports if each.id is not None}
     in_code, name = ports.get(port.id.text), f"`{port.id.text}`"
     if in_code is None:
-        if not view.look_up(lookups.is_torn, Kind.MODEL, other.symbol.name):
+        if not view.ask(lookups.is_torn, Kind.MODEL, other.symbol.name):
             yield _unknown(view, model, port, other, ports)
         return
     assert in_code.id is not None, "it was looked up by its name"

@@ -14,7 +14,7 @@ from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.lookups import Meaning
 from btq_lang.checks.missing_ids import missing_id
 from btq_lang.checks.one_parent import below, sequence_above
-from btq_lang.checks.view import View
+from btq_lang.checks.view import View, is_first_tree, near_names
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.nodes import OF_ITS_OWN
@@ -22,6 +22,7 @@ from btq_lang.syntax.tree import Model, Node, Tree, written
 from btq_lang.util.record import replace
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.util.text import Span
+from btq_lang.workspace import inputs
 from btq_lang.workspace.symbols import Use
 
 if TYPE_CHECKING:
@@ -41,20 +42,20 @@ def unknown_tree(view: View) -> Iterator[Diagnostic]:
             what, pairs = "missing tree of this SubTree", seen.node.attributes
             yield missing_id(view, "unknown-tree", word.span, what, "SubTree", pairs)
     for use in view.uses(Kind.TREE):
-        if use.name == "" or view.defines(Kind.TREE, use.name) or view.is_pooled(Kind.TREE, use.name):
+        if use.name == "" or view.ask(lookups.is_defined, Kind.TREE, use.name) or view.is_pooled(Kind.TREE, use.name):
             continue
         if use.name in view.project.external:
             continue
-        if not view.is_complete or view.look_up(lookups.has_torn_tree):
+        if not view.ask(inputs.is_complete) or view.ask(lookups.has_torn_tree):
             return
-        if view.is_xml and view.look_up(lookups.is_tree_of_mission, use.name):
+        if view.is_xml and view.ask(lookups.is_tree_of_mission, use.name):
             continue  # the engine reads all files before it creates a tree, and other projects' XML gets no include
-        elsewhere = view.look_up(lookups.elsewhere, Kind.TREE, use.name)
+        elsewhere = view.ask(lookups.elsewhere, Kind.TREE, use.name)
         fixes = tuple(include_fix(view, path) for path in elsewhere[:3])
-        likely = view.near(use.name, Kind.TREE)
+        likely = view.ask(near_names, Kind.TREE, use.name)
         fixes += tuple(replace_fix(f"Replace `{use.name}` with `{name}`", use.span, written(name)) for name in likely)
         message = f"unknown tree `{use.name}`{_nowhere(view) if elsewhere or not likely else did_you_mean(likely)}"
-        model = view.find(Kind.MODEL, use.name)
+        model = view.ask(lookups.meaning, Kind.MODEL, use.name)
         if use.node is not None and (use.name in BUILTINS or (model is not None and not _is_subtree_model(model))):
             message = f"`{use.name}` is a node, not a tree"
             fixes = _as_node(use)
@@ -124,9 +125,13 @@ def recursive_tree(view: View) -> Iterator[Diagnostic]:
 def unused_tree(view: View) -> Iterator[Diagnostic]:
     """A tree to which nothing refers, or only such trees, in a file with a mission."""
     name = view.tree_name
-    if name is None or (view.is_included and view.factory is None) or not view.ask(calls.is_missed, name.text):
+    if (
+        name is None
+        or (view.ask(inputs.is_included) and view.factory is None)
+        or not view.ask(calls.is_missed, name.text)
+    ):
         return
-    mains = view.look_up(lookups.main_trees)
+    mains = view.ask(lookups.main_trees)
     main = f"main tree{'s are' if len(mains) > 1 else ' is'} {', '.join(f'`{each}`' for each in mains)}"
     if not view.defines_here(Kind.TREE, name.text):
         return  # another tree of that name counts, which is reported
@@ -143,18 +148,18 @@ def unused_tree(view: View) -> Iterator[Diagnostic]:
 
 def unknown_main_tree(view: View) -> Iterator[Diagnostic]:
     """Several trees of which none is marked as the mission, reported at the first; or a factory's missing main tree."""
-    if not view.is_first_tree:
+    if not view.ask(is_first_tree, view.facts):
         return
     if view.factory is not None:
         yield from _missing_main_trees(view, view.factory)
         return
-    if view.is_included:
+    if view.ask(inputs.is_included):
         return
     if view.ask(calls.has_gaps) or not view.is_read:
         return  # the tree that runs the others may be misspelt
-    if view.main_tree or view.look_up(lookups.has_root_of_tree):
+    if view.main_tree or view.ask(lookups.has_root_of_tree):
         return
-    tops = [name for name in view.look_up(lookups.own_trees) if not view.ask(calls.callers, name)]
+    tops = [name for name in view.ask(lookups.own_trees) if not view.ask(calls.callers, name)]
     if len(tops) < 2:
         return  # without one at the top they run in circles, which is reported
     shown = [f"`{name}`" for name in tops[:_MOST_NAMES]]
@@ -162,7 +167,7 @@ def unknown_main_tree(view: View) -> Iterator[Diagnostic]:
     way = '`main_tree_to_execute="…"` of <root>' if view.is_xml else "a line `Root <tree>`"
     message = f"ambiguous main tree: no other tree refers to {names}"
     notes: tuple[str, ...] = (f"name the main tree with {way}",)
-    created = [name for name in tops if view.look_up(lookups.is_in_cpp, name)]
+    created = [name for name in tops if view.ask(lookups.is_in_cpp, name)]
     if created:
         notes = (*notes, f"C++ of the project has the name `{created[0]}`, and may create that tree")
     others = [view.declared_at(Kind.TREE, name, "another tree without a reference") for name in tops[1:_MOST_NAMES]]
@@ -173,10 +178,12 @@ def unknown_main_tree(view: View) -> Iterator[Diagnostic]:
 
 def _missing_main_trees(view: View, factory: Factory) -> Iterator[Diagnostic]:
     """The main trees that the files of a factory lack, reported at the first tree that it registers."""
-    is_sure = view.look_up(lookups.is_first_registered) and view.is_complete and not view.look_up(lookups.has_torn_tree)
+    is_sure = (
+        view.ask(lookups.is_first_registered) and view.ask(inputs.is_complete) and not view.ask(lookups.has_torn_tree)
+    )
     for main in factory.main if is_sure else ():
-        if not view.defines(Kind.TREE, main):
-            likely = did_you_mean(view.near(main, Kind.TREE))
+        if not view.ask(lookups.is_defined, Kind.TREE, main):
+            likely = did_you_mean(view.ask(near_names, Kind.TREE, main))
             message = f"the factory `{factory.name}` has no tree `{main}`, which is its main tree{likely}"
             notes = ("this is the first tree that it registers; `main` is in the project file",)
             yield Diagnostic("unknown-main-tree", view.head, message, notes=notes, severity=Severity.ERROR)
@@ -185,9 +192,9 @@ def _missing_main_trees(view: View, factory: Factory) -> Iterator[Diagnostic]:
 def nothing_to_load(view: View) -> Iterator[Diagnostic]:
     """Files that a factory registers and that are not here, reported at the first tree that it registers."""
     factory = view.factory
-    if factory is None or not factory.lost or not view.is_first_tree:
+    if factory is None or not factory.lost or not view.ask(is_first_tree, view.facts):
         return
-    for pattern in factory.lost if view.look_up(lookups.is_first_registered) else ():
+    for pattern in factory.lost if view.ask(lookups.is_first_registered) else ():
         note = "what it defines is unknown"
         if pattern.startswith("package://"):
             note = f"btq looks for packages in this workspace, and in AMENT_PREFIX_PATH; {note}"
@@ -237,7 +244,11 @@ def tree_named_like_node(view: View) -> Iterator[Diagnostic]:
     name = view.tree_name
     if name is None:
         return
-    model = view.find(Kind.MODEL, name.text) if view.defines(Kind.MODEL, name.text) else None
+    model = (
+        view.ask(lookups.meaning, Kind.MODEL, name.text)
+        if view.ask(lookups.is_defined, Kind.MODEL, name.text)
+        else None
+    )
     related: tuple[Related, ...] = ()
     if name.text in BUILTINS:
         owner = "a built-in node"
@@ -277,9 +288,9 @@ def _as_node(use: Use) -> tuple[Fix, ...]:
 
 def _main_tree_fix(view: View, name: str) -> Fix:
     """The fix that names the main tree: in the existing Root, or in a line of its own after the includes."""
-    at, margin = view.look_up(lookups.head)
+    at, margin = view.ask(lookups.head)
     text = f"{margin}Root {written(name)}\n"
-    if (root := view.look_up(lookups.root)) is not None:
+    if (root := view.ask(lookups.root)) is not None:
         at, text = root, f" {written(name)}"
     return Fix(f"Make `{name}` the main tree", (Change(Place(Span(at, at), view.path), text),))
 

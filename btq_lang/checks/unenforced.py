@@ -32,7 +32,7 @@ def not_enforced(demanded: Demanded) -> Iterator[Found]:
             from btq_lang.btcpp.enforceability import where_else  # few missions demand anything of other files' nodes
 
             path = elsewhere.path
-            why = where_else(elsewhere, is_xml=lookups.is_xml(demanded.view.store, path))
+            why = where_else(elsewhere, is_xml=demanded.view.store.ask(lookups.is_xml, path))
             yield place, _found(applied, place, why, related, is_bundled=True)
 
 
@@ -87,7 +87,7 @@ def _is_built(demanded: Demanded, applied: Applied, claim: Claim, node: Resolved
     if node.path == demanded.view.path:
         return True
     view = demanded.view
-    seen = frozenset(inputs.paths(view.store, node.path))
+    seen = frozenset(view.store.ask(inputs.paths, node.path))
     asking = view.ask(_asking, applied.requirement.name, node)
     return not seen.isdisjoint(asking) or (applied.how == "subject" and claim.place.path in seen)
 

@@ -28,7 +28,7 @@ from btq_lang.workspace.workspace import Workspace
 def default_instead(view: View) -> Iterator[Diagnostic]:
     """An entry for an input that is read before anything can have written it, and a number that the node's code refuses
     though the port's type does not: the node goes on with its default."""
-    distribution = view.look_up(lookups.distribution)
+    distribution = view.ask(lookups.distribution)
     if distribution is None:
         return
     from btq_lang.catalog.nav2.read_once import is_read_once  # only for Nav2
@@ -50,7 +50,7 @@ def default_instead(view: View) -> Iterator[Diagnostic]:
 
 def error_code_not_collected(view: View) -> Iterator[Diagnostic]:
     """An error code in an entry that neither a node reads nor the result of a goal has."""
-    distribution = view.look_up(lookups.distribution)
+    distribution = view.ask(lookups.distribution)
     if distribution is None:
         return
     from btq_lang.catalog.nav2.navigator import COLLECTED, COLLECTING, OF_BRINGUP  # only for Nav2
@@ -63,7 +63,7 @@ def error_code_not_collected(view: View) -> Iterator[Diagnostic]:
             name = pointed_at(pair.key.text, pair.value.text)
             if name is None or name in usual or view.ask(_is_read, tree, name):
                 continue
-            if any(distance(name, entry, 1) < 2 for entry, _ in view.look_up(lookups.outside_entries)):
+            if any(distance(name, entry, 1) < 2 for entry, _ in view.ask(lookups.outside_entries)):
                 continue  # it is misspelt, which is reported
             message = f"nothing reads `{name}`, and the result of a goal does not have it"
             note = f"bt_navigator puts into the result what its parameter `{COLLECTING[distribution[0]]}` names"
@@ -72,7 +72,7 @@ def error_code_not_collected(view: View) -> Iterator[Diagnostic]:
 
 def foreign_error_code(view: View) -> Iterator[Diagnostic]:
     """A condition that looks for the error codes of other actions than those that write its entry."""
-    distribution = view.look_up(lookups.distribution)
+    distribution = view.ask(lookups.distribution)
     if distribution is None:
         return
     from btq_lang.catalog.nav2.navigator import HELPED  # only for Nav2
@@ -106,7 +106,7 @@ def _actions_with_codes_in(view: View, distribution: str, tree: str, name: str) 
     named = [each for each in view.ask(mentions, view.path, view.facts) if boards.is_one(tree, each.name, name)]
     writers = [each.node for each in named if each.writes]
     # Before the next goal bt_navigator sets those that it collects to 0.
-    resets = [each for each, way in view.look_up(lookups.outside_entries) if way != "input" and each == name]
+    resets = [each for each, way in view.ask(lookups.outside_entries) if way != "input" and each == name]
     writes = sum(each.writes for each in boards.of(tree, name))
     if boards.is_given(tree, name) or writes > len(writers) + len(resets):
         return set()

@@ -23,6 +23,7 @@ from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import written
 from btq_lang.util.text import Span
+from btq_lang.workspace import inputs
 from btq_lang.workspace.queries import Store, on_circle
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
@@ -35,9 +36,10 @@ def unset_entry(view: View) -> Iterator[Diagnostic]:
         return
     named = view.ask(mentions, view.path, view.facts)
     found = _found(view, name.text, named, set())
-    if found and view.is_complete:
-        told = _told(view, named)
-        yield from _found(view, name.text, named, told) if told else found
+    if not found or not view.ask(inputs.is_complete):
+        return
+    told = _told(view, named)
+    yield from _found(view, name.text, named, told) if told else found
 
 
 def _found(view: View, tree: str, named: Sequence[Mention], but: set[str]) -> list[Diagnostic]:
@@ -88,7 +90,7 @@ def _unset(view: View, tree: str, named: Sequence[Mention], but: set[str]) -> It
         if writers:
             yield _lost(view, mention, writers, use)
         elif use & Use.OUTSIDE:
-            is_usual = mention.in_script and not view.look_up(lookups.outside_entries)  # programs set what scripts read
+            is_usual = mention.in_script and not view.ask(lookups.outside_entries)  # programs set what scripts read
             if not (use & Use.STRANGE or is_usual or view.ask(_is_passed, tree, name)):
                 outside.append(mention)
         elif not use & Use.STRANGE and view.ask(_needs, tree, name):
@@ -125,7 +127,7 @@ def _runs_without(store: Store[Workspace], viewpoint: str, tree: str, name: str)
 
 def _never_set(view: View, named: Sequence[Mention]) -> Iterator[Diagnostic]:
     """Entries of the root blackboard: a warning each if it is known what the program sets; else a hint for all."""
-    if view.look_up(lookups.outside_entries):
+    if view.ask(lookups.outside_entries):
         for each in named:
             message = f"nothing writes `{each.name}` before it is read here, and bt_navigator does not set it"
             yield Diagnostic("unset-entry", each.span, message)
@@ -151,7 +153,7 @@ def _reads(mention: Mention) -> bool:
 def _needs(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
     """Whether a node in a tree, or in those that get the entry from it, cannot do without its value."""
     view = View(store, viewpoint)
-    found = view.definition(Kind.TREE, tree)
+    found = view.ask(inputs.definition, Kind.TREE, tree)
     named = view.ask(mentions, *found) if found is not None else ()
     if any(each.name == name and not each.node.is_subtree and _is_needed(view, each) for each in named):
         return True
@@ -186,7 +188,7 @@ def _first(named: Sequence[Mention], but: set[str]) -> dict[str, Mention]:
 def _is_before_all(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
     """Whether a tree reads an entry of the root blackboard before it writes it: at an earlier child of one Sequence."""
     view = View(store, viewpoint)
-    found = view.definition(Kind.TREE, tree)
+    found = view.ask(inputs.definition, Kind.TREE, tree)
     if found is None or view.ask(of_program, name) & Use.WRITTEN:
         return False
     named = [each for each in view.ask(mentions, *found) if each.name == name]
@@ -221,10 +223,12 @@ def _above(seen: ResolvedNode) -> Iterator[ResolvedNode]:
 def _is_known_root(view: View, tree: str) -> bool:
     """Whether the root blackboard is that of a main tree, which runs a tree: no file that is not in scope runs it and
     gives it entries."""
-    mains = view.look_up(lookups.main_trees) or ((view.main_tree,) if view.main_tree is not None else ())
+    mains = view.ask(lookups.main_trees) or ((view.main_tree,) if view.main_tree is not None else ())
     if not mains or view.ask(is_missed, tree):
         return False
-    is_alone = not view.is_included and not any(view.look_up(lookups.is_run_elsewhere, each) for each in (*mains, tree))
+    is_alone = not view.ask(inputs.is_included) and not any(
+        view.ask(lookups.is_run_elsewhere, each) for each in (*mains, tree)
+    )
     return view.factory is not None or is_alone
 
 

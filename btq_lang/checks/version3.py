@@ -20,7 +20,7 @@ def version_3_file(view: View) -> Iterator[Diagnostic]:
     if not words or project.written_for:
         return
     shown = ", ".join(f"`{word}`" for word in words[:_SHOWN]) + (" …" if len(words) > _SHOWN else "")
-    distribution = view.look_up(lookups.distribution)
+    distribution = view.ask(lookups.distribution)
     declared = ""
     if project.pinned:
         declared = f", but btq.toml names {project.target}"
@@ -50,7 +50,7 @@ def refuses(found: Iterable[Diagnostic]) -> bool:
 
 def version_4_file(view: View) -> Diagnostic:
     """What says that a file is for version 4, in place of all that version 3 refuses in it; the item is its Root."""
-    distribution = view.look_up(lookups.distribution)
+    distribution = view.ask(lookups.distribution)
     declared = f"btq.toml names {view.project.target}"
     if distribution is not None and not view.project.pinned:
         declared = f"{distribution.title()} has {ENGINES[distribution]}"

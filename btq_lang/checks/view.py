@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
-from functools import cache, partial
-from typing import TYPE_CHECKING, Concatenate, Generic, ParamSpec, TypeVar
+from functools import cache
+from typing import TYPE_CHECKING, Concatenate, ParamSpec, TypeVar
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import BUILTINS, PortKind, lookup, of_version, spellings
@@ -58,25 +58,6 @@ COUNTS = "first definition, which takes effect"
 SECOND = "second definition"
 
 
-class _OfFile(Generic[T]):
-    """An attribute of a view that is an input of its file."""
-
-    def __init__(self, read: Callable[[Store[Workspace], str], T]) -> None:
-        self._read = read
-
-    def __get__(self, view: View, _: type[View]) -> T:
-        return self._read(view.store, view.path)
-
-
-def _at(read: Callable[Concatenate[Store[Workspace], str, P], T]) -> Callable[Concatenate[View, P], T]:
-    """A method of a view that looks something up from its file."""
-
-    def look_up(view: View, /, *key: P.args, **named: P.kwargs) -> T:
-        return read(view.store, view.path, *key, **named)
-
-    return look_up
-
-
 class View:
     """An item, or none in particular, in the scope of a viewpoint.
 
@@ -96,14 +77,8 @@ class View:
         self.seen = self.seen_in(viewpoint, facts) if facts is not None else NO_NODES
 
     def ask(self, query: Callable[Concatenate[Store[Workspace], str, P], T], /, *key: P.args, **named: P.kwargs) -> T:
-        """The result of a query from this viewpoint."""
+        """The answer of a query or of an input from this viewpoint."""
         return self.store.ask(query, self.path, *key, **named)
-
-    def look_up(
-        self, read: Callable[Concatenate[Store[Workspace], str, P], T], /, *key: P.args, **named: P.kwargs
-    ) -> T:
-        """The value of an input from this viewpoint."""
-        return read(self.store, self.path, *key, **named)
 
     # ---- the item ----
 
@@ -122,12 +97,12 @@ class View:
     @property
     def entry(self) -> Entry:
         """The item and its syntax diagnostics; it begins at 0."""
-        return inputs.entry(self.store, self.path, self.facts)
+        return self.ask(inputs.entry, self.facts)
 
     @property
     def text(self) -> str:
         """The text of the item, up to the next one."""
-        return inputs.text(self.store, self.path, self.facts)
+        return self.ask(inputs.text, self.facts)
 
     @property
     def nodes(self) -> tuple[ResolvedNode, ...]:
@@ -167,11 +142,6 @@ class View:
         return self.nodes[at - 1] if at else None
 
     @property
-    def is_first_tree(self) -> bool:
-        """Whether no other tree of the file is before this one."""
-        return self.ask(_is_first_tree, self.facts)
-
-    @property
     def is_main(self) -> bool:
         """Whether the item is the tree that runs when the engine loads the file."""
         name = self.tree_name.text if self.tree_name is not None else ""
@@ -180,64 +150,45 @@ class View:
 
     def is_first_use(self, node: Node, name: str) -> bool:
         """Whether no earlier node of the file has an ID."""
-        if self.look_up(lookups.first_user, Kind.MODEL, name) is not self.facts:
+        if self.ask(lookups.first_user, Kind.MODEL, name) is not self.facts:
             return False
         uses = self.facts.summary.uses
         return next((use.node for use in uses if use.kind is Kind.MODEL and use.name == name), None) is node
 
     # ---- names ----
 
-    defines = _at(lookups.is_defined)
-    find = _at(lookups.meaning)
-    definition = _at(inputs.definition)
-    declaration = _at(lookups.declaration)
-    is_repeated = _at(lookups.is_repeated)
-    names = _at(inputs.names)
-    is_complete = _OfFile(inputs.is_complete)
-
     def is_pooled(self, kind: Kind, name: str) -> bool:
         """Whether a name of this XML file is defined in its pool, once or several times."""
-        return self.is_xml and self.look_up(lookups.is_pooled, kind, name)
+        return self.is_xml and self.ask(lookups.is_pooled, kind, name)
 
     def declared_at(self, kind: Kind, name: str, message: str) -> tuple[Related, ...]:
         """The place where a name is defined, to be shown beside a diagnostic."""
-        declaration = self.declaration(kind, name)
+        declaration = self.ask(lookups.declaration, kind, name)
         return (Related(declaration.place, message),) if declaration is not None else ()
 
     def defines_here(self, kind: Kind, name: str) -> bool:
         """Whether the item has the definition of a name that counts."""
-        found = self.definition(kind, name)
+        found = self.ask(inputs.definition, kind, name)
         return found is not None and found[1] is self.facts
 
     def repeated(self, *kinds: Kind) -> Iterator[tuple[Symbol, Declaration, bool]]:
         """The names that the item and another one define, with that definition, and whether it is the one that takes
         effect; else it is in another file of the factory."""
         for symbol in self.facts.summary.symbols:
-            if symbol.kind in kinds and self.is_repeated(symbol.kind, symbol.name):
-                first = self.declaration(symbol.kind, symbol.name)
+            if symbol.kind in kinds and self.ask(lookups.is_repeated, symbol.kind, symbol.name):
+                first = self.ask(lookups.declaration, symbol.kind, symbol.name)
                 counts = first is not None and first.symbol is not symbol
-                other = first if counts else self.look_up(lookups.another_declaration, symbol.kind, symbol.name)
+                other = first if counts else self.ask(lookups.another_declaration, symbol.kind, symbol.name)
                 if other is not None:
                     yield symbol, other, counts
-
-    def has_names(self, kind: Kind) -> bool:
-        """Whether there is any name of a kind in scope."""
-        return self.ask(_has_names, kind)
 
     def clashes(self, *kinds: Kind) -> list[tuple[Declaration, Declaration]]:
         """The names that the file of this include and one included before it both define, each with the definition that
         counts and the other one."""
         if not isinstance(self.item, Include):
             return []
-        found = self.look_up(lookups.clashes)
+        found = self.ask(lookups.clashes)
         return [(first, second) for at, first, second in found if at is self.facts and second.symbol.kind in kinds]
-
-    def near(self, word: str, kind: Kind) -> tuple[str, ...]:
-        """The names of a kind that are similar to an unknown word; a node may have a built-in's name too.
-
-        In a file with hundreds of unknown names suggestions are of no use, so above a limit the result is empty.
-        """
-        return self.ask(_near_names, kind, word)
 
     def seen_in(self, path: str, tree: Facts) -> SortedNodes:
         """The nodes of a tree of any file in scope, sorted; empty for any other item."""
@@ -245,16 +196,20 @@ class View:
 
     # ---- the file and the project ----
 
-    workspace = _OfFile(inputs.everything)
-    edition = _OfFile(lookups.edition)
-    is_xml = _OfFile(lookups.is_xml)
-    is_included = _OfFile(inputs.is_included)
-    is_read = _OfFile(lookups.is_read)
+    @property
+    def is_xml(self) -> bool:
+        """Whether the file is XML that the engine loads as it is, without a build."""
+        return self.ask(lookups.is_xml)
+
+    @property
+    def is_read(self) -> bool:
+        """Whether the whole file could be read."""
+        return self.ask(lookups.is_read)
 
     @property
     def project(self) -> Project:
         """What holds for all files."""
-        return inputs.project(self.store)
+        return self.store.ask(inputs.project)
 
     @property
     def engines(self) -> tuple[str, ...]:
@@ -272,33 +227,20 @@ class View:
         return self.engines != VERSIONS
 
     @property
-    def has_trees(self) -> bool:
-        """Whether there is a tree in the file."""
-        return self.ask(_has_trees)
-
-    @property
     def is_used_elsewhere(self) -> bool:
         """Whether other files can use what this one defines: they include it, or are registered with it."""
-        return self.is_included or (self.factory is not None and len(self.look_up(inputs.paths)) > 1)
+        return self.ask(inputs.is_included) or (self.factory is not None and len(self.ask(inputs.paths)) > 1)
 
     @property
     def factory(self) -> Factory | None:
         """The factory that the file is looked at in; None: the file is one of its own."""
-        return inputs.factory(self.store)
+        return self.store.ask(inputs.factory)
 
     @property
     def main_tree(self) -> str | None:
         """The name of the tree that runs when the engine loads the file."""
-        main = self.look_up(lookups.main_tree)
+        main = self.ask(lookups.main_tree)
         return main[0] if main is not None else None
-
-    def quality(self, name: str) -> QualityMatch | None:
-        """The catalog's match of a quality name; None for a quality that a file in scope declares."""
-        return self.ask(_quality, name)
-
-    def is_used(self, kind: Kind, name: str) -> bool:
-        """Whether something in the file refers to a name."""
-        return self.ask(_is_used, kind, name)
 
     def spelt(self, symbol: str) -> str:
         """A built-in node as the language of the file writes it: `R->`, in XML `<ReactiveSequence>`."""
@@ -329,7 +271,9 @@ class View:
             constraints,
         )
 
-        is_name = partial(lookups.is_node_name, self.store, self.path)
+        def is_name(word: str) -> bool:
+            return self.ask(lookups.is_node_name, word)
+
         return tuple([(each, can_be_checked(each.text, is_name)) for each in constraints(requirement.text)])
 
 
@@ -337,14 +281,14 @@ def ports_beside(view: View, seen: ResolvedNode) -> tuple[Port, ...]:
     """The ports that the model of a node declares, or the tree of a SubTree; not those of a built-in."""
     if seen.is_subtree:
         return declared_ports(view, seen.node.id.text) if seen.node.id is not None else ()
-    model = view.find(Kind.MODEL, seen.id.text) if seen.is_defined and seen.id is not None else None
+    model = view.ask(lookups.meaning, Kind.MODEL, seen.id.text) if seen.is_defined and seen.id is not None else None
     return model.ports if model is not None else ()
 
 
 def declared_ports(view: View, name: str) -> tuple[Port, ...]:
     """The ports that a tree declares, or if it declares none, a model of the same name."""
     for kind in (Kind.TREE, Kind.MODEL):
-        meaning = view.find(kind, name)
+        meaning = view.ask(lookups.meaning, kind, name)
         if meaning is not None and meaning.ports:
             return meaning.ports
     return ()
@@ -371,48 +315,57 @@ def misspelt_clause(node: Node) -> str | None:
 
 def _torn_places(store: Store[Workspace], viewpoint: str, facts: Facts) -> list[int]:
     """Where in an item something begins that could not be read."""
-    entry = inputs.entry(store, viewpoint, facts)
+    entry = store.ask(inputs.entry, viewpoint, facts)
     return sorted([problem.span.start for problem in entry.diagnostics])
 
 
-def _has_trees(store: Store[Workspace], viewpoint: str) -> bool:
-    return lookups.first_tree(store, viewpoint) is not None
+def has_trees(store: Store[Workspace], viewpoint: str) -> bool:
+    """Whether there is a tree in the file."""
+    return store.ask(lookups.first_tree, viewpoint) is not None
 
 
-def _is_first_tree(store: Store[Workspace], viewpoint: str, tree: Facts) -> bool:
-    return lookups.first_tree(store, viewpoint) is tree
+def is_first_tree(store: Store[Workspace], viewpoint: str, tree: Facts) -> bool:
+    """Whether no other tree of the file is before this one."""
+    return store.ask(lookups.first_tree, viewpoint) is tree
 
 
 def _is_main_tree(store: Store[Workspace], viewpoint: str, name: str) -> bool | None:
     """Whether this file's own tree of a name runs when the engine loads it; None if no tree of that name does."""
-    main = View(store, viewpoint).look_up(lookups.main_tree)
+    main = View(store, viewpoint).ask(lookups.main_tree)
     return main[1] if main is not None and main[0] == name else None
 
 
-def _has_names(store: Store[Workspace], viewpoint: str, kind: Kind) -> bool:
-    return bool(View(store, viewpoint).names(kind))
+def has_names(store: Store[Workspace], viewpoint: str, kind: Kind) -> bool:
+    """Whether there is any name of a kind in scope."""
+    return bool(View(store, viewpoint).ask(inputs.names, kind))
 
 
-def _quality(store: Store[Workspace], viewpoint: str, name: str) -> QualityMatch | None:
+def quality_named(store: Store[Workspace], viewpoint: str, name: str) -> QualityMatch | None:
+    """The catalog's match of a quality name; None for a quality that a file in scope declares."""
     view = View(store, viewpoint)
     words = tuple(name.split("."))
-    return None if fold(words[-1]) in view.ask(_own_qualities) else find(words, EDITIONS[view.edition])
+    return None if fold(words[-1]) in view.ask(_own_qualities) else find(words, EDITIONS[view.ask(lookups.edition)])
 
 
 def _own_qualities(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
-    return frozenset(map(fold, View(store, viewpoint).names(Kind.QUALITY)))
+    return frozenset(map(fold, View(store, viewpoint).ask(inputs.names, Kind.QUALITY)))
 
 
-def _near_names(store: Store[Workspace], viewpoint: str, kind: Kind, word: str) -> tuple[str, ...]:
+def near_names(store: Store[Workspace], viewpoint: str, kind: Kind, word: str) -> tuple[str, ...]:
+    """The names of a kind that are similar to an unknown word; a node may have a built-in's name too.
+
+    In a file with hundreds of unknown names suggestions are of no use, so above a limit the result is empty.
+    """
     view = View(store, viewpoint)
-    if view.look_up(lookups.is_crowded, kind):
+    if view.ask(lookups.is_crowded, kind):
         return ()
-    names = view.names(kind)
+    names = view.ask(inputs.names, kind)
     return near(word, (*_builtin_names(), *names) if kind is Kind.MODEL else names)
 
 
-def _is_used(store: Store[Workspace], viewpoint: str, kind: Kind, name: str) -> bool:
-    return name in View(store, viewpoint).look_up(lookups.used, kind)
+def is_used(store: Store[Workspace], viewpoint: str, kind: Kind, name: str) -> bool:
+    """Whether something in the file refers to a name."""
+    return name in View(store, viewpoint).ask(lookups.used, kind)
 
 
 def _script(_: Store[Workspace], text: str) -> Script:

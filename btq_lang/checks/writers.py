@@ -48,14 +48,14 @@ class Entries(Record):
 @inputs.of_scope
 def written_keys(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
     """The entries that something in scope or its program may write, without their `@`."""
-    outside = [name for name, direction in lookups.outside_entries(store, viewpoint) if direction != "input"]
+    outside = [name for name, direction in store.ask(lookups.outside_entries, viewpoint) if direction != "input"]
     return frozenset(outside).union(*[each.written for each in store.ask(all_entries, viewpoint)])
 
 
 @inputs.of_scope
 def all_entries(store: Store[Workspace], viewpoint: str) -> tuple[Entries, ...]:
     """The entries that nodes name, for each tree in scope."""
-    return tuple([store.ask(_entries_in, viewpoint, *tree) for tree in inputs.trees(store, viewpoint)])
+    return tuple([store.ask(_entries_in, viewpoint, *tree) for tree in store.ask(inputs.trees, viewpoint)])
 
 
 @inputs.of_scope

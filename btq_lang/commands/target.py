@@ -28,7 +28,7 @@ def moving(groups: Iterable[Group], target: str) -> tuple[Group, ...]:
 def is_comparable(groups: Iterable[Group], target: str) -> bool:
     """Whether it is known what some trees are for, if the target is a distribution."""
     given = ((group.workspace.store, path) for group in groups for path in group.given)
-    return target not in PACKAGED or any(distribution(store, path) is not None for store, path in given)
+    return target not in PACKAGED or any(store.ask(distribution, path) is not None for store, path in given)
 
 
 def with_target(workspace: Workspace, target: str) -> Workspace:

@@ -58,7 +58,7 @@ def missions_of(workspace: Workspace, path: str) -> tuple[str, ...]:
 
 
 def _plan(store: Store[Workspace], mission: str) -> tuple[ClauseEnforcement, ...]:
-    workspace = everything(store, mission)
+    workspace = store.ask(everything, mission)
     return tuple([each for clauses in clause_enforcements(workspace, mission) for each in clauses])
 
 

@@ -71,7 +71,7 @@ def colours(workspace: Workspace, path: str, encoding: Encoding) -> Colours:
     workspace.store.pin(_parts, path, encoding)
     found: list[tuple[int, int, str]] = []
     lines = 0
-    for item, part in zip(_items(workspace.store, path), workspace.store.ask(_parts, path, encoding), strict=True):
+    for item, part in zip(workspace.store.ask(_items, path), workspace.store.ask(_parts, path, encoding), strict=True):
         if part.others:
             found.append((lines + part.first, id(item), part.others))
             lines = 0
@@ -87,7 +87,7 @@ def forget(workspace: Workspace, path: str, encoding: Encoding) -> None:
 def making(workspace: Workspace, path: str, encoding: Encoding) -> Iterator[None]:
     """Compute the parts of a file in advance: for a large file that takes noticeable time, so the caller may do
     something else between two steps."""
-    for done, item in enumerate(_items(workspace.store, path), 1):
+    for done, item in enumerate(workspace.store.ask(_items, path), 1):
         workspace.store.ask(_part, path, encoding, item)
         if done % _A_STEP == 0:
             yield
@@ -95,11 +95,11 @@ def making(workspace: Workspace, path: str, encoding: Encoding) -> Iterator[None
 
 def _parts(store: Store[Workspace], path: str, encoding: Encoding) -> tuple[Part, ...]:
     """The parts of the items of a file."""
-    return tuple([store.ask(_part, path, encoding, item) for item in _items(store, path)])
+    return tuple([store.ask(_part, path, encoding, item) for item in store.ask(_items, path)])
 
 
 def _part(store: Store[Workspace], path: str, encoding: Encoding, item: Facts | None) -> Part:
-    text = inputs.text(store, path, item) if item is not None else _beginning(store, path)
+    text = store.ask(inputs.text, path, item) if item is not None else store.ask(_beginning, path)
     tokens, line = encoded(store, path, item, text, encoding)
     return part_of(tokens, (len(LINE_END.findall(text)) if "\r" in text else text.count("\n")) - line)
 
@@ -157,7 +157,7 @@ def encoded_within(workspace: Workspace, path: str, within: Span, encoding: Enco
     """The tokens on the lines that a span touches; computed without those of items before them."""
     file = workspace.files[path]
     first, last = (file.lines.position(offset).line for offset in within)
-    items = _items(workspace.store, path)
+    items = workspace.store.ask(_items, path)
     starts = [0, *(entry.start for entry in file.parsed.entries)]
     data: list[int] = []
     at = 0

@@ -45,7 +45,7 @@ def node_kind(workspace: Workspace, path: str, name: str, quoted: bool = False, 
     if isinstance(target, Model):
         text = target.text.text if target.text else ""
         shown = f"```btq\n{target.category.raw} {name}\n```"
-        _, known = inputs.declared(workspace.store, path, name)
+        _, known = workspace.store.ask(inputs.declared, path, name)
         semantics = known.semantics if known is not None else ""
         shown_ports = _ports(ports_of_kind(workspace, path, name))
         return "\n\n".join(filter(None, (shown, text, semantics, shown_ports, cpp_link(workspace, path, name))))
@@ -295,7 +295,7 @@ def include_edits(workspace: Workspace, path: str, other: str) -> tuple[Edit, ..
     """The edits that add a proposal to the file's scope; `other`: the file that defines it, empty if it is in scope."""
     if other not in workspace.files:
         return ()
-    at, line = include_line(head(workspace.store, path), path, other)
+    at, line = include_line(workspace.store.ask(head, path), path, other)
     return (Edit(Span(at, at), line),)
 
 

@@ -147,7 +147,7 @@ def _is_root(entry: Entry | None) -> bool:
 def _by_subject(store: Store[Workspace], mission: str) -> dict[tuple[str, str], tuple[tuple[str, Span], ...]]:
     """The nodes that the claims of requirements name, by name and file, for all of a mission: they are resolved
     together."""
-    workspace = everything(store, mission)
+    workspace = store.ask(everything, mission)
     found: dict[tuple[str, str], dict[tuple[str, Span], None]] = {}
     for applied in requirements(workspace, mission).applied:
         if applied.how == "subject":

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 from collections.abc import Iterator
-from functools import lru_cache, partial
+from functools import lru_cache
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import lookup, spellings
@@ -297,7 +297,7 @@ def _port(workspace: Workspace, found: Found) -> Subject:
         return Subject(What.PORT, mention.name, f"tree {name.text}")
     if node.id is None:
         return Subject(What.PORT, mention.name)
-    kind = meaning_of(node, partial(inputs.declared, workspace.store, found.path)).kind
+    kind = meaning_of(node, lambda name: workspace.store.ask(inputs.declared, found.path, name)).kind
     if kind is not None:
         return Subject(What.PORT, mention.name, f"{ENGINE} {kind.tag}")
     owner = _defined(workspace, found.path, What.NODE, node.id.text)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 
 from btq_lang.syntax import tree as syntax
 from btq_lang.util.record import Record
@@ -137,7 +136,7 @@ def _node(workspace: Workspace, path: str, node: syntax.Node, by: int) -> Outlin
 
 
 def _category(workspace: Workspace, path: str, node: syntax.Node) -> str:
-    meaning = meaning_of(node, partial(inputs.declared, workspace.store, path))
+    meaning = meaning_of(node, lambda name: workspace.store.ask(inputs.declared, path, name))
     return meaning.category.lower() if meaning.category is not None else "node"
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import NodeKind, PortKind, lookup, of_version
 from btq_lang.syntax.tree import Model, Node, Tree
@@ -21,7 +19,7 @@ def port_of(workspace: Workspace, path: str, node: Node, name: str) -> PortKind 
     if (tree := called(node)) is not None:
         ports = ports_of_tree(workspace, path, tree.text)
     elif node.id is not None:
-        meaning = meaning_of(node, partial(inputs.declared, workspace.store, path))
+        meaning = meaning_of(node, lambda name: workspace.store.ask(inputs.declared, path, name))
         ports = _ports(workspace, path, meaning.kind, node.id.text)
     return next((port for port in ports if port.name == name), None)
 

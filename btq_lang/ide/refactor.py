@@ -133,7 +133,10 @@ def _free_name(workspace: Workspace, path: str, node: Node) -> str:
     name. It is free in all files of the mission, for a build puts their trees and nodes side by side."""
     own = node.name.text if node.name is not None and not is_placeholder(node) else ""
     base = legal_name(own) if is_name(own) else "Extracted"
-    taken = {*taken_names(workspace.store, path, ""), *NODE_CLAUSES}  # a clause after SubTree is not taken for a name
+    taken = {
+        *workspace.store.ask(taken_names, path, ""),
+        *NODE_CLAUSES,
+    }  # a clause after SubTree is not taken for a name
     taken.update(*(names_of_nodes(workspace.files[each]) for each in workspace.linked(path)))
     name, number = base, 2
     while name in taken or lookup(name) is not None:

@@ -119,14 +119,14 @@ class _Words(Listener):
         if what is What.QUALITY:
             if defines:
                 return NEW_QUALITY
-            is_own = definition(self._store, self._path, Kind.QUALITY, name) is not None
-            is_standard = not is_own and match_of(name, edition(self._store, self._path)).quality is not None
+            is_own = self._store.ask(definition, self._path, Kind.QUALITY, name) is not None
+            is_standard = not is_own and match_of(name, self._store.ask(edition, self._path)).quality is not None
             return STANDARD_QUALITY if is_standard else OWN_QUALITY
         if what is What.VALUE:
             is_own = isinstance(owner, Requirement) and any(one.name.text == name for one in owner.parameters)
             return USED[What.PARAMETER] if is_own else VALUE
         assert what is What.PLACE, "a rule belongs to no item, and the appearance of all other words is known"
-        return OWN_NODE if definition(self._store, self._path, Kind.TREE, name) is None else USED[What.TREE]
+        return OWN_NODE if self._store.ask(definition, self._path, Kind.TREE, name) is None else USED[What.TREE]
 
 
 def _between(text: str, start: int, end: int) -> list[Token]:

@@ -63,7 +63,7 @@ def needless_includes(workspace: Workspace, path: str) -> tuple[NeedlessInclude,
 
 
 def _needless_includes(store: Store[Workspace], path: str) -> tuple[NeedlessInclude, ...]:
-    workspace = everything(store, path)
+    workspace = store.ask(everything, path)
     file = workspace.files[path]
     includes = [one for one in file.includes if one.path is not None and not file.entry_of(one).diagnostics]
     if file.origin is not None or not includes:
@@ -71,7 +71,7 @@ def _needless_includes(store: Store[Workspace], path: str) -> tuple[NeedlessIncl
     duplicates = _duplicates(workspace, path, includes)
     found = [*duplicates]
     is_mission = path not in workspace.included_files and workspace.main_tree(path) is not None
-    if is_mission and is_read(workspace.store, path):
+    if is_mission and workspace.store.ask(is_read, path):
         for include in reversed(includes):
             rest = [other for other in includes if other is not include and not _is_among(other, found)]
             gone = _brought_by(workspace, path, include, rest) if not _is_among(include, found) else set()
@@ -129,7 +129,7 @@ def _uses(workspace: Workspace, path: str, gone: set[str]) -> bool:
 def _is_plain(workspace: Workspace, path: str) -> bool:
     """Whether a file has no syntax errors and nothing that affects other files by itself, as `apply` does."""
     file = workspace.files[path]
-    return is_read(workspace.store, path) and all(isinstance(entry.item, _PLAIN) for entry in file.parsed.entries)
+    return workspace.store.ask(is_read, path) and all(isinstance(entry.item, _PLAIN) for entry in file.parsed.entries)
 
 
 def _changes_nothing(workspace: Workspace, path: str, removed: Sequence[Include]) -> bool:

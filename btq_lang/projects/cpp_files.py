@@ -30,7 +30,7 @@ from btq_lang.workspace.config import Project
 from btq_lang.workspace.factories import Factory
 from btq_lang.workspace.file import CPP_SUFFIXES, File, Origin
 from btq_lang.workspace.loader import Found, LoadProblem, excluder, matching, read
-from btq_lang.workspace.queries import Store
+from btq_lang.workspace.queries import Store, input_of
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -175,13 +175,14 @@ def _nodes(
 
 
 def _source(store: Store[dict[str, str]], path: str, macros: tuple[Macro, ...]) -> Source:
-    return Source(path, store.read(path, _text, path), macros)
+    return Source(path, store.ask(_text, path), macros)
 
 
 def _macros(store: Store[dict[str, str]], path: str) -> tuple[Macro, ...]:
-    return macros_in(path, store.read(path, _text, path))
+    return macros_in(path, store.ask(_text, path))
 
 
+@input_of(lambda path: path)
 def _text(texts: dict[str, str], path: str) -> str:
     return texts[path]
 

@@ -57,7 +57,7 @@ def uses_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) ->
 def attached_names(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
     """The names of the requirements that anything in scope attaches, understood or not."""
     found: set[str] = set()
-    for _, facts in inputs.attaching(store, viewpoint):
+    for _, facts in store.ask(inputs.attaching, viewpoint):
         found.update(facts.used.get(Kind.REQUIREMENT, ()))
         found.update([symbol.name for symbol in facts.summary.symbols if symbol.kind is Kind.REQUIREMENT])
     return frozenset(found)
@@ -107,10 +107,10 @@ def attached_by(store: Store[Workspace], viewpoint: str, name: str, uses: Sequen
 def uses_of_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> Iterable[model.Use]:
     """The attachments to nodes of a tree, in the order of the items that make them."""
     own, _ = store.ask(uses_in, viewpoint, path, facts)
-    given = store.ask(_given_to, viewpoint, facts) if inputs.applies(store, viewpoint) else ()
+    given = store.ask(_given_to, viewpoint, facts) if store.ask(inputs.applies, viewpoint) else ()
     if not own or not given:
         return own or given
-    order = {id(each.item): at for at, (_, each) in enumerate(inputs.attaching(store, viewpoint))}
+    order = {id(each.item): at for at, (_, each) in enumerate(store.ask(inputs.attaching, viewpoint))}
     return sorted((*own, *given), key=lambda use: order[id(use.place.anchor)])
 
 
@@ -120,7 +120,7 @@ def _given_to(store: Store[Workspace], viewpoint: str, facts: Facts) -> tuple[mo
 
 
 def _given(store: Store[Workspace], viewpoint: str) -> dict[Facts, tuple[model.Use, ...]]:
-    uses = [use for each in inputs.applies(store, viewpoint) for use in store.ask(uses_in, viewpoint, *each)[0]]
+    uses = [use for each in store.ask(inputs.applies, viewpoint) for use in store.ask(uses_in, viewpoint, *each)[0]]
     return _by_tree((use.target.node.facts, use) for use in uses)
 
 
@@ -129,7 +129,7 @@ def _given(store: Store[Workspace], viewpoint: str) -> dict[Facts, tuple[model.U
 
 def claimed(store: Store[Workspace], viewpoint: str, name: str) -> tuple[model.Applied, ...]:
     """What the claims of a requirement with subjects of their own apply to."""
-    if name not in inputs.claiming(store, viewpoint):
+    if name not in store.ask(inputs.claiming, viewpoint):
         return ()
     of_name, _ = store.ask(requirement, viewpoint, name)
     return tuple(_by_subject(store, viewpoint, of_name)) if of_name is not None else ()
@@ -145,7 +145,7 @@ def _claimed_in(store: Store[Workspace], viewpoint: str, facts: Facts) -> tuple[
 
 
 def _claimed_by_tree(store: Store[Workspace], viewpoint: str) -> dict[Facts, tuple[model.Applied, ...]]:
-    names = inputs.claiming(store, viewpoint)
+    names = store.ask(inputs.claiming, viewpoint)
     found = [(_home(each), each) for name in names for each in store.ask(claimed, viewpoint, name)]
     return _by_tree((home, each) for home, each in found if home is not None)
 
@@ -166,7 +166,7 @@ def _home(applied: model.Applied) -> Facts | None:
 
 def _order(store: Store[Workspace], viewpoint: str) -> dict[str, int]:
     """The index of each requirement in their order."""
-    return {name: at for at, name in enumerate(inputs.names(store, viewpoint, Kind.REQUIREMENT))}
+    return {name: at for at, name in enumerate(store.ask(inputs.names, viewpoint, Kind.REQUIREMENT))}
 
 
 # ---- a requirement with arguments ----

@@ -17,7 +17,7 @@ from btq_lang.workspace.workspace import Workspace
 def requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Requirement | None, Problems]:
     """The requirement with a name, with parameters, and what is wrong with its definition; None if it is not
     defined."""
-    found = inputs.definition(store, viewpoint, Kind.REQUIREMENT, name)
+    found = store.ask(inputs.definition, viewpoint, Kind.REQUIREMENT, name)
     if found is None:
         return None, ()
     symbol = inputs.symbol(found[1], Kind.REQUIREMENT, name)

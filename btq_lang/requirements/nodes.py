@@ -26,7 +26,7 @@ T = TypeVar("T")
 @inputs.of_scope
 def nodes(store: Store[Workspace], viewpoint: str) -> Nodes:
     """All written nodes in scope."""
-    return Nodes([store.ask(tree_nodes, viewpoint, path, facts) for path, facts in inputs.trees(store, viewpoint)])
+    return Nodes([store.ask(tree_nodes, viewpoint, path, facts) for path, facts in store.ask(inputs.trees, viewpoint)])
 
 
 def callers(store: Store[Workspace], viewpoint: str, tree: str | None) -> tuple[ResolvedNode, ...]:
@@ -44,15 +44,15 @@ def knows_all_nodes(store: Store[Workspace], viewpoint: str) -> bool:
     those of a robot in XML that was not read."""
     return (
         store.ask(has_nodes, viewpoint)
-        and inputs.is_complete(store, viewpoint)
-        and not inputs.is_included(store, viewpoint)
-        and inputs.is_well_formed(store, viewpoint)
+        and store.ask(inputs.is_complete, viewpoint)
+        and not store.ask(inputs.is_included, viewpoint)
+        and store.ask(inputs.is_well_formed, viewpoint)
     )
 
 
 def mission(store: Store[Workspace], viewpoint: str) -> ResolvedNode | None:
     """The root of the main tree; None if it is unknown which tree runs."""
-    main = inputs.main_tree(store, viewpoint)
+    main = store.ask(inputs.main_tree, viewpoint)
     return store.ask(tree_nodes, viewpoint, *main).root if main is not None else None
 
 

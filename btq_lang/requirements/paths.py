@@ -76,7 +76,7 @@ class PathReader:
         if kind in _DECLARED and self._known is not None:
             return tuple(self._known) if kind == "signals" else ()
         if kind in _DECLARED:
-            return inputs.names(self.store, self.viewpoint, _DECLARED[kind])
+            return self.store.ask(inputs.names, self.viewpoint, _DECLARED[kind])
         if kind == "nodes":
             return self.store.ask(nodes.node_names, self.viewpoint)
         return tuple(self.store.ask(nodes.kinds if kind == "kinds" else nodes.tags, self.viewpoint))
@@ -121,7 +121,7 @@ class PathReader:
 
     def text(self, start: int, end: int) -> str:
         """The text of a span, blanks folded."""
-        text = inputs.text(self.store, self.path, self.facts) if self.source is None else self.source[0]
+        text = self.store.ask(inputs.text, self.path, self.facts) if self.source is None else self.source[0]
         return " ".join(text[start:end].split())
 
     # ---- paths ----
@@ -209,9 +209,9 @@ class PathReader:
 def _is_crowded(store: Store[Workspace], viewpoint: str) -> bool:
     """Whether clauses use so many unknown names, and there are so many known ones, that comparing all of them would
     take seconds."""
-    known = {*inputs.names(store, viewpoint, Kind.SIGNAL), *inputs.names(store, viewpoint, Kind.CONTEXT)}
+    known = {*store.ask(inputs.names, viewpoint, Kind.SIGNAL), *store.ask(inputs.names, viewpoint, Kind.CONTEXT)}
     known |= {*store.ask(nodes.node_names, viewpoint), *store.ask(nodes.tags, viewpoint)}
-    return len(inputs.asked_for(store, viewpoint) - known) * len(known) > _MOST_COMPARED
+    return len(store.ask(inputs.asked_for, viewpoint) - known) * len(known) > _MOST_COMPARED
 
 
 _DECLARED: Final = {"signals": Kind.SIGNAL, "contexts": Kind.CONTEXT}

@@ -50,13 +50,13 @@ Problems: TypeAlias = tuple[Problem, ...]
 
 def signal(store: Store[Workspace], viewpoint: str, name: str) -> tuple[model.Signal | None, Problems]:
     """The signal with a name; None if it is not declared."""
-    found = inputs.definition(store, viewpoint, Kind.SIGNAL, name)
+    found = store.ask(inputs.definition, viewpoint, Kind.SIGNAL, name)
     if found is None:
         return None, ()
     symbol = inputs.symbol(found[1], Kind.SIGNAL, name)
     item = symbol.target
     assert isinstance(item, syntax.Signal), "its kind says so"
-    names = inputs.names(store, viewpoint, Kind.SIGNAL) if item.initially is not None else ()
+    names = store.ask(inputs.names, viewpoint, Kind.SIGNAL) if item.initially is not None else ()
     reader = Reader(store, viewpoint, *found, known=names[: names.index(name)] if name in names else ())
     sort, unit = sort_of(item.unit)
     fresh = reader.quantity(item.fresh, DURATION)
@@ -81,7 +81,7 @@ def signal(store: Store[Workspace], viewpoint: str, name: str) -> tuple[model.Si
 
 def context(store: Store[Workspace], viewpoint: str, name: str) -> tuple[model.Condition | None, Problems]:
     """The condition of a context; None if it cannot be understood."""
-    found = inputs.definition(store, viewpoint, Kind.CONTEXT, name)
+    found = store.ask(inputs.definition, viewpoint, Kind.CONTEXT, name)
     if found is None:
         return None, ()
     reader = Reader(store, viewpoint, *found)
@@ -105,7 +105,7 @@ _IN_CIRCLE: Final = 0
 @on_circle(_IN_CIRCLE)
 def _depth(store: Store[Workspace], viewpoint: str, name: str) -> int:
     """How deeply contexts are nested in a context, itself included."""
-    found = inputs.definition(store, viewpoint, Kind.CONTEXT, name)
+    found = store.ask(inputs.definition, viewpoint, Kind.CONTEXT, name)
     if found is None:
         return 1
     others = _contexts_in(store, viewpoint, _written_context(found[1], name))
@@ -122,7 +122,7 @@ def _contexts_in(store: Store[Workspace], viewpoint: str, written: syntax.Contex
     """The contexts that a context names."""
     words = [part.word for part in syntax.walk(written.condition) if isinstance(part, syntax.Operand)]
     for name in [word.text for word in words if word.kind == NAME]:
-        if inputs.definition(store, viewpoint, Kind.CONTEXT, name) is not None:
+        if store.ask(inputs.definition, viewpoint, Kind.CONTEXT, name) is not None:
             yield name
 
 
@@ -141,7 +141,7 @@ class Reader(PathReader):
         """Whether a context with this name exists, understood or not."""
         if self._known is not None:
             return False
-        return inputs.definition(self.store, self.viewpoint, Kind.CONTEXT, name) is not None
+        return self.store.ask(inputs.definition, self.viewpoint, Kind.CONTEXT, name) is not None
 
     # ---- values ----
 
@@ -245,7 +245,7 @@ class Reader(PathReader):
             kinds: that the name may have been meant to have.
             unit: with which a signal of that name would be declared.
         """
-        if not inputs.is_complete(self.store, self.viewpoint):
+        if not self.store.ask(inputs.is_complete, self.viewpoint):
             return
         meant = self.near(word.text, *kinds) if word.text not in OF_PYTHON else (word.text.lower(),)
         title = f"Replace `{word.text}` with"
@@ -315,7 +315,7 @@ class Reader(PathReader):
 
     def _has_unknown_unit(self, term: Term) -> bool:
         """Whether the word after a number is reported as an unknown unit: `45 sek`."""
-        starts = inputs.unknown_units(self.store, self.path, self.facts)
+        starts = self.store.ask(inputs.unknown_units, self.path, self.facts)
         after = next((start for start in starts if start >= term.span.end), None)
         return after is not None and not self.text(term.span.end, after).strip()
 

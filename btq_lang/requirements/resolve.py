@@ -31,11 +31,11 @@ def requirements(workspace: Workspace, path: str) -> Requirements:
     if path not in workspace.files:
         raise KeyError(path)
     store = workspace.store
-    signals = {name: store.ask(signal, path, name) for name in inputs.names(store, path, Kind.SIGNAL)}
-    contexts = {name: store.ask(context, path, name)[0] for name in inputs.names(store, path, Kind.CONTEXT)}
-    defined = {name: store.ask(requirement, path, name) for name in inputs.names(store, path, Kind.REQUIREMENT)}
+    signals = {name: store.ask(signal, path, name) for name in store.ask(inputs.names, path, Kind.SIGNAL)}
+    contexts = {name: store.ask(context, path, name)[0] for name in store.ask(inputs.names, path, Kind.CONTEXT)}
+    defined = {name: store.ask(requirement, path, name) for name in store.ask(inputs.names, path, Kind.REQUIREMENT)}
     uses: dict[str, list[Use]] = {}
-    for item in inputs.attaching(store, path):
+    for item in store.ask(inputs.attaching, path):
         for use in store.ask(uses_in, path, *item)[0]:
             uses.setdefault(use.requirement, []).append(use)
     applied: list[Applied] = []
@@ -62,7 +62,7 @@ def problems_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts
     found: list[Problem] = []
     names = dict.fromkeys((symbol.kind, symbol.name) for symbol in facts.summary.symbols)
     for kind, name in names:
-        if kind in _DEFINING and inputs.definition(store, viewpoint, kind, name) == (path, facts):
+        if kind in _DEFINING and store.ask(inputs.definition, viewpoint, kind, name) == (path, facts):
             found += store.ask(_DEFINING[kind], viewpoint, name)[1]
     if isinstance(facts.item, Tree | Apply):
         uses, problems = store.ask(uses_in, viewpoint, path, facts)

@@ -68,7 +68,7 @@ def custom_nodes(workspace: Workspace, path: str) -> Mapping[str, CustomNode]:
 
 
 def _custom_nodes(store: Store[Workspace], mission: str) -> dict[str, CustomNode]:
-    workspace = inputs.everything(store, mission)
+    workspace = store.ask(inputs.everything, mission)
     found: dict[str, list[tuple[Node, str | None]]] = {}
     for path in sorted(workspace.linked(mission)):
         for node in _nodes(workspace.files[path]):

@@ -1,7 +1,9 @@
-"""What queries read in the workspace: the inputs of the store (queries.py) that several packages use, each a function
-of the store and of a *viewpoint*, which names the scope in which names are looked up: all that one program registers
-before it creates a tree.  That is a file with what it includes, named by its path; in the workspace of a factory, all
-files have one scope.  An item has a key of its own, so that one file can be looked at from several viewpoints.
+"""What queries read in the workspace: the inputs of the store (queries.py) that several packages ask for.
+
+Each is a function of the workspace and of a *viewpoint*, which names the scope in which names are looked up: all that
+one program registers before it creates a tree.  That is a file with what it includes, named by its path; in the
+workspace of a factory, all files have one scope.  An item has a key of its own, so that one file can be looked at from
+several viewpoints.
 
 One invariant: a result refers to syntax nodes only through the facts of their items, which are equal only to
 themselves, and has no offsets that an edit elsewhere would move; equal results are interchangeable, for queries keep
@@ -22,7 +24,7 @@ from btq_lang.syntax.tree import Apply, Entry, Item, Model, Tree, Verbatim
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.file import File
 from btq_lang.workspace.item_index import Facts
-from btq_lang.workspace.queries import Store
+from btq_lang.workspace.queries import Store, input_of
 from btq_lang.workspace.symbols import Symbol
 from btq_lang.workspace.workspace import Scope, Workspace
 
@@ -39,30 +41,15 @@ Declared: TypeAlias = "tuple[str | None, NodeKind | None]"
 # ---- topics: what an edit has to touch to invalidate an input ----
 
 
-def _input(
-    topic: Callable[..., Hashable],
-) -> Callable[[Callable[Concatenate[Workspace, P], T]], Callable[Concatenate[Store[Workspace], P], T]]:
-    """Declare an input by a function of the workspace and its key; the topic follows from the key."""
-
-    def declare(read: Callable[Concatenate[Workspace, P], T]) -> Callable[Concatenate[Store[Workspace], P], T]:
-        @wraps(read)
-        def ask(store: Store[Workspace], /, *key: P.args, **named: P.kwargs) -> T:
-            return store.read(topic(*key), read, *key, **named)
-
-        return ask
-
-    return declare
-
-
 # May change with an edit of any file that is linked with the viewpoint by includes, or in which XML that is linked with
 # it looks up names.
-of_viewpoint = _input(lambda viewpoint, *_: viewpoint)
+of_viewpoint = input_of(lambda viewpoint, *_: viewpoint)
 # Depends only on the items that define a name, in whatever file.
-of_name = _input(lambda viewpoint, kind, name: (kind, name))
-of_model = _input(lambda viewpoint, name: (Kind.MODEL, name))
+of_name = input_of(lambda viewpoint, kind, name: (kind, name))
+of_model = input_of(lambda viewpoint, name: (Kind.MODEL, name))
 # Never changes, for an edited item is a new one.
-of_item = _input(lambda path, facts: facts)
-of_project = _input(lambda: "project")
+of_item = input_of(lambda path, facts: facts)
+of_project = input_of(lambda: "project")
 
 
 def advance(before: Workspace, after: Workspace) -> None:
@@ -116,7 +103,7 @@ def of_scope(
 
     @wraps(query)
     def ask(store: Store[Workspace], viewpoint: str, /, *key: P.args, **named: P.kwargs) -> T:
-        common = representative(store)
+        common = store.ask(representative)
         if common is None or common == viewpoint:
             return query(store, viewpoint, *key, **named)
         return store.ask(ask, common, *key, **named)

@@ -1,9 +1,10 @@
 """The query cache: answers about a workspace, kept from one revision to the next.
 
-There are two kinds of cached functions; an answer is identified by its function and arguments:
+There are two kinds of cached functions, and one way to ask: `store.ask(function, *key)`.  The function and its key
+identify an answer:
 
-* an *input*, `read(state, *key)`, reads the workspace and asks nothing.  It belongs to a topic; `advance` sets a new
-  state and names the topics that may differ, and only inputs of these are read again.
+* an *input*, `read(state, *key)`, reads the workspace and asks nothing.  It is declared with a topic; `advance` sets a
+  new state and names the topics that may differ, and only inputs of these are read again.
 * a *query*, `query(store, *key)`, asks the store for inputs and for other queries, and reads nothing else.
 
 One invariant: an answer is the one that a store without a cache would give, in whatever order queries are asked.
@@ -41,6 +42,20 @@ _FEW: Final = 2_000  # answers: sweeping fewer is not worth the time
 _DEEPEST: Final = 40  # nested queries; Python allows some twenty calls for each
 _ON_CIRCLE: dict[Callable[..., Any], object] = {}
 _HUBS: set[Callable[..., Any]] = set()
+_TOPICS: dict[Callable[..., Any], Callable[..., Hashable]] = {}
+
+
+def input_of(
+    topic: Callable[..., Hashable],
+) -> Callable[[Callable[Concatenate[State, P], T]], Callable[Concatenate[Store[State], P], T]]:
+    """Declare an input by the topic that follows from its key.  Type checkers take it for a query, for it is only asked
+    for."""
+
+    def declare(read: Callable[Concatenate[State, P], T]) -> Callable[Concatenate[Store[State], P], T]:
+        _TOPICS[read] = topic
+        return read  # type: ignore[return-value]  # the store calls it with its state
+
+    return declare
 
 
 def on_circle(answer: object) -> Callable[[Query], Query]:
@@ -123,7 +138,7 @@ class Store(Generic[State]):
     # ---- used by queries ----
 
     def ask(self, query: Callable[Concatenate[Store[State], P], T], /, *key: P.args, **_: P.kwargs) -> T:
-        """The answer of a query, `query(store, *key)`.
+        """The answer of a query or of an input.
 
         Raises:
             LookupError: the query depends on itself, and no answer is declared for that.
@@ -137,27 +152,17 @@ class Store(Generic[State]):
         name = (query, *key)
         answer = self._answers.get(name)
         if answer is None:
-            answer = self._answers[name] = _Answer(name)
+            answer = _Answer(name)
+            if query in _TOPICS:
+                answer.value = self._read(name)
+                answer.state = _CLEAN
+                self._inputs.setdefault(_TOPICS[query](*key), []).append(answer)
+            self._answers[name] = answer
         if self._dependencies is not None:
             self._dependencies[answer] = None
         if answer.state != _CLEAN and self._settle(answer):
             return _declared(answer)  # type: ignore[no-any-return]  # its owner declares what the query may return
         return answer.value  # type: ignore[no-any-return]  # it is what the query returns
-
-    def read(self, topic: Hashable, read: Callable[Concatenate[State, P], T], /, *key: P.args, **named: P.kwargs) -> T:
-        """The answer of an input, `read(state, *key)`."""
-        if self._dependencies is None:
-            self._read_again()
-        name = (read, *key)
-        answer = self._answers.get(name)
-        if answer is None:
-            answer = self._answers[name] = _Answer(name)
-            answer.value = read(self._state, *key, **named)
-            answer.state = _CLEAN
-            self._inputs.setdefault(topic, []).append(answer)
-        if self._dependencies is not None:
-            self._dependencies[answer] = None
-        return answer.value  # type: ignore[no-any-return]  # it is what the function returns
 
     # ---- used by the store's owner ----
 
@@ -216,11 +221,16 @@ class Store(Generic[State]):
             kept = [each for each in inputs if each.dependents]
             for answer in inputs:
                 if answer.dependents:
-                    self._replace(answer, answer.key[0](self._state, *answer.key[1:]))
+                    self._replace(answer, self._read(answer.key))
                 else:
                     del self._answers[answer.key]
             if kept:
                 self._inputs[topic] = kept
+
+    def _read(self, key: tuple[Any, ...]) -> object:
+        """The present value of an input."""
+        read: Callable[..., object] = key[0]
+        return read(self._state, *key[1:])
 
     def _settle(self, answer: _Answer) -> bool:
         """Bring an answer up to date unless it is part of an open circle; return whether it is up to date."""

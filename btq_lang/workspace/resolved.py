@@ -7,7 +7,7 @@ the same object unless such a category changes.  Neither other trees nor a model
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from functools import cache, partial
+from functools import cache
 from typing import Final
 
 from btq_lang.catalog.kinds import Flow
@@ -25,13 +25,13 @@ from btq_lang.workspace.workspace import Workspace
 @inputs.of_scope
 def tree_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> ResolvedTree:
     """The nodes of a tree."""
-    return ResolvedTree(path, facts, cache(partial(inputs.declared, store, viewpoint)))
+    return ResolvedTree(path, facts, cache(lambda name: store.ask(inputs.declared, viewpoint, name)))
 
 
 @inputs.of_scope
 def tree_named(store: Store[Workspace], viewpoint: str, name: str) -> ResolvedTree | None:
     """The nodes of the tree with a name."""
-    found = inputs.definition(store, viewpoint, Kind.TREE, name)
+    found = store.ask(inputs.definition, viewpoint, Kind.TREE, name)
     return store.ask(tree_nodes, viewpoint, *found) if found is not None else None
 
 

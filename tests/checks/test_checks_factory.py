@@ -43,7 +43,7 @@ LOOKED: list[str] = []
 @of_scope
 def looked(store: Store[Workspace], viewpoint: str, name: str) -> bool:
     LOOKED.append(viewpoint)
-    return is_defined(store, viewpoint, Kind.TREE, name)
+    return store.ask(is_defined, viewpoint, Kind.TREE, name)
 
 
 def test_what_depends_on_the_scope_alone_is_computed_once_for_all_files() -> None:

@@ -134,6 +134,35 @@ def test_only_the_edges_open_files() -> None:
             assert name in READS_THE_DISK or name.startswith(READS_LOGS)
 
 
+def test_there_is_one_way_to_look_something_up() -> None:
+    """Inputs and queries are functions that `ask` is called with; nobody calls an input."""
+    declared = {"workspace/inputs.py", "checks/lookups.py"}
+    topics = {"of_viewpoint", "of_name", "of_model", "of_item", "of_project"}
+    names = {
+        node.name
+        for path in declared
+        for node in parsed(PACKAGE / path).body
+        if isinstance(node, ast.FunctionDef) and {ast.unparse(each) for each in node.decorator_list} & topics
+    }
+    assert {"definition", "is_complete", "is_xml"} <= names
+    called = {
+        ast.unparse(node.func)
+        for path in PACKAGE.rglob("*.py")
+        for node in ast.walk(parsed(path))
+        if isinstance(node, ast.Call)
+    }
+    assert called & {f"{module}.{name}" for module in ("inputs", "lookups") for name in names} == set()
+    takes_query = {
+        f"{node.name}.{method.name}"
+        for path in ("workspace/queries.py", "checks/view.py")
+        for node in parsed(PACKAGE / path).body
+        if isinstance(node, ast.ClassDef)
+        for method in node.body
+        if isinstance(method, ast.FunctionDef) and "query" in {each.arg for each in method.args.posonlyargs}
+    }
+    assert takes_query == {"Store.ask", "Store.pin", "Store.unpin", "View.ask"}
+
+
 def test_a_file_without_clauses_needs_no_requirements() -> None:
     text = 'QualityReq rq1 "In time"\nBehaviorTree Main\n    Action Drive satisfies rq1\n'
     program = (

@@ -21,15 +21,20 @@ def test_nothing_to_complain_of(command: tuple[str, ...]) -> None:
 
 
 QUERIES = """
-from btq_lang.workspace.queries import Store
+from btq_lang.workspace.queries import Store, input_of
+
+@input_of(lambda letter: "text")
+def count(text: str, letter: str) -> int:
+    return text.count(letter)
 
 def length(store: Store[str], times: int) -> int:
-    return store.read("text", str.count, "a") * times
+    return store.ask(count, "a") * times
 
 store = Store("banana")
 store.ask(length, 2)
 store.ask(length, "2")
 store.ask(length)
+store.ask(count, 1)
 """
 
 
@@ -41,4 +46,5 @@ def test_wrong_arguments_of_a_query_are_errors_of_types(tmp_path: Path) -> None:
     assert [line.split(": ", 1)[1] for line in run.stdout.splitlines()[:-1]] == [
         'error: Argument 2 to "ask" of "Store" has incompatible type "str"; expected "int"  [arg-type]',
         'error: Missing positional argument "times" in call to "ask" of "Store"  [call-arg]',
+        'error: Argument 2 to "ask" of "Store" has incompatible type "int"; expected "str"  [arg-type]',
     ]

@@ -289,7 +289,7 @@ def held(store: Store[Workspace]) -> dict[str, object]:
 
 def in_trees(store: Store[Workspace], query: Callable[..., object], viewpoint: str) -> dict[str, object]:
     """The result of a query for each tree in scope, by the tree's name."""
-    trees = inputs.trees(store, viewpoint)
+    trees = store.ask(inputs.trees, viewpoint)
     return {facts.summary.symbols[0].name: store.ask(query, viewpoint, path, facts) for path, facts in trees}
 
 

@@ -8,7 +8,7 @@ from random import Random
 import pytest
 from seeds import seeds, share_of
 
-from btq_lang.workspace.queries import Cancelled, Store, hub, on_circle
+from btq_lang.workspace.queries import Cancelled, Store, hub, input_of, on_circle
 
 ON_CIRCLE = 7
 
@@ -20,14 +20,17 @@ class Graph:
         self.adds, self.edges, self.detours = adds, edges, detours
 
 
+@input_of(lambda node: node)
 def adds(graph: Graph, node: int) -> int:
     return graph.adds[node]
 
 
+@input_of(lambda node: node)
 def edges(graph: Graph, node: int) -> tuple[int, ...]:
     return graph.edges[node]
 
 
+@input_of(lambda node: node)
 def detour(graph: Graph, node: int) -> int | None:
     return graph.detours.get(node)
 
@@ -39,10 +42,10 @@ RUNS: list[int] = []
 def total(store: Store[Graph], node: int) -> int:
     """Small numbers, so that many edits do not change them."""
     RUNS.append(node)
-    found = store.read(node, adds, node)
-    asked = store.read(node, edges, node)
+    found = store.ask(adds, node)
+    asked = store.ask(edges, node)
     for at, other in enumerate(asked):
-        instead = store.read(node, detour, node)
+        instead = store.ask(detour, node)
         if at and instead is not None and found % 2:
             other = instead
         found += store.ask(total, other)
