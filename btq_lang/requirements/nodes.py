@@ -13,7 +13,7 @@ from typing import Concatenate, ParamSpec, TypeVar
 from btq_lang.requirements.model import Target
 from btq_lang.util.reach import reached
 from btq_lang.workspace import inputs
-from btq_lang.workspace.queries import Store
+from btq_lang.workspace.queries import Store, hub
 from btq_lang.workspace.resolved import ResolvedNode, ResolvedTree, tree_named, tree_nodes
 from btq_lang.workspace.workspace import Workspace
 
@@ -29,6 +29,7 @@ def nodes(store: Store[Workspace], viewpoint: str) -> Nodes:
     return Nodes([store.ask(tree_nodes, viewpoint, path, facts) for path, facts in inputs.trees(store, viewpoint)])
 
 
+@hub
 def callers(store: Store[Workspace], viewpoint: str, tree: str | None) -> tuple[ResolvedNode, ...]:
     """The SubTree nodes that run a tree."""
     return store.ask(_callers_by_tree, viewpoint).get(tree, ())
@@ -235,4 +236,4 @@ has_name = _of_nodes(Nodes.has_name)
 node_names = _of_nodes(Nodes.names)
 kinds = _of_nodes(Nodes.kinds)
 tags = _of_nodes(Nodes.tags)
-has_nodes = _of_nodes(Nodes.are_known)
+has_nodes = hub(_of_nodes(Nodes.are_known))
