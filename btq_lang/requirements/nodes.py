@@ -29,7 +29,6 @@ def nodes(store: Store[Workspace], viewpoint: str) -> Nodes:
     return Nodes([store.ask(tree_nodes, viewpoint, path, facts) for path, facts in inputs.trees(store, viewpoint)])
 
 
-@hub
 def callers(store: Store[Workspace], viewpoint: str, tree: str | None) -> tuple[ResolvedNode, ...]:
     """The SubTree nodes that run a tree."""
     return store.ask(_callers_by_tree, viewpoint).get(tree, ())

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from btq_lang import checks, open_workspace
-from btq_lang.checks import calls, measures, placeholders, view
+from btq_lang.checks import calls, measures, placeholders, swallowing, view
 from btq_lang.requirements import nodes
 from btq_lang.workspace import queries
 
@@ -20,9 +20,9 @@ HUBS = {
     calls.callers,
     calls.is_main,
     measures.is_measured,
-    nodes.callers,
     nodes.has_nodes,
     placeholders._first_names,
+    swallowing._callers,
     view._is_main_tree,
 }
 
