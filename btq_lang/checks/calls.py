@@ -21,10 +21,17 @@ from btq_lang.workspace.workspace import Workspace
 Runs: TypeAlias = "tuple[tuple[str, ...], tuple[str, ...]]"
 
 
+@hub
 @of_scope
 def callers(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[str, ...]:
     """The other trees that run a tree, or probably mean to."""
     return store.ask(_callers, viewpoint).get(tree, ())
+
+
+@hub
+def is_main(store: Store[Workspace], viewpoint: str, tree: str) -> bool:
+    """Whether a program may create a tree itself."""
+    return tree in store.ask(lookups.main_trees, viewpoint)
 
 
 def runs(store: Store[Workspace], viewpoint: str, tree: str, other: str) -> bool:
@@ -62,6 +69,7 @@ def _graph(store: Store[Workspace], viewpoint: str) -> tuple[tuple[str, Runs], .
     return tuple([(name, view.ask(_runs, name)) for name in view.ask(inputs.names, Kind.TREE)])
 
 
+@hub
 @of_scope
 def _callers(store: Store[Workspace], viewpoint: str) -> dict[str, tuple[str, ...]]:
     graph = store.ask(_graph, viewpoint)

@@ -7,6 +7,7 @@ that attaches it.  The rules are in modules by subject; this one combines them.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import chain
 from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
@@ -34,12 +35,8 @@ def demands_by_item(store: Store[Workspace], viewpoint: str) -> ByItem:
     """The findings in the file, by the `id` of the item."""
     if not store.ask(is_measured, viewpoint):
         return {}
-    found: list[Found] = []
-    for tree in store.ask(inputs.trees, viewpoint):
-        found += store.ask(_of_tree, viewpoint, *tree)[0]
-    for name in store.ask(inputs.names, viewpoint, Kind.REQUIREMENT):
-        found += store.ask(_of_requirement, viewpoint, name)
-    found += store.ask(_of_signals, viewpoint)
+    of_trees, _ = store.ask(_of_trees, viewpoint)
+    found = (*of_trees, *store.ask(_of_requirements, viewpoint), *store.ask(_of_signals, viewpoint))
     # Each once, for a claim may apply to nodes of many trees.  They are compared, for hashing one would hash the whole
     # items that its places are in.
     known: dict[tuple[int, str, Span, str], list[Diagnostic]] = {}
@@ -55,6 +52,12 @@ def demands_by_item(store: Store[Workspace], viewpoint: str) -> ByItem:
 
 def _in_item(store: Store[Workspace], viewpoint: str, facts: Facts) -> Sequence[Diagnostic]:
     return store.ask(demands_by_item, viewpoint).get(id(facts.item), ())
+
+
+def _of_trees(store: Store[Workspace], viewpoint: str) -> tuple[tuple[Found, ...], tuple[Guard, ...]]:
+    """The same as of a tree, for all in scope."""
+    of_each = [store.ask(_of_tree, viewpoint, *tree) for tree in store.ask(inputs.trees, viewpoint)]
+    return tuple(chain(*[found for found, _ in of_each])), tuple(chain(*[guards for _, guards in of_each]))
 
 
 def _of_tree(
@@ -83,6 +86,12 @@ def _of_tree(
     return _here(viewpoint, found), tuple(signals.guards(demanded))
 
 
+def _of_requirements(store: Store[Workspace], viewpoint: str) -> tuple[Found, ...]:
+    """What is wrong with requirements, whatever they apply to."""
+    names = store.ask(inputs.names, viewpoint, Kind.REQUIREMENT)
+    return tuple(chain(*[store.ask(_of_requirement, viewpoint, name) for name in names]))
+
+
 def _of_requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Found, ...]:
     """What is wrong with a requirement, whatever it applies to."""
     from btq_lang.checks import budgets, limits, unenforced  # as above
@@ -102,8 +111,7 @@ def _of_signals(store: Store[Workspace], viewpoint: str) -> tuple[Found, ...]:
     """What is wrong with signals, and with the guards that read them."""
     from btq_lang.checks.signals import of_signals  # as above
 
-    trees = store.ask(inputs.trees, viewpoint)
-    guards = [guard for tree in trees for guard in store.ask(_of_tree, viewpoint, *tree)[1]]
+    _, guards = store.ask(_of_trees, viewpoint)
     return _here(viewpoint, of_signals(View(store, viewpoint), guards))
 
 

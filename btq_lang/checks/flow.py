@@ -18,7 +18,7 @@ from typing import Final
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
-from btq_lang.checks.calls import callers
+from btq_lang.checks.calls import callers, is_main
 from btq_lang.checks.entries import Call, Touch, handling, signal_entries
 from btq_lang.checks.view import View, declared_ports
 from btq_lang.syntax.tree import port_named
@@ -77,7 +77,7 @@ def uses(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> Use:
     if port_named(declared_ports(view, tree), name) is not None:
         found |= Use.GIVEN
     running = view.ask(callers, tree)
-    if not running or tree in view.ask(lookups.main_trees):
+    if not running or view.ask(is_main, tree):
         found |= Use.OUTSIDE | view.ask(of_program, name)
     for caller in running:
         for call in view.ask(handling, caller).calls:

@@ -11,7 +11,7 @@ from btq_lang.diagnostics.model import Related
 from btq_lang.requirements.budget_parts import port_count
 from btq_lang.requirements.nodes import callers, mission
 from btq_lang.workspace.node_names import wraps
-from btq_lang.workspace.queries import Store
+from btq_lang.workspace.queries import Store, hub
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
@@ -40,7 +40,7 @@ def _above(store: Store[Workspace], viewpoint: str, tree: str | None) -> Swallow
     """Where a failure of a tree ends, if it ends on every way up."""
     first: Swallower | None = None
     seen: set[int] = set()
-    waiting = [*_callers(store, viewpoint, tree)]
+    waiting = [*store.ask(_callers, viewpoint, tree)]
     ends = not waiting
     while waiting:
         at = waiting.pop()
@@ -50,12 +50,13 @@ def _above(store: Store[Workspace], viewpoint: str, tree: str | None) -> Swallow
         end = _in_tree(at)
         first = first or end
         if end is None:
-            above = _callers(store, viewpoint, at.tree)
+            above = store.ask(_callers, viewpoint, at.tree)
             ends = ends or not above
             waiting += above
     return None if ends else first
 
 
+@hub
 def _callers(store: Store[Workspace], viewpoint: str, tree: str | None) -> tuple[ResolvedNode, ...]:
     """The SubTree nodes that run a tree; empty for the mission's, where failures end."""
     return store.ask(callers, viewpoint, tree) if tree != store.ask(_main_tree, viewpoint) else ()

@@ -41,7 +41,7 @@ from btq_lang.workspace import inputs
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.port_types import as_kind
-from btq_lang.workspace.queries import Store
+from btq_lang.workspace.queries import Store, hub
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.symbols import Symbol, Use
 from btq_lang.workspace.workspace import Workspace
@@ -329,6 +329,7 @@ def is_first_tree(store: Store[Workspace], viewpoint: str, tree: Facts) -> bool:
     return store.ask(lookups.first_tree, viewpoint) is tree
 
 
+@hub
 def _is_main_tree(store: Store[Workspace], viewpoint: str, name: str) -> bool | None:
     """Whether this file's own tree of a name runs when the engine loads it; None if no tree of that name does."""
     main = View(store, viewpoint).ask(lookups.main_tree)

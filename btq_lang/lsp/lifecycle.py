@@ -28,7 +28,7 @@ def register(server: Server) -> None:
         folders = [*server.workspace.folders] or [root for root in (server.workspace.root_uri,) if root]
         server.session.work_in(tuple(map(convert.path, folders)))
         gc.freeze()  # imported objects stay alive
-        gc.set_threshold(100_000, 50, 10)  # most objects of an edit stay alive: collect less often
+        gc.set_threshold(10_000, 500, 10)  # most objects stay alive; 100 000 at once would delay a key by 40 ms
         try:
             await _register_watchers(server)
             if server.supports("workspace.configuration"):

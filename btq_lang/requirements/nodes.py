@@ -13,7 +13,7 @@ from typing import Concatenate, ParamSpec, TypeVar
 from btq_lang.requirements.model import Target
 from btq_lang.util.reach import reached
 from btq_lang.workspace import inputs
-from btq_lang.workspace.queries import Store
+from btq_lang.workspace.queries import Store, hub
 from btq_lang.workspace.resolved import ResolvedNode, ResolvedTree, tree_named, tree_nodes
 from btq_lang.workspace.workspace import Workspace
 
@@ -235,4 +235,4 @@ has_name = _of_nodes(Nodes.has_name)
 node_names = _of_nodes(Nodes.names)
 kinds = _of_nodes(Nodes.kinds)
 tags = _of_nodes(Nodes.tags)
-has_nodes = _of_nodes(Nodes.are_known)
+has_nodes = hub(_of_nodes(Nodes.are_known))

@@ -189,9 +189,9 @@ class File:
         """The names of a kind that the file refers to, each with the first item that does."""
         if kind not in self._first_users:
             found = self._first_users[kind] = {}
-            for each in reversed(self.facts.values()):
-                if names := each.used.get(kind):
-                    found.update(dict.fromkeys(names, each))
+            for each in self.facts.values():
+                for name in each.used.get(kind, ()):
+                    found.setdefault(name, each)
         return self._first_users[kind]
 
     def said(self, of: Said) -> frozenset[str]:

@@ -8,11 +8,23 @@ from pathlib import Path
 from typing import Any
 
 from btq_lang import checks, open_workspace
-from btq_lang.checks import calls, measures, placeholders
+from btq_lang.checks import calls, measures, placeholders, swallowing, view
+from btq_lang.requirements import nodes
 from btq_lang.workspace import queries
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-HUBS = {calls._circles, calls._missed, measures.is_measured, placeholders._first_names}
+HUBS = {
+    calls._callers,
+    calls._circles,
+    calls._missed,
+    calls.callers,
+    calls.is_main,
+    measures.is_measured,
+    nodes.has_nodes,
+    placeholders._first_names,
+    swallowing._callers,
+    view._is_main_tree,
+}
 
 
 def reached(answer: Any) -> Iterator[Any]:
