@@ -14,6 +14,7 @@ from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.catalog.units import a_dimension, convert, parse_unit
 from btq_lang.catalog.versions import ENTRY_WITHOUT_DOLLAR, TYPED_CONSTANTS
 from btq_lang.checks import lookups
+from btq_lang.checks.meant_entries import entry_in, entry_of
 from btq_lang.checks.view import View, port_of
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
@@ -21,6 +22,7 @@ from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import BRACED, QUANTITY
 from btq_lang.syntax.tree import Pair, Port, Tree, Word, quote, written
 from btq_lang.util.record import Record
+from btq_lang.util.spelling import did_you_mean
 from btq_lang.workspace.port_types import is_number
 from btq_lang.workspace.resolved import ResolvedNode
 
@@ -68,6 +70,8 @@ def json_in_braces(view: View) -> Iterator[Diagnostic]:
     for _, pair, value in view.seen.values():
         if not is_pointer(value.text) or not _JSON.search(value.text[1:-1]) or not is_port_name(pair.key.text):
             continue
+        if entry_in(view, value) is not None:
+            continue  # which meant_entry reports
         message = f"the engine reads `{value.text}` as an entry of that name, not as a value"
         notes = (
             "a port whose type reads JSON takes `json:{…}`",
@@ -107,6 +111,9 @@ def invalid_literal(view: View) -> Iterator[Diagnostic]:
             continue
         message = f"expected {problem.expected} for `{target.port}`, found {problem.found or _shown(text)}"
         fixes, severity = (_accepted(target, value, version), None) if target.converts else ((), Severity.WARNING)
+        if not fixes and (entry := entry_of(view, value)) is not None:
+            message += did_you_mean((entry,))
+            fixes = (replace_fix(f"Replace `{text}` with `{entry}`", value.span, entry),)
         yield Diagnostic("invalid-literal", value.span, message, notes=notes, fixes=fixes, severity=severity)
 
 

@@ -8,6 +8,7 @@ other trees is known by flow.py.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import chain
 
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
@@ -15,6 +16,7 @@ from btq_lang.checks import lookups
 from btq_lang.checks.calls import callers, is_missed
 from btq_lang.checks.entries import Mention, handling, mentions
 from btq_lang.checks.flow import Use, calls_of, of_program, uses, writes_alone
+from btq_lang.checks.meant_entries import meant_entry
 from btq_lang.checks.misspelt import misspelt_entry
 from btq_lang.checks.ports import adding_fix
 from btq_lang.checks.scripts import script_error
@@ -48,7 +50,7 @@ def _found(view: View, tree: str, named: Sequence[Mention], but: set[str]) -> li
 def _told(view: View, named: Sequence[Mention]) -> set[str]:
     """The entries of which another rule tells what is wrong: they are misspelt, or in a script that is."""
     spans: list[Span] = []
-    for each in misspelt_entry(view):
+    for each in chain(misspelt_entry(view), meant_entry(view)):
         spans += (each.span, *(related.place.span for related in each.related))
     wrong = [each.span for each in script_error(view)]
     spans += [pair.span for _, pair, _ in view.seen.values() if any(map(pair.span.contains, wrong))]
