@@ -82,7 +82,7 @@ def entry_in(view: View, value: Word) -> str | None:
 
 def _diagnostic(value: Word, meant: str) -> Diagnostic:
     text = value.text
-    what = "braces" if text[1] == "{" else "blanks"
+    what = "braces" if text[1:2] == "{" else "blanks"
     message = f"the {what} inside `{text}` belong to the name of the entry; did you mean `{meant}`?"
     if not is_pointer(text):
         message = f"`{text}` is a text here, not the entry; did you mean `{meant}`?"

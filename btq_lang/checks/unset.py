@@ -20,8 +20,9 @@ from btq_lang.checks.meant_entries import meant_entry
 from btq_lang.checks.misspelt import misspelt_entry
 from btq_lang.checks.ports import adding_fix
 from btq_lang.checks.scripts import script_error
+from btq_lang.checks.strings import in_source
 from btq_lang.checks.view import View, port_of
-from btq_lang.diagnostics.model import Diagnostic, Place, Related
+from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import written
 from btq_lang.util.text import Span
@@ -68,9 +69,29 @@ def _uncreated(view: View, tree: str, named: Sequence[Mention], but: set[str]) -
             continue  # programs set what scripts read first
         is_certain = not use & Use.STRANGE and (not use & Use.OUTSIDE or _is_known_root(view, tree))
         message = f"a script assigns to `{name}`, which nothing creates"
-        notes = (f"the engine throws when it runs the script; create the entry before: `{name} := …`",)
+        creating, fixes = _creating(view, mention)
+        notes = (f"the engine throws when it runs the script; {creating}",)
         severity = None if is_certain else Severity.HINT
-        yield Diagnostic("uncreated-entry", mention.span, message, notes=notes, severity=severity)
+        yield Diagnostic("uncreated-entry", mention.span, message, notes=notes, fixes=fixes, severity=severity)
+
+
+def _creating(view: View, mention: Mention) -> tuple[str, tuple[Fix, ...]]:
+    """How an entry is created that a script assigns to, and the fix if that is done with another sign."""
+    from btq_lang.syntax.script.tree import Assign  # few scripts assign to what nothing creates
+
+    pairs = [pair for pair in mention.node.node.attributes if pair.span.contains(mention.span)]
+    for value in [pair.value for pair in pairs if pair.value is not None]:
+        script = view.script(value.text)
+        for statement in script.statements:
+            if not isinstance(statement, Assign) or statement.operator != "=":
+                continue
+            target, assigned = statement.target, script.text[statement.value.start : statement.value.end]
+            if in_source(value, Span(target.start, target.end)) != mention.span:
+                continue
+            at = script.text.index("=", target.end)
+            fix = replace_fix("Write `:=`", in_source(value, Span(at, at + 1)), ":=")
+            return f"write `{mention.name} := {assigned}`", (fix,)
+    return f"create the entry before: `{mention.name} := …`", ()
 
 
 def _unset(view: View, tree: str, named: Sequence[Mention], but: set[str]) -> Iterator[Diagnostic]:
