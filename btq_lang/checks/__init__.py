@@ -347,7 +347,8 @@ def reported_in_file(store: Store[Workspace], viewpoint: str, is_alone: bool) ->
         for facts in lookups.items(store, viewpoint)
     ]
     wrong = tuple([each for each in found if each is not None])
-    is_refused = version3.refuses([one for each in wrong for one in each.diagnostics])
+    signs = lookups.signs(store, viewpoint) if wrong and not View(store, viewpoint).project.written_for else None
+    is_refused = version3.refuses([one for each in wrong for one in each.diagnostics], signs)
     return (_newer(store, viewpoint) if is_refused and store.ask(is_newer_than_engine, viewpoint) else ()) or wrong
 
 

@@ -200,6 +200,19 @@ SCRIPTS: Final[list[Case]] = [
         '2:29 error syntax-error «>» a script goes in quotes: `if = "hold > 3"`',
         tree('Precondition (if = "hold > 3")', "    Go"),
     ),
+    *(
+        (
+            tree(f"Go ({written})"),
+            f"2:{written.index('=') + 11} error syntax-error «{written.split(' = ', 1)[1]}» "
+            "unexpected text right after a string | "
+            "write a quote in a string as \\\", in a script as '",
+            tree(f"Go ({meant})"),
+        )
+        for written, meant in (
+            ('a = "the "red" box"', "a = \"the 'red' box\""),
+            ('_onSuccess = "b := "hello""', "_onSuccess = \"b := 'hello'\""),
+        )
+    ),
     (
         tree("Script (x = 3)"),
         '2:13 error unknown-port «x» `Script` has no port `x`; did you mean `code = "x := 3"`? | it has `code`',
