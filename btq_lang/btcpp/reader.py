@@ -298,7 +298,7 @@ class _Reader:
                 self.broken(Span(start, name.end()), f"missing > for <{name[0]}", "write > or /> where the tag ends")
             key = _NAME(text, at)
             equals = _EQUALS(text, key.end()) if key is not None else None
-            if equals is None and text[at - 1] in "\"'" and text[at] not in "\"'":
+            if equals is None and text[at - 1] in "\"'" and text[at] not in "\"',;":
                 span = Span(at, key.end() if key is not None else at + 1)
                 note = "write a quote in a value as &quot;, in a script as '"
                 self.broken(span, f"the value before `{text[span.start : span.end]}` ends at its second quote", note)

@@ -25,6 +25,7 @@ from btq_lang.checks.view import View, port_of
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import written
+from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 from btq_lang.workspace.queries import Store, on_circle
 from btq_lang.workspace.resolved import ResolvedNode
@@ -160,9 +161,25 @@ def _never_set(view: View, named: Sequence[Mention]) -> Iterator[Diagnostic]:
         "ignore this where the robot's program sets the entry"
         if len(named) == 1
         else "ignore this for those that the robot's program sets",
+        *_not_written(view, named),
     )
     related = tuple([Related(Place(each.span), f"`{each.name}`") for each in named[1:_MOST]])
     yield Diagnostic("unset-entry", named[0].span, message, related, notes, severity=Severity.HINT)
+
+
+def _not_written(view: View, named: Sequence[Mention]) -> Iterator[str]:
+    """What in the tree was probably meant to write the entries: one with a similar name, or an input."""
+    of_tree = view.ask(mentions, view.path, view.facts)
+    read = {each.name for each in of_tree if each.reads or each.node.is_subtree}
+    written_only = [each.name for each in of_tree if each.writes and each.name not in read]
+    for each in named:
+        if likely := near(each.name, written_only, 1):
+            yield f"did you mean `{likely[0]}`, which a node writes?"
+        elif (
+            not each.in_script and each.node.of_model is not None and sum(each.name == one.name for one in of_tree) > 1
+        ):
+            port = next(pair.key.text for pair in each.node.node.attributes if pair.span.contains(each.span))
+            yield f"if `{each.node.node.head.text}` writes `{each.name}`, its model declares `{port}` as an output"
 
 
 def _reads(mention: Mention) -> bool:
