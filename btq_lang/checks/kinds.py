@@ -301,7 +301,7 @@ def _as_precondition(view: View, seen: ResolvedNode) -> tuple[str, ...]:
 def _as_child_condition(view: View, seen: ResolvedNode, tag: str) -> tuple[str, ...]:
     """Where the condition goes that an `If` or a `While` has as an attribute."""
     found = [pair.value for pair in seen.node.attributes if pair.key.text.casefold() in _CONDITIONS]
-    if tag not in ("IfThenElse", "WhileDoElse") or not found or found[0] is None:
+    if BUILTINS[tag].flow != "choice" or not found or found[0] is None:
         return ()
     script = found[0].text.strip("{}")
     shown = f'<ScriptCondition code="{script}"/>' if view.is_xml else f'ScriptCondition (code = "{script}")'
