@@ -24,6 +24,7 @@ from btq_lang.diagnostics.model import Diagnostic, replace_fix, write_fix
 from btq_lang.syntax.tree import Pair, Word
 from btq_lang.util.record import replace
 from btq_lang.workspace.inputs import of_scope
+from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store, on_circle
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
@@ -31,8 +32,15 @@ from btq_lang.workspace.workspace import Workspace
 
 def meant_entry(view: View) -> Iterator[Diagnostic]:
     """A value that is probably meant as an entry of its tree."""
+    names: frozenset[str] | None = None
     for seen, pair, value in view.seen.values():
         text = value.text
+        if text.isidentifier():
+            names = _names(view) if names is None else names
+            if text not in names:
+                continue
+        elif text[:1] not in _SIGNS and text[-1:] != "}":
+            continue
         if (is_pointer(text) and text[1:-1].isidentifier()) or not is_port_name(pair.key.text) or seen.is_placeholder:
             continue
         port = port_of(view, seen, pair.key.text)
@@ -110,9 +118,16 @@ def _bare_entry(view: View, seen: ResolvedNode, pair: Pair, value: Word) -> str 
     elif port is not None and port.type and plain_type(port.type) not in _TEXTS:
         is_certain = True
     else:
-        is_likely = name == key or name.endswith(f"_{key}") or _is_passed_so(view, name, key) or _is_lost(view, name)
-        is_certain = is_likely and not _is_own_name(view, name)
+        is_certain = view.ask(_is_likely, view.facts, name, key)
     return f"{{{name}}}" if is_certain else None
+
+
+@of_scope
+def _is_likely(store: Store[Workspace], viewpoint: str, tree: Facts, name: str, key: str) -> bool:
+    """Whether a port that takes any text is likely meant to be given an entry of a tree."""
+    view = View(store, viewpoint, tree)
+    is_likely = name == key or name.endswith(f"_{key}") or _is_passed_so(view, name, key) or _is_lost(view, name)
+    return is_likely and not _is_own_name(view, name)
 
 
 def _is_passed_so(view: View, name: str, key: str) -> bool:
@@ -166,5 +181,6 @@ _DECORATED: Final = re.compile(
     rf"\$\(?{_NAME}\)?|\[{_NAME}\]|<{_NAME}>|%{_NAME}%|@{_NAME}|\{{\{{@?{_NAME}\}}\}}|\{{ *@? *{_NAME} *\}}"
     rf"|\{{@?{_NAME}(?:(?:\.|->|::)\w+|\[\w*\])+\}}"
 )
+_SIGNS: Final = frozenset("{$@[<%")
 _FOR_NAMES: Final = re.compile("key|entry|variable|name|field|value$", re.IGNORECASE)
 _TEXTS: Final = frozenset(("std::string", "std::string_view", "BT::StringView", "BT::Any", "BT::AnyTypeAllowed"))
