@@ -57,8 +57,9 @@ def misspelt_entry(view: View) -> Iterator[Diagnostic]:
                 reported.add(mention.name)
                 yield _diagnostic(mentions, mention, meant, counts.get(meant) == 1)
                 break
-    once = [each for each in mentions if counts[each.name] == 1 and each.name not in reported]
-    yield from _unquoted_texts(once, view, tree.name.text)
+    once = [each for each in mentions if each.in_script and counts[each.name] == 1 and each.name not in reported]
+    if once:
+        yield from _unquoted_texts(once, view, tree.name.text)
 
 
 def _misspelt_booleans(mentions: Iterable[Mention], view: View, tree: str) -> Iterator[Diagnostic]:
@@ -77,16 +78,15 @@ def _unquoted_texts(mentions: Iterable[Mention], view: View, tree: str) -> Itera
     """`msg := hello`, `state == idle`: an entry that nothing sets, where a text may be meant."""
     from btq_lang.syntax.script.tree import operands  # most files have no script, and it is large
 
-    boards = view.ask(blackboards)
     for mention in mentions:
         name = mention.name
-        if not mention.in_script or not mention.reads or not _may_be_text(name) or not view.is_complete:
+        if not mention.reads or not _may_be_text(name) or not view.is_complete:
             continue
         pair = next(each for each in mention.node.node.attributes if each.span.contains(mention.span))
         value = pair.value
         spans = [Span(each.start, each.end) for each in operands(view.script(value.text))] if value is not None else []
         span = next((each for each in spans if value is not None and in_source(value, each) == mention.span), None)
-        if value is None or span is None or boards.is_given(tree, name) or view.ask(_is_created, tree, name):
+        if value is None or span is None or view.ask(_is_set, tree, name):
             continue
         message = f"a script reads `{name}` as an entry, which nothing here sets"
         fix = replace_fix(f"Write the text `'{name}'`", span, f"'{name}'")
@@ -118,6 +118,11 @@ def _root_names(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
 def _is_created(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
     """Whether anything creates an entry."""
     return any(each.creates for each in store.ask(blackboards, viewpoint).of(tree, name))
+
+
+def _is_set(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
+    """Whether anything creates an entry, or it comes from outside."""
+    return store.ask(blackboards, viewpoint).is_given(tree, name) or _is_created(store, viewpoint, tree, name)
 
 
 def _is_meant(store: Store[Workspace], viewpoint: str, tree: str, name: str, meant: str, is_mentioned: bool) -> bool:
