@@ -447,6 +447,8 @@ class _Writer:
             return
         message = f"the engine ignores this text: `{shown}`"
         note = "remove it, or put <!-- … --> around it; a node is written <Name/>"
+        if ":=" in said:
+            note = f'a script goes in a port: <Script code="{shown}"/>'
         self.ignored.append(Diagnostic("xml-ignored", span, message, notes=(note,)))
         self.changes.append(Change(span, f"text that the engine ignores is left out: {shown}"))
 

@@ -297,11 +297,15 @@ class _Reader:
             if at >= size:
                 self.broken(Span(start, name.end()), f"missing > for <{name[0]}", "write > or /> where the tag ends")
             key = _NAME(text, at)
+            equals = _EQUALS(text, key.end()) if key is not None else None
+            if equals is None and text[at - 1] in "\"'" and text[at] not in "\"',;":
+                span = Span(at, key.end() if key is not None else at + 1)
+                note = "write a quote in a value as &quot;, in a script as '"
+                self.broken(span, f"the value before `{text[span.start : span.end]}` ends at its second quote", note)
             if key is None:
                 shown = text[at] if text[at].isprintable() else repr(text[at])
                 note = 'attributes are written name="value", and a tag ends with > or />'
                 self.broken(Span(at, at + 1), f"expected an attribute or the end of <{name[0]}>, found `{shown}`", note)
-            equals = _EQUALS(text, key.end())
             if equals is None:
                 note = f'write {key[0]}="…", or remove it'
                 self.broken(Span(at, key.end()), f"missing value in quotes for the attribute `{key[0]}`", note)

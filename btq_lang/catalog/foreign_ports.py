@@ -37,6 +37,10 @@ _NOTES: Final = {
         (("parallel", key) for key in ("policy", "success_policy", "mode", "synchronise")),
         "`success_count` says how many children must succeed, and -1 is all of them",
     ),
+    **dict.fromkeys(
+        (("choice", key) for key in ("condition", "cond", "if", "test", "expression", "code")),
+        "its first child is the condition, such as a ScriptCondition",
+    ),
 }
 _ANYWHERE: Final = {
     **dict.fromkeys(("timeout", "time_limit", "max_time", "deadline"), "to limit its time, put a Timeout around it"),

@@ -10,7 +10,7 @@ which caches results from one edit to the next.  Not known here: what an edit ch
     kinds.py, names.py, ports.py, children.py, one_parent.py, own_lines.py   what the engine would refuse
     trees.py, includes.py, elements.py, missing_ids.py, stale_models.py   likewise, of whole trees, models and files
     positional.py, literals.py, outputs.py, scripts.py, counts.py, empty.py   values, of ports too
-    entries.py, pointers.py, writers.py, keys.py, misspelt.py, mixed_types.py   blackboard entries
+    entries.py, pointers.py, writers.py, keys.py, misspelt.py, meant_entries.py, mixed_types.py   blackboard entries
     flow.py, unset.py, arguments.py   entries across trees: what is read that nothing sets, given that nothing reads
     engines.py, version3.py   which versions of the engine a file is for
     moving.py, moved_engine.py, moved_nodes.py   what another version of the engine or distribution of Nav2 changes
@@ -43,6 +43,7 @@ from btq_lang.checks import (
     kinds,
     literals,
     lookups,
+    meant_entries,
     measures,
     misspelt,
     mixed_types,
@@ -165,6 +166,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         placeholders.placeholder_clash,
         scripts.script_error,
         misspelt.misspelt_entry,
+        meant_entries.meant_entry,
         unset.unset_entry,
         arguments.unread_argument,
         arguments.unread_port,
@@ -346,7 +348,8 @@ def reported_in_file(store: Store[Workspace], viewpoint: str, is_alone: bool) ->
         for facts in store.ask(lookups.items, viewpoint)
     ]
     wrong = tuple([each for each in found if each is not None])
-    is_refused = version3.refuses([one for each in wrong for one in each.diagnostics])
+    signs = store.ask(lookups.signs, viewpoint) if wrong and not View(store, viewpoint).project.written_for else None
+    is_refused = version3.refuses([one for each in wrong for one in each.diagnostics], signs)
     return (_newer(store, viewpoint) if is_refused and store.ask(is_newer_than_engine, viewpoint) else ()) or wrong
 
 
@@ -377,7 +380,7 @@ def _reported(
         from btq_lang.checks.own_lines import on_own_lines  # few items have mistakes in their syntax
         from btq_lang.checks.positional import with_ports
 
-        reported = with_ports(view, on_own_lines(view, entry.diagnostics))
+        reported = meant_entries.with_entries(view, with_ports(view, on_own_lines(view, entry.diagnostics)))
         found = (*reported, *_on_sound_lines(found, entry, view.text))
     elif not found:
         return None

@@ -55,6 +55,8 @@ def child_count(view: View) -> Iterator[Diagnostic]:
         notes: tuple[str, ...] = ()
         if seen.behavior is not None and seen.behavior.late_count and count:
             notes = ("the engine loads this and throws when the node is ticked",)
+        if seen.flow == "switch" and count == least - 1:
+            notes += ("its last child is the default: add one, such as an AlwaysFailure",)
         notes += tuple(_remapped(view, seen))
         related = model_related(view, seen, "declared by its model") if seen.node.category is None else ()
         if most is not None and count > most:

@@ -139,10 +139,10 @@ def _below_model(element: Element, part: Placed) -> Iterator[Diagnostic]:
 
 def _port_meant(tag: str) -> str | None:
     """The element of a port that a tag was probably meant to be."""
-    likely = near(tag, _PORTS, 1)
+    folded = "".join(filter(str.isalpha, tag.casefold()))
+    likely = near(tag, _PORTS, 1) if folded not in ("inport", "outport") else ()
     if likely:
         return likely[0]
-    folded = "".join(filter(str.isalpha, tag.casefold()))
     if "port" not in folded and "param" not in folded and folded not in ("input", "output", "inout"):
         return None
     if folded.startswith(("bi", "inout", "io")):

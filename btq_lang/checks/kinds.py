@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.foreign_names import ForeignName, foreign_name, is_of_leaves
 from btq_lang.catalog.kinds import CHILDREN
+from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name, model_name_problem
 from btq_lang.catalog.nav2 import FILES, ports_of
@@ -91,14 +92,18 @@ def not_an_engine_node(view: View) -> Iterator[Diagnostic]:
             continue
         if known is not None and (not name.quoted or known.tag == name.text):
             fixes = _of_today(view, seen, name, known)
-            notes = (known.why, *(way_in(view) if known.word in _TRANSLATED else ()))
+            notes = (known.why, *_as_precondition(view, seen), *(way_in(view) if known.word in _TRANSLATED else ()))
             yield Diagnostic("not-an-engine-node", name.span, message, notes=notes, fixes=fixes)
         elif (meant := _quoted_alias(seen, name)) is not None and not _is_refused(view, seen, name):
             yield _aliased(view, seen, name, message, meant)
         elif (foreign := _foreign(view, seen)) is not None:
             message += did_you_mean((foreign.tag,))
             as_child, fixes = label_as_child(view, seen, foreign.tag)
-            notes = (*((foreign.note,) if foreign.note else ()), *as_child)
+            notes = (
+                *((foreign.note,) if foreign.note else ()),
+                *_as_child_condition(view, seen, foreign.tag),
+                *as_child,
+            )
             if not as_child:
                 fixes = (_as_built_in(view, seen, name, foreign),)
             yield Diagnostic("not-an-engine-node", name.span, message, notes=notes, fixes=fixes)
@@ -277,6 +282,31 @@ def _of_today(view: View, seen: ResolvedNode, name: Word, known: KnownWord) -> t
     if known.category == "SubTree" and seen.node.category is None:
         return (replace_fix("Replace it with `SubTree`", name.span, "SubTree"),)
     return ()
+
+
+def _as_precondition(view: View, seen: ResolvedNode) -> tuple[str, ...]:
+    """What does the same as a BlackboardCheck of version 3."""
+    given = {pair.key.text: pair.value.text for pair in seen.node.attributes if pair.value is not None}
+    if not given.keys() >= {"value_A", "value_B"}:
+        return ()
+    is_text = seen.id is not None and seen.id.text.endswith("String")
+    sides = [given[key] for key in ("value_A", "value_B")]
+    one, two = (side[1:-1] if is_pointer(side) else f"'{side}'" if is_text else side for side in sides)
+    script, otherwise = f"{one} == {two}", given.get("return_on_mismatch", "FAILURE")
+    shown = f'Precondition (if = "{script}", else = "{otherwise}")'
+    if view.is_xml:
+        shown = f'<Precondition if="{script}" else="{otherwise}">'
+    return (f"write `{shown}`",)
+
+
+def _as_child_condition(view: View, seen: ResolvedNode, tag: str) -> tuple[str, ...]:
+    """Where the condition goes that an `If` or a `While` has as an attribute."""
+    found = [pair.value for pair in seen.node.attributes if pair.key.text.casefold() in _CONDITIONS]
+    if BUILTINS[tag].flow != "choice" or not found or found[0] is None:
+        return ()
+    script = found[0].text.strip("{}")
+    shown = f'<ScriptCondition code="{script}"/>' if view.is_xml else f'ScriptCondition (code = "{script}")'
+    return (f"write `{shown}` as its first child",)
 
 
 def _foreign(view: View, seen: ResolvedNode) -> ForeignName | None:
@@ -463,3 +493,4 @@ _MANY: Final = 5
 
 # Words of version 3 that an import translates.
 _TRANSLATED: Final = frozenset(("SequenceStar", "RetryUntilSuccesful", "SubTreePlus"))
+_CONDITIONS: Final = frozenset(("condition", "cond", "if", "test", "expression", "expr", "when", "code"))

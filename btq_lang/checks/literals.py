@@ -14,6 +14,7 @@ from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.catalog.units import a_dimension, convert, parse_unit
 from btq_lang.catalog.versions import ENTRY_WITHOUT_DOLLAR, TYPED_CONSTANTS
 from btq_lang.checks import lookups
+from btq_lang.checks.meant_entries import entry_in, entry_of
 from btq_lang.checks.view import View, port_of
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
@@ -21,11 +22,29 @@ from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import BRACED, QUANTITY
 from btq_lang.syntax.tree import Pair, Port, Tree, Word, quote, written
 from btq_lang.util.record import Record
+from btq_lang.util.spelling import did_you_mean
 from btq_lang.workspace.port_types import is_number
 from btq_lang.workspace.resolved import ResolvedNode
 
 _NUMBER = re.compile(r"-?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")
 _JSON = re.compile(r"[\"'\[\],]|:\s|^{")  # no name of an entry has any of that
+_FRACTION = re.compile(r"[0-9]*\.[0-9]*[1-9][0-9]*")
+_ENDLESS = frozenset(
+    (
+        "inf",
+        "+inf",
+        "infinity",
+        "infinite",
+        "infinitely",
+        "forever",
+        "always",
+        "endless",
+        "endlessly",
+        "unlimited",
+        "∞",
+        "*",
+    )
+)
 _INTEGERS = ("int", "unsigned int", "int64_t", "uint64_t")
 
 
@@ -37,6 +56,7 @@ class _Target(Record):
         converts: whether the engine reads a literal as the type; for a tree's port it keeps the text or number it
             finds.
         is_output: whether it is an output, for which every literal is wrong, which is reported.
+        is_count: whether it says how often a child runs, and -1 means endless.
     """
 
     port: str
@@ -44,6 +64,7 @@ class _Target(Record):
     unit: str | None = None
     converts: bool = True
     is_output: bool = False
+    is_count: bool = False
 
 
 def old_entry(view: View) -> Iterator[Diagnostic]:
@@ -68,6 +89,8 @@ def json_in_braces(view: View) -> Iterator[Diagnostic]:
     for _, pair, value in view.seen.values():
         if not is_pointer(value.text) or not _JSON.search(value.text[1:-1]) or not is_port_name(pair.key.text):
             continue
+        if entry_in(view, value) is not None:
+            continue  # which meant_entry reports
         message = f"the engine reads `{value.text}` as an entry of that name, not as a value"
         notes = (
             "a port whose type reads JSON takes `json:{…}`",
@@ -97,16 +120,26 @@ def invalid_literal(view: View) -> Iterator[Diagnostic]:
         problem = check_literal(target.type, text, version)
         if problem is None:
             continue
-        notes = (f"`{target.port}` has the type {target.type}",)
+        notes: tuple[str, ...] = (f"`{target.port}` has the type {target.type}",)
         if target.type == RESULT:
             notes = (f"`{target.port}` is a BT::NodeStatus, and IDLE is not allowed",)
         if target.converts and problem.kind != "refused":
             message = f"the engine reads `{text}` as {problem.reads} and silently drops the rest"
             fixes = _as_quantity(value, target, problem.reads, is_xml=view.is_xml)
-            yield Diagnostic("trailing-text-in-number", value.span, message, fixes=fixes)
+            in_unit = (f"`{target.port}` is in ms",) if _is_in_seconds(target, text) else ()
+            yield Diagnostic("trailing-text-in-number", value.span, message, notes=in_unit, fixes=fixes)
             continue
         message = f"expected {problem.expected} for `{target.port}`, found {problem.found or _shown(text)}"
         fixes, severity = (_accepted(target, value, version), None) if target.converts else ((), Severity.WARNING)
+        if target.is_count and text.casefold() in _ENDLESS:
+            message += "; endless is `-1`"
+            fixes = (replace_fix("Write `-1` for endless", value.span, "-1"),)
+        elif not fixes and _is_in_seconds(target, text):  # `.5`, the only fraction that is refused
+            notes += (f"`{target.port}` is in ms",)
+            fixes = _as_quantity(value, target, None, is_xml=view.is_xml)
+        elif not fixes and (entry := entry_of(view, value)) is not None:
+            message += did_you_mean((entry,))
+            fixes = (replace_fix(f"Replace `{text}` with `{entry}`", value.span, entry),)
         yield Diagnostic("invalid-literal", value.span, message, notes=notes, fixes=fixes, severity=severity)
 
 
@@ -191,7 +224,8 @@ def _target(view: View, seen: ResolvedNode, pair: Pair, value: Word) -> _Target 
     if port.content != "value":
         return None
     converts = not (seen.is_subtree and is_declared)
-    return _Target(key, port.literal or port.type, port.unit, converts, port.direction == "output")
+    is_count = seen.kind is not None and seen.kind.port_for("count") is port and seen.flow in ("repeat", "retry")
+    return _Target(key, port.literal or port.type, port.unit, converts, port.direction == "output", is_count)
 
 
 def _accepted(target: _Target, value: Word, version: str) -> tuple[Fix, ...]:
@@ -204,9 +238,10 @@ def _accepted(target: _Target, value: Word, version: str) -> tuple[Fix, ...]:
 
 
 def _as_quantity(value: Word, target: _Target, reads: str | None, *, is_xml: bool) -> tuple[Fix, ...]:
-    """`"30 sec"` on a port in ms was meant as 30 s; of `"5 apples"` only the number is understood."""
+    """`"30 sec"` on a port in ms was meant as 30 s, and `0.5` as 0.5 s; of `"5 apples"` only the number counts."""
     fixes = []
-    quantity = parse_quantity(value.text.strip())
+    is_in_seconds = _is_in_seconds(target, value.text)
+    quantity = parse_quantity(f"{float(value.text)} s" if is_in_seconds else value.text.strip())
     wanted = parse_unit(target.unit) if target.unit else None
     if quantity is not None and wanted is not None and quantity[1].dimension == wanted.dimension:
         quantity_text = f"{_plain(quantity[0])} {quantity[2]}" if isfinite(quantity[0]) else value.text
@@ -215,9 +250,14 @@ def _as_quantity(value: Word, target: _Target, reads: str | None, *, is_xml: boo
             fixes.append(replace_fix(f"Write `{number}`, which is {quantity_text}", value.span, number))
         else:
             fixes.append(replace_fix(f"Write the quantity `{quantity_text}`", value.span, quantity_text))
-    if reads is not None:
+    if reads is not None and not (is_in_seconds and reads == "0"):
         fixes.append(replace_fix(f"Write what the engine reads: `{reads}`", value.span, _as_value(reads)))
     return tuple(fixes)
+
+
+def _is_in_seconds(target: _Target, text: str) -> bool:
+    """Whether a time in ms is probably written in seconds."""
+    return target.unit == "ms" and _FRACTION.fullmatch(text) is not None
 
 
 def _as_value(text: str) -> str:

@@ -15,10 +15,14 @@ from btq_lang.checks import lookups
 from btq_lang.checks.calls import callers
 from btq_lang.checks.entries import Mention, blackboards
 from btq_lang.checks.entries import mentions as mentions_in
+from btq_lang.checks.strings import in_source, moved
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix, write_fix
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Tree, Verbatim
+from btq_lang.util.record import replace
 from btq_lang.util.spelling import distance, without_digits
+from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
@@ -56,6 +60,9 @@ def misspelt_entry(view: View) -> Iterator[Diagnostic]:
                 reported.add(mention.name)
                 yield _diagnostic(mentions, mention, meant, counts.get(meant) == 1)
                 break
+    once = [each for each in mentions if each.in_script and counts[each.name] == 1 and each.name not in reported]
+    if once:
+        yield from _unquoted_texts(once, view, tree.name.text)
 
 
 def _misspelt_booleans(mentions: Iterable[Mention], view: View, tree: str) -> Iterator[Diagnostic]:
@@ -68,6 +75,31 @@ def _misspelt_booleans(mentions: Iterable[Mention], view: View, tree: str) -> It
             message = f"a script reads `{mention.name}` as the name of an entry; did you mean `{meant}`?"
             fix = write_fix(meant, mention.span)
             yield Diagnostic("misspelt-entry", mention.span, message, fixes=(fix,))
+
+
+def _unquoted_texts(mentions: Iterable[Mention], view: View, tree: str) -> Iterator[Diagnostic]:
+    """`msg := hello`, `state == idle`: an entry that nothing sets, where a text may be meant."""
+    from btq_lang.syntax.script.tree import operands  # most files have no script, and it is large
+
+    for mention in mentions:
+        name = mention.name
+        if not mention.reads or not _may_be_text(name) or not view.ask(inputs.is_complete):
+            continue
+        pair = next(each for each in mention.node.node.attributes if each.span.contains(mention.span))
+        value = pair.value
+        spans = [Span(each.start, each.end) for each in operands(view.script(value.text))] if value is not None else []
+        span = next((each for each in spans if value is not None and in_source(value, each) == mention.span), None)
+        if value is None or span is None or view.ask(_is_set, tree, name):
+            continue
+        message = f"a script reads `{name}` as an entry, which nothing here sets"
+        fix = replace_fix(f"Write the text `'{name}'`", span, f"'{name}'")
+        found = Diagnostic("misspelt-entry", span, message, severity=Severity.HINT, fixes=(fix,))
+        yield replace(moved(found, value), notes=(f"a text goes in single quotes: `'{name}'`",))
+
+
+def _may_be_text(name: str) -> bool:
+    """Whether a name may be a text without quotes; those of enumerations are in capitals."""
+    return name[:1] != "@" and not name.isupper() and name.lower() not in ("true", "false")
 
 
 def _stand_together(mentions: Iterable[Mention], mention: Mention, other: str) -> bool:
@@ -89,6 +121,11 @@ def _root_names(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
 def _is_created(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
     """Whether anything creates an entry."""
     return any(each.creates for each in store.ask(blackboards, viewpoint).of(tree, name))
+
+
+def _is_set(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
+    """Whether anything creates an entry, or it comes from outside."""
+    return store.ask(blackboards, viewpoint).is_given(tree, name) or _is_created(store, viewpoint, tree, name)
 
 
 def _is_meant(store: Store[Workspace], viewpoint: str, tree: str, name: str, meant: str, is_mentioned: bool) -> bool:

@@ -10,6 +10,7 @@ from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.catalog.versions import OUTPUT_IN_BRACES
 from btq_lang.checks import lookups
 from btq_lang.checks.engines import is_for_version_3
+from btq_lang.checks.meant_entries import entry_in
 from btq_lang.checks.view import View, ports_beside
 from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.diagnostics.rules import Severity
@@ -38,7 +39,8 @@ def literal_for_output(view: View) -> Iterator[Diagnostic]:
         if is_custom and not _is_first_value(view, pair):
             continue
         name = value.text if is_name(value.text) else pair.key.text
-        entry = replace_fix(f"Write the entry `{{{name}}}`", value.span, f"{{{name}}}")
+        meant = entry_in(view, value) or f"{{{name}}}"
+        entry = replace_fix(f"Write the entry `{meant}`", value.span, meant)
         fixes = (entry,) if is_name(name) and not is_custom else ()
         notes: tuple[str, ...] = ()
         if is_custom:

@@ -22,7 +22,7 @@ from btq_lang.checks.view import View, ports_beside
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix, write_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tokens import NUMBER, QUANTITY
-from btq_lang.syntax.tree import Include, Meta, Node, Pair, Port, Root, Tree, Word, models_in, written
+from btq_lang.syntax.tree import Include, Meta, Node, Pair, Port, Root, Tree, Word, models_in, quote, written
 from btq_lang.util.record import replace
 from btq_lang.util.spelling import did_you_mean, distance, near
 from btq_lang.util.text import Span
@@ -33,6 +33,7 @@ from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
 _OWN = frozenset(("ID", "name"))
+_ASSIGNABLE = re.compile(r"-?[0-9.]+|true|false|\{@?\w+\}")
 _REFERRED = re.compile('[<&"]')
 # Attributes that people miss, in small letters, and whether `_skipIf` says the opposite.
 _WISHED = {
@@ -66,6 +67,8 @@ def unknown_port(view: View) -> Iterator[Diagnostic]:
             if node := _node_meant(seen, ports, key, likely):
                 likely = (node,)
                 fixes = (replace_fix(f"Replace `{seen.node.head.text}` with `{node}`", seen.node.head.span, node),)
+            elif assigned := _assigned(view, seen, ports, key, likely):
+                likely, fixes = assigned
             message = f"{seen.shown_kind} has no port `{key.text}`{did_you_mean(likely) or stale}"
             related = _declared(view, seen)
             notes = (f"it has {names}" if known else "it has no ports", *_of_version_3(view, seen, key.text))
@@ -417,6 +420,22 @@ def _node_meant(seen: ResolvedNode, ports: KnownPorts, key: Word, likely: tuple[
     beside = [kind for kind in BUILTINS.values() if kind.category == seen.kind.category and kind.port(key.text)]
     meant = beside[0].port(key.text) if len(beside) == 1 else None
     return beside[0].tag if meant is not None and meant.role not in ("", port.role) else None
+
+
+def _assigned(
+    view: View, seen: ResolvedNode, ports: KnownPorts, key: Word, likely: tuple[str, ...]
+) -> tuple[tuple[str, ...], tuple[Fix, ...]] | None:
+    """What a Script assigns as if its entry were a port: `Script (x = 3)`."""
+    port, value = ports.named(likely[0]) if len(likely) == 1 else None, seen.node.attribute(key.text)
+    if seen.flow != "succeeds" or port is None or port.content != "script" or value is None or near(key.text, likely):
+        return None
+    if not _ASSIGNABLE.fullmatch(value.text):
+        return None  # perhaps a script itself
+    script = f"{key.text} := {value.text.strip('{}')}"
+    written_value = script if view.is_xml else quote(script)
+    changes = (Change(Place(key.span), port.name), Change(Place(value.span), written_value))
+    shown = f'{port.name} = "{script}"'
+    return (shown,), (Fix(f"Write `{shown}`", changes),)
 
 
 def _plain(key: str) -> str:

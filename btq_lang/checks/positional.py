@@ -9,8 +9,9 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Final
 
-from btq_lang.catalog.nodes import PortKind
+from btq_lang.catalog.nodes import PortKind, lookup
 from btq_lang.checks.ports import first_port
+from btq_lang.checks.scripts import is_script
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, write_fix
 from btq_lang.syntax.tree import Tree, quote, written
@@ -21,6 +22,9 @@ from btq_lang.util.text import Span
 def with_ports(view: View, reported: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """What the parser has reported of an item, with the ports of values that lack one."""
     for each in reported:
+        if isinstance(view.item, Tree) and (quoted := _with_quotes(view, each)) is not None:
+            yield quoted
+            continue
         is_script = view.text.startswith(":=", each.span.start)  # `Script (x := 3)`, taken for an attribute's sign
         yield _with_port(view, each) if isinstance(view.item, Tree) and (is_script or not each.fixes) else each
 
@@ -45,6 +49,37 @@ def _with_port(view: View, reported: Diagnostic) -> Diagnostic:
     return replace(reported, notes=(note,), fixes=(fix,))
 
 
+def _with_quotes(view: View, reported: Diagnostic) -> Diagnostic | None:
+    """What is reported of a script without quotes, with them: `Script x = 3`, `Go (_skipIf = x == 3)`."""
+    seen = view.node_before(reported.span.start)
+    if seen is None:
+        return None
+    at = reported.span.start
+    pair = next((each for each in reversed(seen.node.attributes) if each.key.start < at), None)
+    if pair is not None and is_script(seen, pair):
+        unquoted = _UNQUOTED.match(view.text, pair.key.end)
+        if unquoted is None or at > unquoted.end():
+            return None
+        text = quote(unquoted["script"])
+        message, fix = (
+            f"a script goes in quotes: `{pair.key.raw} = {text}`",
+            write_fix(text, Span(*unquoted.span("script"))),
+        )
+        return replace(reported, message=message, notes=(), fixes=(fix,))
+    kind = lookup(seen.node.head.text)
+    port = next((each for each in kind.ports if each.content == "script"), None) if kind is not None else None
+    bare = _BARE_SCRIPT.match(view.text, seen.node.head.end)
+    if kind is None or port is None or bare is None or at > bare.end():
+        return None
+    sign = {"=": ":=" if kind.flow == "succeeds" else "=="}.get(bare["sign"], bare["sign"])
+    script = quote(f"{bare['entry']} {sign} {bare['value']}")
+    shown = f"({port.name} = {script})"
+    message = f"a script goes in quotes after the name of its port: `{shown}`"
+    return replace(
+        reported, message=message, notes=(), fixes=(write_fix(shown, Span(bare.start("entry"), bare.end())),)
+    )
+
+
 def _value(view: View, reported: Diagnostic, after: re.Match[str], port: PortKind) -> str | None:
     """The one value after a node, in brackets or at the end of the line; None if there is something else."""
     text, span = view.text, reported.span
@@ -55,6 +90,12 @@ def _value(view: View, reported: Diagnostic, after: re.Match[str], port: PortKin
     return script[1] if script is not None else None
 
 
+_ATOMS: Final = r"(?:(?!satisf|tags\b)[^\"#(),\r\n])*(?<!\s)"
+_BARE_SCRIPT: Final = re.compile(
+    r"[ \t]+(?P<entry>@?[^\W\d]\w*)[ \t]*(?P<sign>:=|[-+*/=!<>]?=|[<>])"
+    rf"[ \t]*(?P<value>{_ATOMS})(?=[ \t]*(?:#|[\r\n]|\Z))"
+)
+_UNQUOTED: Final = re.compile(rf"[ \t]*=[ \t]*(?P<script>{_ATOMS})(?=[ \t]*[,)])")
 _AFTER: Final = re.compile(r"[ \t]*(?:(\()\s*)?(?=\S)")
 _OPENS_VALUE: Final = "\"'0123456789-{"
 _CLOSING: Final = re.compile(r"\s*\)")

@@ -8,6 +8,7 @@ other trees is known by flow.py.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import chain
 
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
@@ -15,13 +16,16 @@ from btq_lang.checks import lookups
 from btq_lang.checks.calls import callers, is_missed
 from btq_lang.checks.entries import Mention, handling, mentions
 from btq_lang.checks.flow import Use, calls_of, of_program, uses, writes_alone
+from btq_lang.checks.meant_entries import meant_entry
 from btq_lang.checks.misspelt import misspelt_entry
 from btq_lang.checks.ports import adding_fix
 from btq_lang.checks.scripts import script_error
+from btq_lang.checks.strings import in_source
 from btq_lang.checks.view import View, port_of
-from btq_lang.diagnostics.model import Diagnostic, Place, Related
+from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import written
+from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
 from btq_lang.workspace.queries import Store, on_circle
@@ -50,7 +54,7 @@ def _found(view: View, tree: str, named: Sequence[Mention], but: set[str]) -> li
 def _told(view: View, named: Sequence[Mention]) -> set[str]:
     """The entries of which another rule tells what is wrong: they are misspelt, or in a script that is."""
     spans: list[Span] = []
-    for each in misspelt_entry(view):
+    for each in chain(misspelt_entry(view), meant_entry(view)):
         spans += (each.span, *(related.place.span for related in each.related))
     wrong = [each.span for each in script_error(view)]
     spans += [pair.span for _, pair, _ in view.seen.values() if any(map(pair.span.contains, wrong))]
@@ -68,9 +72,29 @@ def _uncreated(view: View, tree: str, named: Sequence[Mention], but: set[str]) -
             continue  # programs set what scripts read first
         is_certain = not use & Use.STRANGE and (not use & Use.OUTSIDE or _is_known_root(view, tree))
         message = f"a script assigns to `{name}`, which nothing creates"
-        notes = (f"the engine throws when it runs the script; create the entry before: `{name} := …`",)
+        creating, fixes = _creating(view, mention)
+        notes = (f"the engine throws when it runs the script; {creating}",)
         severity = None if is_certain else Severity.HINT
-        yield Diagnostic("uncreated-entry", mention.span, message, notes=notes, severity=severity)
+        yield Diagnostic("uncreated-entry", mention.span, message, notes=notes, fixes=fixes, severity=severity)
+
+
+def _creating(view: View, mention: Mention) -> tuple[str, tuple[Fix, ...]]:
+    """How an entry is created that a script assigns to, and the fix if that is done with another sign."""
+    from btq_lang.syntax.script.tree import Assign  # few scripts assign to what nothing creates
+
+    pairs = [pair for pair in mention.node.node.attributes if pair.span.contains(mention.span)]
+    for value in [pair.value for pair in pairs if pair.value is not None]:
+        script = view.script(value.text)
+        for statement in script.statements:
+            if not isinstance(statement, Assign) or statement.operator != "=":
+                continue
+            target, assigned = statement.target, script.text[statement.value.start : statement.value.end]
+            if in_source(value, Span(target.start, target.end)) != mention.span:
+                continue
+            at = script.text.index("=", target.end)
+            fix = replace_fix("Write `:=`", in_source(value, Span(at, at + 1)), ":=")
+            return f"write `{mention.name} := {assigned}`", (fix,)
+    return f"create the entry before: `{mention.name} := …`", ()
 
 
 def _unset(view: View, tree: str, named: Sequence[Mention], but: set[str]) -> Iterator[Diagnostic]:
@@ -139,9 +163,25 @@ def _never_set(view: View, named: Sequence[Mention]) -> Iterator[Diagnostic]:
         "ignore this where the robot's program sets the entry"
         if len(named) == 1
         else "ignore this for those that the robot's program sets",
+        *_not_written(view, named),
     )
     related = tuple([Related(Place(each.span), f"`{each.name}`") for each in named[1:_MOST]])
     yield Diagnostic("unset-entry", named[0].span, message, related, notes, severity=Severity.HINT)
+
+
+def _not_written(view: View, named: Sequence[Mention]) -> Iterator[str]:
+    """What in the tree was probably meant to write the entries: one with a similar name, or an input."""
+    of_tree = view.ask(mentions, view.path, view.facts)
+    read = {each.name for each in of_tree if each.reads or each.node.is_subtree}
+    written_only = [each.name for each in of_tree if each.writes and each.name not in read]
+    for each in named:
+        if likely := near(each.name, written_only, 1):
+            yield f"did you mean `{likely[0]}`, which a node writes?"
+        elif (
+            not each.in_script and each.node.of_model is not None and sum(each.name == one.name for one in of_tree) > 1
+        ):
+            port = next(pair.key.text for pair in each.node.node.attributes if pair.span.contains(each.span))
+            yield f"if `{each.node.node.head.text}` writes `{each.name}`, its model declares `{port}` as an output"
 
 
 def _reads(mention: Mention) -> bool:

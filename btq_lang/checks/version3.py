@@ -12,6 +12,7 @@ from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.util.text import Span
+from btq_lang.workspace.file import Signs
 
 
 def version_3_file(view: View) -> Iterator[Diagnostic]:
@@ -42,10 +43,12 @@ def version_3_file(view: View) -> Iterator[Diagnostic]:
     yield Diagnostic("version-3-file", _root(view), message, notes=notes, severity=severity)
 
 
-def refuses(found: Iterable[Diagnostic]) -> bool:
-    """Whether version 3 refuses several things in a file that version 4 takes; its own words say that it is for it."""
+def refuses(found: Iterable[Diagnostic], signs: Signs | None) -> bool:
+    """Whether version 3 refuses several things in a file that version 4 takes, or one if nothing but the file's own
+    declaration says that it is for version 3; its own words say that it is for it."""
+    is_declared = signs is not None and signs.is_new and signs.format == VERSION_3[:1]
     rules = [each.rule for each in found if each.effective_severity is Severity.ERROR or each.rule == _OLD_WORD]
-    return _OLD_WORD not in rules and sum(rule in _OF_VERSION_4 for rule in rules) > 1
+    return _OLD_WORD not in rules and sum(rule in _OF_VERSION_4 for rule in rules) > (not is_declared)
 
 
 def version_4_file(view: View) -> Diagnostic:
@@ -54,6 +57,11 @@ def version_4_file(view: View) -> Diagnostic:
     declared = f"btq.toml names {view.project.target}"
     if distribution is not None and not view.project.pinned:
         declared = f"{distribution.title()} has {ENGINES[distribution]}"
+    signs = view.ask(lookups.signs)
+    if not view.project.written_for and signs is not None and signs.format == VERSION_3[:1]:
+        message = "this file is for version 4 of the engine, but declares version 3"
+        notes: tuple[str, ...] = ('write `BTCPP_format="4"`',)
+        return Diagnostic("version-4-file", _root(view), message, notes=notes)
     message = f"this file is for version 4 of the engine, but {declared}"
     notes = (
         f'if the robot runs version 4, write `engine = "{DEFAULT_VERSION}"` or a later distribution, such as '

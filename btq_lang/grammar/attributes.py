@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix, write_fix
 from btq_lang.grammar.cursor import VALUES, shown
 from btq_lang.grammar.requirements import RequirementParser
 from btq_lang.syntax.suggestions import CHILDREN, value_meant
@@ -184,7 +184,12 @@ class AttributeParser(RequirementParser):
             self.report(cause)
         elif word.kind == STRING:
             note = "write a quote in a string as \\\", in a script as '; or add a closing quote that is missing above"
-            self.complain(Span(start, end), "unexpected text right after a string", notes=(note,))
+            fixes: tuple[Fix, ...] = ()
+            if raw[0] == raw[-1] == '"' and raw.count('"') == 4 and "'" not in raw and self.ends_value():
+                note = "write a quote in a string as \\\", in a script as '"
+                single = raw[1:-1].replace('"', "'")
+                fixes = (write_fix(f'"{single}"', Span(start, end)),)
+            self.complain(Span(start, end), "unexpected text right after a string", *fixes, notes=(note,))
         else:
             # A quote or a brace in it indicates another mistake.
             safe = self.ends_value() and not set(raw) & set("\"'{}\\")

@@ -42,14 +42,14 @@ class StrangeCharacters(Indentation):
         text = self.text
         if character == "]" and self._brackets and text.find("[", self._brackets[-1][0], start) < 0:
             return self._close_square(start)
-        if character == "$" and (entry := _SHELL_ENTRY.match(text, start)) and self.raws[-1:] == ["="]:
+        if character in "$@" and (entry := _SHELL_ENTRY.match(text, start)) and self.raws[-1:] == ["="]:
             return self._shell_entry(start, entry.end())
         if character == ";" and self._separates(start):
             fix = write_fix(",", Span(start, start + 1), safe=True)
             self._mistake(Span(start, start + 1), "expected `,` between attributes, found `;`", fix)
             return start + 1
         if character == "[" and self.raws[-1:] == ["="] and (square := _SQUARE.match(text, start)):
-            fix = value_meant(text, start, square.end(), safe=self._takes_strings())
+            fix = value_meant(text, start, square.end(), safe=False)
             self._mistake(Span(start, square.end()), "this value needs quotes", fix)
             return self._add(NAME, start, square.end())
         in_value = self._brackets and (character == "[" or character not in INSTEAD)
@@ -76,8 +76,9 @@ class StrangeCharacters(Indentation):
         return _KEY.match(self.text, start + 1) is not None
 
     def _shell_entry(self, start: int, end: int) -> int:
-        """Handle a blackboard entry in the syntax of shell variables: `$key` or `${key}`."""
-        written = f"{{{self.text[start:end].strip('${}')}}}"
+        """Handle a blackboard entry in the syntax of shell variables, `$key` or `${key}`, and `@{key}`."""
+        word = self.text[start:end]
+        written = f"{{{word.strip('${}').replace('{', '')}}}"
         fix = write_fix(written, Span(start, end))
         self._mistake(Span(start, end), f"a blackboard entry is written `{written}`", fix)
         return self._add(NAME, start, end)
@@ -211,7 +212,7 @@ def has_line_end(text: str, start: int, end: int) -> bool:
 
 _WHOLE_WORD: Final = re.compile(r"[^\s(),\"'{}]+")
 _TWICE_BRACED: Final = re.compile(r"\{(\{[^{}\r\n]*\})\}")
-_SHELL_ENTRY: Final = re.compile(r"\$(?:\{[^\W\d]\w*\}|[^\W\d]\w*)(?=[ \t),\r\n]|\Z)")
+_SHELL_ENTRY: Final = re.compile(r"(?:\$[^\W\d]\w*|[$@]\{[^\W\d]\w*\})(?=[ \t),\r\n]|\Z)")
 _KEY: Final = re.compile(r"[ \t]*[^\W\d](?:\w|-(?=\w))*[ \t]*=(?!=)")
 _SQUARE: Final = re.compile(r"\[[^\[\](){}\"'\r\n]*\](?=[ \t]*(?:[),\r\n]|\Z))")
 _VALUE_END: Final = re.compile(r"[ \t]*(?:[),\r\n#/]|\Z|[^\W\d](?:\w|-(?=\w))*[ \t]*=(?!=)|satisf|tags\b)")

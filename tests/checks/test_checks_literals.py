@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from check_asserts import assert_clean, assert_fix, assert_problems
+from check_asserts import apply, assert_clean, assert_fix, assert_problems, workspace_of
 
 from btq_lang.checks import check
 from btq_lang.workspace.config import Project
@@ -58,6 +58,8 @@ def test_what_the_engine_is_strict_about_is_offered_right(written: str, meant: s
         ('"30 sec"', "30", {"Write the quantity `30 sec`": "30 sec", "Write what the engine reads: `30`": "30"}),
         ('"30 apples"', "30", {"Write what the engine reads: `30`": "30"}),
         ("1.5", "1", {"Write what the engine reads: `1`": "1"}),
+        ("0.5", "0", {"Write the quantity `0.5 s`": "0.5 s"}),
+        ('"1.5"', "1", {"Write the quantity `1.5 s`": "1.5 s", "Write what the engine reads: `1`": "1"}),
         ('"30 kg"', "30", {"Write what the engine reads: `30`": "30"}),
     ],
 )
@@ -67,6 +69,29 @@ def test_what_is_read_of_a_number_with_a_tail(value: str, reads: str, fixes: dic
     assert_problems(timeout(value), f"2:21 warning trailing-text-in-number «{value}» {message}")
     for title, fixed in fixes.items():
         assert_fix(timeout(value), title, timeout(fixed))  # none is safe: what was meant is not known
+
+
+@pytest.mark.parametrize(("tag", "port"), [("Timeout", "msec"), ("Delay", "delay_msec")])
+@pytest.mark.parametrize(("seconds", "ms"), [("0.5", "500"), ("1.5", "1500"), ("10.25", "10250"), (".5", "500")])
+def test_seconds_where_milliseconds_go(tag: str, port: str, seconds: str, ms: str) -> None:
+    text = f'<root BTCPP_format="4"><BehaviorTree ID="T"><{tag} {port}="{seconds}"><X/></{tag}></BehaviorTree></root>'
+    (found,) = check(workspace_of({"main.xml": text}), "main.xml")
+    fixes = [fix.title for fix in found.fixes]
+    assert fixes[0] == f"Write `{ms}`, which is {float(seconds)} s"
+    assert "Write what the engine reads: `0`" not in fixes
+    assert found.notes[-1] == f"`{port}` is in ms"
+    assert apply({"main.xml": text}, "main.xml", found.fixes[0])["main.xml"] == text.replace(f'"{seconds}"', f'"{ms}"')
+
+
+@pytest.mark.parametrize(
+    "word", ["inf", "INF", "infinite", "infinity", "forever", "unlimited", "endless", '"∞"', '"*"']
+)
+@pytest.mark.parametrize(("node", "port"), [("RetryUntilSuccessful", "num_attempts"), ("Repeat", "num_cycles")])
+def test_endless(word: str, node: str, port: str) -> None:
+    text = f"BehaviorTree Main\n    {node} ({port} = {word})\n        X\n"
+    found = f"expected an integer for `{port}`, found `{word.strip(chr(34))}`; endless is `-1`"
+    assert_problems(text, f"2:{len(node) + len(port) + 10} error invalid-literal «{word}» {found}")
+    assert_fix(text, "Write `-1` for endless", text.replace(word, "-1"))
 
 
 def test_a_list_keeps_its_quotes() -> None:

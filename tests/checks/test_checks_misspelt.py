@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from check_asserts import findings, fixes
+from check_asserts import findings, fixes, problems
 
 RULE = "misspelt-entry"
 
@@ -137,3 +137,18 @@ def test_the_words_for_yes_and_no() -> None:
 def test_many_names_are_no_trouble() -> None:
     lines = "\n".join(f"Take (image = {{place_{number:05d}}})" for number in range(3000))
     assert told(lines) == []
+
+
+@pytest.mark.parametrize(
+    ("head", "writes", "note"),
+    [
+        ("output", "gial", "did you mean `gial`, which a node writes?"),
+        ("output", "gol", "did you mean `gol`, which a node writes?"),
+        ("input", "goal", "if `Find` writes `goal`, its model declares `place` as an output"),
+    ],
+)
+def test_a_writer_that_is_not_one(head: str, writes: str, note: str) -> None:
+    models = f"Action Find\n    {head} place\nAction Lead\n    input place\n"
+    nodes = f"        Find (place = {{{writes}}})\n        Lead (place = {{goal}})\n"
+    (found,) = problems(f"{models}BehaviorTree Main\n    ->\n{nodes}", "unset-entry")
+    assert found.notes == ("ignore this where the robot's program sets the entry", note)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from check_asserts import findings, fixes, problems
+from check_asserts import after, findings, fixes, problems
 
 from btq_lang.workspace.config import Project
 
@@ -108,3 +108,34 @@ def test_a_project_that_names_no_version_is_told_how() -> None:
     assert pin in found.notes
     (found,) = problems(text, "script-version", project=Project(engines=("4.6", "4.8")))
     assert pin not in found.notes
+
+
+@pytest.mark.parametrize(("script", "created"), [("tries = 0", "tries := 0"), ("a := 1; b = a + 1", "b := a + 1")])
+def test_an_assignment_that_creates(script: str, created: str) -> None:
+    text = f'BehaviorTree Main\n    Script (code = "{script}")\n'
+    (found,) = problems(text, "uncreated-entry")
+    assert found.notes == (f"the engine throws when it runs the script; write `{created}`",)
+    assert after(text, found.fixes[0]) == text.replace(created.replace(":", ""), created)
+
+
+@pytest.mark.parametrize(
+    ("script", "names"),
+    [
+        ("msg := hello", ["hello"]),
+        ("a := 1; a == idle", ["idle"]),
+        ("a := 1; a != (idle)", ["idle"]),
+        ("msg := HELLO", []),  # a name of an enumeration
+        ("msg := @hello", []),
+        ("msg := hello; b := hello", []),
+        ("hello := 1; msg := hello", []),
+        ("msg := hello + 1", []),
+        ("a := 1; a < limit", []),
+    ],
+)
+def test_texts_without_quotes(script: str, names: list[str]) -> None:
+    text = f'BehaviorTree Main\n    Script (code = "{script}")\n'
+    found = problems(text, "misspelt-entry")
+    assert [each.message for each in found] == [
+        f"a script reads `{name}` as an entry, which nothing here sets" for name in names
+    ]
+    assert [after(text, each.fixes[0]) for each in found] == [text.replace(name, f"'{name}'") for name in names]

@@ -89,7 +89,10 @@ def test_a_word_of_this_language(tag: str, attributes: str, meant: str) -> None:
             xml('<If condition="x"><Go/><Turn/></If>'),
             "not-an-engine-node",
             "`If` is not built into BehaviorTree.CPP 4.6–4.10; did you mean `IfThenElse`?",
-            ("its first child is the condition, a node of its own",),
+            (
+                "its first child is the condition, a node of its own",
+                'write `<ScriptCondition code="x"/>` as its first child',
+            ),
         ),
         (
             xml('<Sequence memory="true"><Go/></Sequence>'),
@@ -114,3 +117,85 @@ def test_a_time_with_a_unit_is_converted() -> None:
     assert found.message == "the engine reads `30s` as 30 and silently drops the rest"
     assert [fix.title for fix in found.fixes] == ["Write `30000`, which is 30 s", "Write what the engine reads: `30`"]
     assert apply({PATH: text}, PATH, found.fixes[0]) == {PATH: text.replace("30s", "30000")}
+
+
+CHECK_OF_3 = 'BlackboardCheck{} value_A="{{a}}" value_B="{}" return_on_mismatch="{}"'
+
+
+@pytest.mark.parametrize(
+    ("kind", "value", "mismatch", "script"),
+    [
+        ("Int", "1", "FAILURE", "a == 1"),
+        ("Double", "0.5", "SUCCESS", "a == 0.5"),
+        ("Bool", "true", "FAILURE", "a == true"),
+        ("String", "home", "SKIPPED", "a == 'home'"),
+        ("String", "{b}", "FAILURE", "a == b"),
+    ],
+)
+def test_a_check_of_version_3(kind: str, value: str, mismatch: str, script: str) -> None:
+    tag = CHECK_OF_3.format(kind, value, mismatch)
+    (found,) = check(workspace_of({PATH: xml(f"<{tag}><Go/></BlackboardCheck{kind}>")}), PATH)
+    assert found.notes[1] == f'write `<Precondition if="{script}" else="{mismatch}">`'
+
+
+@pytest.mark.parametrize(
+    ("node", "rule", "note"),
+    [
+        (
+            '<If condition="a == 1"><Go/></If>',
+            "not-an-engine-node",
+            'write `<ScriptCondition code="a == 1"/>` as its first child',
+        ),
+        (
+            '<While cond="{a}"><Go/></While>',
+            "not-an-engine-node",
+            'write `<ScriptCondition code="a"/>` as its first child',
+        ),
+        (
+            '<IfThenElse condition="a"><Go/><Go/></IfThenElse>',
+            "unknown-port",
+            "its first child is the condition, such as a ScriptCondition",
+        ),
+        (
+            '<Switch2 variable="{a}" case_1="1" case_2="2"><Go/><Go/></Switch2>',
+            "child-count",
+            "its last child is the default: add one, such as an AlwaysFailure",
+        ),
+        ("<Script>a := 1</Script>", "xml-ignored", 'a script goes in a port: <Script code="a := 1"/>'),
+    ],
+)
+def test_conditions_and_scripts_in_other_places(node: str, rule: str, note: str) -> None:
+    found = [each for each in check(workspace_of({PATH: xml(node)}), PATH) if each.rule == rule]
+    assert [each.notes[-1] for each in found] == [note]
+
+
+@pytest.mark.parametrize(
+    ("node", "message"),
+    [
+        ('<Script code="a := "b""/>', "the value before `b` ends at its second quote"),
+        ('<Script code="a := "5""/>', "the value before `5` ends at its second quote"),
+        ('<Go _skipIf="a == "home""/>', "the value before `home` ends at its second quote"),
+    ],
+)
+def test_quotes_in_quotes(node: str, message: str) -> None:
+    (found,) = check(workspace_of({PATH: xml(node)}), PATH)
+    assert (found.message, found.notes) == (message, ("write a quote in a value as &quot;, in a script as '",))
+
+
+@pytest.mark.parametrize(("tag", "meant"), [("out_port", "output_port"), ("in_port", "input_port")])
+def test_ports_by_short_names(tag: str, meant: str) -> None:
+    model = f'<TreeNodesModel><Action ID="Go"><{tag} name="a"/></Action></TreeNodesModel>'
+    text = xml("<Go/>").replace("</root>", f"{model}</root>")
+    (found,) = check(workspace_of({PATH: text}), PATH)
+    assert found.message.endswith(f'did you mean `<{meant} name="a"/>`?')
+
+
+@pytest.mark.parametrize("node", ['<Go _skipIf="a == 1"/>', '<Sequence><Script code="a := 1"/><Go/></Sequence>'])
+def test_a_wrong_declaration_of_the_version(node: str) -> None:
+    text = xml(node).replace('"4"', '"3"', 1)
+    (found,) = check(workspace_of({PATH: text}), PATH)
+    assert (found.rule, found.message, found.notes) == (
+        "version-4-file",
+        "this file is for version 4 of the engine, but declares version 3",
+        ('write `BTCPP_format="4"`',),
+    )

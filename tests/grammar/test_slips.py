@@ -162,6 +162,70 @@ VALUES: Final[list[Case]] = [
     ),
 ]
 
+_QUOTED: Final = "error syntax-error «{}» a script goes in quotes after the name of its port: `({})`"
+SCRIPTS: Final[list[Case]] = [
+    *(
+        (
+            tree(f"{node} {written}"),
+            f"2:{6 + len(node) + at} {_QUOTED.format(pointed, port)}",
+            tree(f"{node} ({port})"),
+        )
+        for node, written, at, pointed, port in (
+            ("Script", "x = 3", 0, "x = 3", 'code = "x := 3"'),
+            ("Script", "x := 3", 2, ":", 'code = "x := 3"'),
+            ("Script", "x:=3", 1, ":", 'code = "x := 3"'),
+            ("Script", "@x := 3", 0, "@", 'code = "@x := 3"'),
+            ("Script", "x = 'a b'", 0, "x = 'a b'", "code = \"x := 'a b'\""),
+            ("ScriptCondition", "x = 3", 0, "x = 3", 'code = "x == 3"'),
+            ("ScriptCondition", "x > 3", 2, ">", 'code = "x > 3"'),
+        )
+    ),
+    (
+        tree("Script (code = x := 3)"),
+        '2:22 error syntax-error «:» a script goes in quotes: `code = "x := 3"`',
+        tree('Script (code = "x := 3")'),
+    ),
+    (
+        tree("Go (_skipIf = hold == 1)"),
+        '2:24 error syntax-error «==» a script goes in quotes: `_skipIf = "hold == 1"`',
+        tree('Go (_skipIf = "hold == 1")'),
+    ),
+    (
+        tree("Go (_while = !hold, a = 1)"),
+        '2:18 error syntax-error «!» a script goes in quotes: `_while = "!hold"`',
+        tree('Go (_while = "!hold", a = 1)'),
+    ),
+    (
+        tree("Precondition (if = hold > 3)", "    Go"),
+        '2:29 error syntax-error «>» a script goes in quotes: `if = "hold > 3"`',
+        tree('Precondition (if = "hold > 3")', "    Go"),
+    ),
+    *(
+        (
+            tree(f"Go ({written})"),
+            f"2:{written.index('=') + 11} error syntax-error «{written.split(' = ', 1)[1]}» "
+            "unexpected text right after a string | "
+            "write a quote in a string as \\\", in a script as '",
+            tree(f"Go ({meant})"),
+        )
+        for written, meant in (
+            ('a = "the "red" box"', "a = \"the 'red' box\""),
+            ('_onSuccess = "b := "hello""', "_onSuccess = \"b := 'hello'\""),
+        )
+    ),
+    (
+        tree("Script (x = 3)"),
+        '2:13 error unknown-port «x» `Script` has no port `x`; did you mean `code = "x := 3"`? | it has `code`',
+        tree('Script (code = "x := 3")'),
+    ),
+    (
+        tree('Script (code = "msg := hello")'),
+        "2:28 hint misspelt-entry «hello» a script reads `hello` as an entry, which nothing here sets | "
+        "a text goes in single quotes: `'hello'`",
+        tree("Script (code = \"msg := 'hello'\")"),
+    ),
+]
+
 SIGNALS: Final[list[Case]] = [
     *(
         (
@@ -379,7 +443,9 @@ def test_what_a_check_mends_by_itself(text: str, fixed: str | None) -> None:
     assert list(unwanted(text)) == []
 
 
-@pytest.mark.parametrize(("text", "said", "mended"), [*ON_ONE_LINE, *VALUES, *SIGNALS, *PROSE, *OF_OTHER_LIBRARIES])
+@pytest.mark.parametrize(
+    ("text", "said", "mended"), [*ON_ONE_LINE, *VALUES, *SCRIPTS, *SIGNALS, *PROSE, *OF_OTHER_LIBRARIES]
+)
 def test_a_slip_is_one_diagnostic(text: str, said: str, mended: str | None) -> None:
     found = mistakes(text)
     assert [" | ".join((line, *found[0].notes)) for line in show(text, found)] == [said]

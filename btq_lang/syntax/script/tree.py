@@ -6,6 +6,7 @@ One invariant: `start` and `end` of a record are its place in the script's text,
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import chain
 from typing import TYPE_CHECKING, Final, TypeAlias
 
@@ -168,6 +169,17 @@ def variables(script: Script) -> tuple[Variable, ...]:
         else:
             stack.extend(reversed(children(node)))
     return tuple(found)
+
+
+def operands(script: Script) -> Iterator[Name]:
+    """The names that are all that a statement assigns, or with which it compares something by `==` or `!=`."""
+    for node in map(ungrouped, script.statements):
+        if isinstance(node, Assign):
+            values: tuple[Expression, ...] = (node.value,)
+        else:
+            is_equality = isinstance(node, Comparison) and node.operators in (("==",), ("!=",))
+            values = node.operands[1:] if is_equality and isinstance(node, Comparison) else ()
+        yield from (value for value in map(ungrouped, values) if isinstance(value, Name))
 
 
 def children(node: Expression) -> tuple[Expression, ...]:

@@ -1,0 +1,186 @@
+"""Values that are meant as entries and are texts to the engine, or entries of other names: `goal`, `{goal`, `$goal`,
+`@{goal}`, `{ goal }`, `{goal.x}`.
+
+One invariant: a bare word is reported only if its port makes a text unlikely, for a text may be called like an entry.
+Sources: isBlackboardPointer and stripBlackboardPointer in src/tree_node.cpp of 4.6.2 and 4.10.0.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from typing import Final
+
+from btq_lang.catalog.kinds import PortKind
+from btq_lang.catalog.literals import OLD_ENTRY, check_literal, is_pointer, plain_type
+from btq_lang.catalog.names import is_port_name
+from btq_lang.catalog.versions import OUTPUT_IN_BRACES
+from btq_lang.checks.engines import is_for_version_4
+from btq_lang.checks.entries import Mention, handling, mentions
+from btq_lang.checks.flow import calls_of
+from btq_lang.checks.pointers import pointed_at
+from btq_lang.checks.view import View, port_of
+from btq_lang.diagnostics.model import Diagnostic, replace_fix, write_fix
+from btq_lang.syntax.tree import Pair, Word
+from btq_lang.util.record import replace
+from btq_lang.workspace.inputs import of_scope
+from btq_lang.workspace.item_index import Facts
+from btq_lang.workspace.queries import Store, on_circle
+from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.workspace import Workspace
+
+
+def meant_entry(view: View) -> Iterator[Diagnostic]:
+    """A value that is probably meant as an entry of its tree."""
+    names: frozenset[str] | None = None
+    for seen, pair, value in view.seen.values():
+        text = value.text
+        if text.isidentifier():
+            names = _names(view) if names is None else names
+            if text not in names:
+                continue
+        elif text[:1] not in _SIGNS and text[-1:] != "}":
+            continue
+        if (is_pointer(text) and text[1:-1].isidentifier()) or not is_port_name(pair.key.text) or seen.is_placeholder:
+            continue
+        port = port_of(view, seen, pair.key.text)
+        if port is not None and (port.content != "value" or _is_literal_for_output(view, port, text)):
+            continue
+        if port is not None and not seen.is_subtree and check_literal(port.literal or port.type, text, view.target):
+            continue  # an invalid literal, or one whose end is dropped
+        meant = _bare_entry(view, seen, pair, value) if text.isidentifier() else entry_in(view, value)
+        if meant is not None:
+            yield _diagnostic(value, meant)
+
+
+def with_entries(view: View, reported: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+    """What the parser has reported of an item, with the entries meant by values that are no words: `[goal]`."""
+    words = {value.span: value for _, _, value in view.seen.values() if not value.quoted and "{" not in value.raw}
+    for each in reported:
+        meant = entry_in(view, words[each.span]) if each.span in words else None
+        message = f"a blackboard entry is written `{meant}`"
+        yield replace(each, message=message, fixes=(write_fix(meant, each.span),)) if meant is not None else each
+
+
+def entry_of(view: View, value: Word) -> str | None:
+    """The entry of the tree that a value names, in its braces: bare, or in other signs."""
+    if value.text.isidentifier():
+        return f"{{{value.text}}}" if value.text in _names(view) else None
+    return entry_in(view, value)
+
+
+def entry_in(view: View, value: Word) -> str | None:
+    """The entry that a value is probably meant to be, in its braces; None for a bare word and anything else."""
+    text = value.text
+    if OLD_ENTRY.fullmatch(text):
+        return None  # which has a rule of its own
+    if (half := _HALF.fullmatch(text)) is not None:
+        return f"{{{half[1] or half[2]}}}"
+    if (outside := _SIGN_OUTSIDE.fullmatch(text)) is not None:
+        return f"{{@{outside[1]}}}"
+    if (other := _DECORATED.fullmatch(text)) is None:
+        return None
+    name = next(filter(None, other.groups()))
+    sign = "@" if text.lstrip("{ ")[:1] == "@" else ""
+    meant = f"{{{sign}{name}}}"
+    if is_pointer(text) and any(each.creates and not each.reads for each in _named(view, text[1:-1])):
+        return None  # something writes an entry of this very name
+    return meant if meant != text and name in _names(view) else None
+
+
+def _diagnostic(value: Word, meant: str) -> Diagnostic:
+    text = value.text
+    what = "braces" if text[1:2] == "{" else "blanks"
+    message = f"the {what} inside `{text}` belong to the name of the entry; did you mean `{meant}`?"
+    if not is_pointer(text):
+        message = f"`{text}` is a text here, not the entry; did you mean `{meant}`?"
+    elif what == "blanks" and text.replace(" ", "") != meant:
+        message = f"`{text}` is an entry of that name, not a member of `{meant}`"
+        notes = ("an entry is passed whole: let a node write the member to an entry of its own",)
+        return Diagnostic("misspelt-entry", value.span, message, notes=notes)
+    fix = replace_fix(f"Replace `{text}` with `{meant}`", value.span, meant)
+    return Diagnostic("misspelt-entry", value.span, message, fixes=(fix,))
+
+
+def _is_literal_for_output(view: View, port: PortKind, text: str) -> bool:
+    """Whether another rule reports the value, as one for an output."""
+    return port.direction == "output" and not is_pointer(text) and OUTPUT_IN_BRACES.holds(view.target)
+
+
+def _bare_entry(view: View, seen: ResolvedNode, pair: Pair, value: Word) -> str | None:
+    """The entry that a bare word is probably meant to be."""
+    name, key = value.text, pair.key.text
+    port = port_of(view, seen, key)
+    if _FOR_NAMES.search(key) or (port is not None and port.direction == "output") or name not in _names(view):
+        return None
+    if seen.is_subtree:
+        is_certain = not view.is_xml or view.ask(is_for_version_4)  # version 3 passes the entry
+    elif port is not None and port.type and plain_type(port.type) not in _TEXTS:
+        is_certain = True
+    else:
+        is_certain = view.ask(_is_likely, view.facts, name, key)
+    return f"{{{name}}}" if is_certain else None
+
+
+@of_scope
+def _is_likely(store: Store[Workspace], viewpoint: str, tree: Facts, name: str, key: str) -> bool:
+    """Whether a port that takes any text is likely meant to be given an entry of a tree."""
+    view = View(store, viewpoint, tree)
+    is_likely = name == key or name.endswith(f"_{key}") or _is_passed_so(view, name, key) or _is_lost(view, name)
+    return is_likely and not _is_own_name(view, name)
+
+
+def _is_passed_so(view: View, name: str, key: str) -> bool:
+    """Whether a port of the same name is given the entry elsewhere in the tree."""
+    return any(pair.key.text == key and pointed_at(key, value.text) == name for _, pair, value in view.seen.values())
+
+
+def _is_lost(view: View, name: str) -> bool:
+    """Whether the tree writes the entry, and nothing in it reads that."""
+    named = _named(view, name)
+    return bool(named) and all(each.creates and not each.reads for each in named)
+
+
+def _is_own_name(view: View, name: str) -> bool:
+    """Whether the tree also gives a built-in node the name as a text: the value of the entry is its name."""
+    texts = [(seen.kind, pair.key.text) for seen, pair, value in view.seen.values() if value.text == name]
+    ports = [kind.port(key) for kind, key in texts if kind is not None]
+    return any(port is not None and port.content == "value" for port in ports)
+
+
+def _named(view: View, name: str) -> list[Mention]:
+    return [each for each in view.ask(mentions, view.path, view.facts) if each.name == name]
+
+
+def _names(view: View) -> frozenset[str]:
+    """The entries of the tree."""
+    if view.tree_name is not None:
+        return view.ask(_entries_of, view.tree_name.text)
+    return frozenset(each.name.removeprefix("@") for each in view.ask(mentions, view.path, view.facts))
+
+
+@on_circle(frozenset())
+@of_scope
+def _entries_of(store: Store[Workspace], viewpoint: str, tree: str) -> frozenset[str]:
+    """The names of entries that a tree uses, declares or gets from the trees that run it, without their `@`."""
+    view = View(store, viewpoint)
+    own = view.ask(handling, tree)
+    names = {*own.ports, *(touch.name for touch in own.touches)}
+    for caller, call in calls_of(view, tree):
+        names |= {*call.given, *call.values}
+        if call.shares:
+            names |= view.ask(_entries_of, caller)
+    return frozenset(name.removeprefix("@") for name in names)
+
+
+_WORD: Final = r"[^\W\d]\w*"
+_NAME: Final = f"({_WORD})"
+_HALF: Final = re.compile(rf"\{{(@?{_WORD})|(@?{_WORD})\}}")
+_SIGN_OUTSIDE: Final = re.compile(rf"@\{{{_NAME}\}}")
+_DECORATED: Final = re.compile(
+    rf"\$\(?{_NAME}\)?|\[{_NAME}\]|<{_NAME}>|%{_NAME}%|@{_NAME}|\{{\{{@?{_NAME}\}}\}}|\{{ *@? *{_NAME} *\}}"
+    rf"|\{{@?{_NAME}(?:(?:\.|->|::)\w+|\[\w*\])+\}}"
+)
+_SIGNS: Final = frozenset("{$@[<%")
+_FOR_NAMES: Final = re.compile("key|entry|variable|name|field|value$", re.IGNORECASE)
+_TEXTS: Final = frozenset(("std::string", "std::string_view", "BT::StringView", "BT::Any", "BT::AnyTypeAllowed"))
