@@ -12,6 +12,8 @@ from check_asserts import after, show
 from safe_fixes import unwanted
 from test_first_mistakes import OTHER, Case, R, S, mistakes, requirement, tree
 
+from btq_lang.parser import parse
+
 BELOW: Final = "a child goes on a line of its own below its parent, indented"
 CHILDREN: Final = "children go on lines of their own below their parent, indented"
 NO_TYPE: Final = (
@@ -235,8 +237,7 @@ PROSE: Final[list[Case]] = [
             ("needs to take at most 30 s", "needs to take", "takes at most 30 s"),
             ("should be reached within 30 s", "should be reached within", "succeeds within 30 s"),
             ("Go should be done within 30 s", "should be done within", "Go succeeds within 30 s"),
-            ("Go must finish in 30 s", "must finish in", "Go succeeds within 30 s"),
-            ("completes within 30 s", "completes within", "succeeds within 30 s"),
+            ("arrives within 30 s", "arrives within", "succeeds within 30 s"),
             ("Main/Go shall not exceed 30 s", "shall not exceed", "Main/Go takes at most 30 s"),
             ("must not take longer than 30 s", "must not take longer than", "takes at most 30 s"),
             ("Go must not fail", "must not fail", "Go succeeds"),
@@ -306,6 +307,75 @@ PROSE: Final[list[Case]] = [
     ),
 ]
 
+_FAILURE: Final = "`succeeds within` is violated by a failure too, `takes at most` is not"
+_OTHER: Final = "`follows` goes to the node that runs second, with the event that it waits for"
+_USED: Final = "a signal whose use is limited is a `counter` or a `level`: `signal energy : Wh from {energy} counter`"
+_SITUATION: Final = "`while` counts the time in which it holds, `when` the activations at whose start it holds"
+_SIGNAL: Final = "a name alone is a signal or context: `signal latency : s from {latency}`"
+# A clause, how it is written here (the first is the likeliest), and the note.
+CLAUSES: Final[list[tuple[str, tuple[str, ...], str]]] = [
+    *(
+        (clause, ("succeeds within 30 s",), "")
+        for clause in ("succeeds in 30 s", "succeeds by 30 s", "succeeds within at most 30 s", "done within 30 s")
+    ),
+    ("Go succeeds in under 30 s", ("Go succeeds within 30 s",), ""),
+    *(
+        (clause, ("succeeds within 30 s", "takes at most 30 s"), _FAILURE)
+        for clause in ("finishes within 30 s", "completes within 30 s", "ends before 30 s", "must finish in 30 s")
+    ),
+    ("Go must finish in 30 s", ("Go succeeds within 30 s", "Go takes at most 30 s"), _FAILURE),
+    ("response time < 200ms", ("takes less than 200ms",), ""),
+    ("the reaction time is at most 200 ms", ("takes at most 200 ms",), ""),
+    ("execution time of Go <= 3 s", ("Go takes at most 3 s",), ""),
+    ("maximum duration: 30 s", ("takes at most 30 s",), ""),
+    ("timeout 30 s", ("takes at most 30 s",), ""),
+    ("deadline = 30 s", ("succeeds within 30 s",), ""),
+    ("latency < 200 ms", ("takes less than 200 ms", "keeps latency < 200 ms"), _SIGNAL),
+    ("runs at 10 Hz", ("runs at least 10 per 1 s",), ""),
+    ("runs at most 2 Hz", ("runs at most 2 per 1 s",), ""),
+    ("Go is called 3 times per minute", ("Go runs at least 3 per 1 min",), ""),
+    ("runs at least 10 per second", ("runs at least 10 per 1 s",), ""),
+    ("runs once every 2 s", ("runs every 2 s",), ""),
+    ("runs once per hour", ("runs at least 1 per 1 h",), ""),
+    ("update rate > 10 Hz", ("runs more than 10 per 1 s",), ""),
+    ("period <= 100 ms", ("runs every 100 ms",), ""),
+    ("retries at most 3", ("tries at most 3",), ""),
+    *(
+        (clause, ("succeeds in at least 95 % of activations", "succeeds in at least 95 % of runs"), "")
+        for clause in ("success rate >= 95 %", "succeeds 95 % of the time", "succeeds at least 95 %")
+    ),
+    *(
+        (clause, ("over last 200 activations",), "")
+        for clause in (
+            *("window 200 activations", "window of 200 activations", "over 200 activations", "last 200 activations"),
+            *("in the last 200 activations", "sliding window: 200 activations", "over the past 200 activations"),
+        )
+    ),
+    ("window 200", ("over last 200 activations", "over last 200 runs"), ""),
+    ("sliding window 1 h", ("over last 1 h",), ""),
+    ("during lit", ("while lit",), ""),
+    ("as long as v > 1 m/s", ("while v > 1 m/s",), ""),
+    ("provided that lit", ("while lit", "when lit"), _SITUATION),
+    ("only when lit or v > 1 m/s", ("while lit or v > 1 m/s", "when lit or v > 1 m/s"), _SITUATION),
+    ("until lit", ("while not lit",), ""),
+    ("except when lit", ("while not lit",), ""),
+    ("Go ends before Turn starts", ("Turn follows Go finishes",), _OTHER),
+    ("Go must precede Turn", ("Turn follows Go succeeds",), _OTHER),
+    ("Go -> Turn", ("Turn follows Go succeeds",), _OTHER),
+    ("ends before Turn starts", ("Turn follows <node> finishes",), _OTHER),
+    ("starts after Turn fails", ("follows Turn fails",), ""),
+    (
+        "Go runs after Turn",
+        ("Go follows Turn succeeds", "Go follows Turn finishes"),
+        "`finishes` is a success or a failure",
+    ),
+    ("uses at most 20 m", ("uses at most 20 m of <signal>",), _USED),
+    ("uses at most 5", ("uses at most 5 of <signal>",), _USED),
+    ("uses at most 20 m way", ("uses at most 20 m of way",), ""),
+    ("consumes <= 20 m from way", ("uses at most 20 m of way",), ""),
+    ("uses way at most 20 m", ("uses at most 20 m of way",), ""),
+    ("uses 20 m of way", ("uses at most 20 m of way",), ""),
+]
 AMONG_PORTS: Final = "expected a port (input, output or inout), metadata or xml, found"
 MEMORY: Final = (
     "a Sequence or Fallback goes on with the child that is running; "
@@ -385,6 +455,68 @@ def test_a_slip_is_one_diagnostic(text: str, said: str, mended: str | None) -> N
     assert [" | ".join((line, *found[0].notes)) for line in show(text, found)] == [said]
     assert [after(text, fix) for fix in found[0].fixes] == ([mended] if mended else [])
     assert [each for each in mistakes(mended or "") if each.rule != "unset-entry"] == []  # programs may set entries
+
+
+@pytest.mark.parametrize(("clause", "meant", "note"), CLAUSES)
+@pytest.mark.parametrize("further", ["", " on violation warn"])
+def test_a_clause_of_other_notations(clause: str, meant: tuple[str, ...], note: str, further: str) -> None:
+    signals = "signal v : m/s from {v}\nsignal lit : bool from {lit}\nsignal way : m from {way} counter\n"
+    text = f"{signals}{tree('->', '    Go satisfies r', '    Turn')}QualityReq r\n    {clause}{further}\n"
+    found = mistakes(text)
+    assert show(text, found) == [
+        f"9:5 error syntax-error «{clause}» this clause is written {' or '.join(f'`{each}`' for each in meant)}"
+    ]
+    assert found[0].notes == ((note,) if note else ())
+    complete = [each for each in meant if "<node>" not in each and "<signal>" not in each]
+    assert [after(text, fix) for fix in found[0].fixes] == [text.replace(clause, each) for each in complete]
+    assert [parse(text.replace(clause, each)).diagnostics for each in complete] == [()] * len(complete)
+
+
+def test_a_clause_until_an_event() -> None:
+    text = requirement("takes at most 3 s", "until Go succeeds")
+    assert show(text, mistakes(text)) == [
+        "5:5 error syntax-error «until Go succeeds» "
+        "no clause ends at an event; limit it with a condition: `while not docked`"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [
+        ("3:30 min", "3.5 min, 210 s"),
+        ("3:30", "3.5 min, 210 s, 3.5 h, 210 min"),
+        ("0:30 h", "0.5 h, 30 min"),
+        ("00:03:30", "210 s"),
+        ("1 min 30 s", "1.5 min, 90 s"),
+        ("1 h 20 min", "80 min"),
+        ("1m30s", "1.5 min, 90 s"),
+        ("3min30", "3.5 min, 210 s"),
+        ("3 min, 30 s", "3.5 min, 210 s"),
+    ],
+)
+def test_a_time_of_several_numbers(written: str, meant: str) -> None:
+    text = requirement(f"takes at most {written}")
+    found = mistakes(text)
+    shown = meant.replace(", ", "` or `")
+    assert show(text, found) == [f"4:19 error syntax-error «{written}» a time has one number and one unit: `{shown}`"]
+    fixed = [requirement(f"takes at most {each}") for each in meant.split(", ")]
+    assert [after(text, fix) for fix in found[0].fixes] == fixed
+    assert [mistakes(each) for each in fixed] == [[]] * len(fixed)
+
+
+@pytest.mark.parametrize("word", ["description", "title", "text:", "summary ="])
+def test_a_title_in_the_block_of_a_requirement(word: str) -> None:
+    text = requirement("takes at most 3 s", f'{word} "in time"')
+    found = mistakes(text)
+    plain = word.strip(":= ")
+    assert show(text, found) == [
+        f"5:5 error syntax-error «{plain}» `{plain}` is not in btq; "
+        'nearest is the title in quotes after the name: `QualityReq fast "in time"`'
+    ]
+    mended = requirement("takes at most 3 s").replace("QualityReq r", 'QualityReq r "in time"')
+    assert [after(text, fix) for fix in found[0].fixes] == [mended]
+    titled = text.replace("QualityReq r", 'QualityReq r "soon"')
+    assert [each.fixes for each in mistakes(titled)] == [()]
 
 
 @pytest.mark.parametrize(
