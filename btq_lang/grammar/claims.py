@@ -179,9 +179,6 @@ class ClaimParser(ConditionParser):
             self.recover()
         elif isinstance(subject, Path) and self.kind == NAME and self.raw in NO_VERBS:
             self.expected(_A_VERB, (NO_VERBS[self.raw],))
-        elif isinstance(subject, Path) and self.at("."):
-            self.complain(self.here(), "the names of a path are separated by `/`", write_fix("/", self.here()))
-            self.recover()
         elif isinstance(subject, Path) and (self.at_word("and") or self.at(",")):
             note = "a clause applies to one node; write it for each, or `sum of A, B` for the time of both"
             self.expected(_A_VERB, (note,))

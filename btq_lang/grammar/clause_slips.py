@@ -88,6 +88,7 @@ _IF: Final = _any(
 )
 _NOT: Final = _any("except(?: (?:when|while|if|during))?", "until", "but not (?:when|while|if)")
 _MODAL: Final = _any(*MODALS, "has to", "have to", "ought to", "needs to")
+_ENDS: Final = "(?:be |is )?(?:finish(?:es|ed)?|ends?|ended|over|terminate[sd]?|complete[sd]?|returns?|stops?)"
 _STARTS: Final = "(?: (?:starts|runs|begins))?"
 _USES: Final = "SUBJECT(?:uses?|consumes?|drains?|spends?)"
 _SITUATION: Final = "`while` counts the time in which it holds, `when` the activations at whose start it holds"
@@ -104,8 +105,7 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
         "",
     ),
     (
-        f"SUBJECT(?:{_MODAL} )?(?:be |is )?(?:finish(?:es|ed)?|ends?|ended|over|terminate[sd]?|complete[sd]?|returns?|stops?) "
-        f"(?:in|by|before|within){_LIMIT} TIME",
+        f"SUBJECT(?:{_MODAL} )?{_ENDS} (?:in|by|before|within){_LIMIT} TIME",
         ("{subject}succeeds within {time}", "{subject}takes at most {time}"),
         _FAILURE,
     ),

@@ -14,6 +14,7 @@ from btq_lang.util.text import Span
 
 def composed_time(text: str, start: int) -> Diagnostic | None:
     """The diagnostic for a time of several numbers that begins at `start`; None if none does."""
+    units: list[tuple[str, ...]]
     if clock := _CLOCK.match(text, start):
         parts = [int(part) for part in clock.group(1, 2, 3) if part is not None]
         unit = _UNITS.get(clock[4] or "")

@@ -312,10 +312,10 @@ FROM_PYTHON: Final[list[Case]] = [
         tree("->", "    Go", "    Turn"),
     ),
     (
-        "Action Go (station : string)\n" + tree("Go"),
+        "Action Go (station : string)\n" + tree("Go (station = home)"),
         "1:11 error syntax-error «(» ports do not go in brackets | "
         "a port goes on a line of its own below the node, indented: `input name : type`",
-        None,
+        "Action Go\n    input station : string\n" + tree("Go (station = home)"),
     ),
 ]
 

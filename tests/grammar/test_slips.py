@@ -12,7 +12,9 @@ from check_asserts import after, show
 from safe_fixes import unwanted
 from test_first_mistakes import OTHER, Case, R, S, mistakes, requirement, tree
 
+from btq_lang.grammar.cursor import shown
 from btq_lang.parser import parse
+from btq_lang.syntax.tree import quote
 
 BELOW: Final = "a child goes on a line of its own below its parent, indented"
 CHILDREN: Final = "children go on lines of their own below their parent, indented"
@@ -455,6 +457,234 @@ def test_a_slip_is_one_diagnostic(text: str, said: str, mended: str | None) -> N
     assert [" | ".join((line, *found[0].notes)) for line in show(text, found)] == [said]
     assert [after(text, fix) for fix in found[0].fixes] == ([mended] if mended else [])
     assert [each for each in mistakes(mended or "") if each.rule != "unset-entry"] == []  # programs may set entries
+
+
+SELECTORS: Final = (
+    "write `every` and an ID or kind, `every MoveBase`; `every node tagged …`; or list the nodes, with `,` between them"
+)
+TARGETS: Final = (
+    tree("->", "    Go Home", "    SubTree Bye")
+    + "BehaviorTree Bye\n    ->\n        Go Out\n"
+    + requirement("succeeds")[len(tree("Go satisfies r")) :]
+)
+
+
+@pytest.mark.parametrize(
+    ("targets", "slip", "message", "mended"),
+    [
+        *(
+            (f"Main{sign}Home", sign, "the names of a path are separated by `/`", "Main/Home")
+            for sign in (".", "::", "->", ":")
+        ),
+        *(
+            (f"every Go {word} Home", word, f"expected `except`, found `{word}`", "every Go except Home")
+            for word in ("but", "without", "but not", "except for", "other than", "excluding")
+        ),
+        *(
+            (f"every Go {word} Bye", word, f"expected `under`, found `{word}`", "every Go under Bye")
+            for word in ("in", "of", "inside", "within", "below")
+        ),
+    ],
+)
+def test_a_selector_in_other_words(targets: str, slip: str, message: str, mended: str) -> None:
+    text = f"apply r to {targets}\n{TARGETS}"
+    found = mistakes(text)
+    column = len("apply r to ") + targets.index(slip) + 1
+    assert show(text, found) == [f"1:{column} error syntax-error «{slip}» {message}"]
+    assert [after(text, fix) for fix in found[0].fixes] == [f"apply r to {mended}\n{TARGETS}"]
+    assert mistakes(after(text, found[0].fixes[0])) == []
+
+
+@pytest.mark.parametrize(
+    ("targets", "rule", "message"),
+    [
+        *((all_, "syntax-error", "no selector names all nodes") for all_ in ("*", "every", "every *", "all nodes")),
+        ("all", "unmatched-path", "unknown node `all`"),
+        ("everything", "unmatched-path", "unknown node `everything`"),
+        ("every node", "unmatched-path", "no node matches `every node`"),
+        ("every Action", "unmatched-path", "no node matches `every Action`"),
+    ],
+)
+def test_a_selector_of_all_nodes(targets: str, rule: str, message: str) -> None:
+    found = [each for each in mistakes(f"apply r to {targets}\n{TARGETS}") if each.rule in (rule, "syntax-error")]
+    assert [(each.rule, each.message, each.notes, each.fixes) for each in found] == [(rule, message, (SELECTORS,), ())]
+
+
+def test_a_node_that_is_called_all_is_one() -> None:
+    assert mistakes("apply r to all, everything\n" + TARGETS.replace("Home", "all").replace("Out", "everything")) == []
+
+
+def test_a_path_with_a_wildcard() -> None:
+    (found,) = [each for each in mistakes("apply r to Main/*\n" + TARGETS) if each.rule == "misplaced-comment"]
+    assert found.notes == ("the nodes below another are selected with `every <node> under Main`",)
+    assert found.fixes == ()
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [
+        ("person_near", ("people_near",)),
+        ("near_people", ("people_near",)),
+        ("person-near", ("people_near",)),
+        ("not people", ("people_near",)),
+        ("robot_docked", ()),
+    ],
+)
+def test_a_context_with_a_word_of_another(written: str, meant: tuple[str, ...]) -> None:
+    of = "signal far : m from {far}\ncontext people_near : far < 1 m\ncontext raining : far > 1 m and not people_near\n"
+    text = f"{of}{requirement('takes at most 3 s', f'while {written}', 'when raining')}"
+    (found,) = [each for each in mistakes(text) if each.rule == "unknown-signal"]
+    name = written.removeprefix("not ")
+    assert found.message == f"unknown signal `{name}`" + "".join(f"; did you mean `{each}`?" for each in meant)
+    assert found.notes == (f"{'or ' if meant else ''}declare it: `signal {name} : bool from {{{name}}}`",)
+    assert [after(text, fix) for fix in found.fixes] == [text.replace(f" {name}\n", f" {each}\n") for each in meant]
+
+
+ELSE: Final = "a Fallback `?` runs its next child after a failure, and the third child of an IfThenElse is its `else`"
+THEN: Final = "a Sequence `->` runs its children one after another"
+WITH_MEMORY: Final = (
+    "`->` goes on with the child that is running; `M->` goes on with the one that failed too, when it is ticked again"
+)
+OF_FALLBACK: Final = "`?` goes on with the child that is running; `R?` begins with the first one at every tick"
+UNITS_OF_SCRIPTS: Final = "a script has numbers without units"
+NO_NODES: Final[list[tuple[str, str, tuple[str, ...]]]] = [
+    *(
+        (f"{word} Go", f"3:9 warning unknown-node «{word}» there is no `{word}`: {how}", ("Go",))
+        for word, how in (("else", ELSE), ("otherwise", ELSE), ("catch", ELSE), ("then", THEN), ("finally", THEN))
+    ),
+    ("else", f"3:9 warning unknown-node «else» there is no `else`: {ELSE}", ()),
+    (
+        "else:",
+        "3:9 error syntax-error «else» expected a node, found the statement `else` | "
+        "to choose, use a Fallback `?` with a Condition, or `_skipIf` on the node",
+        (),
+    ),
+    *(
+        (
+            line,
+            f"3:9 error syntax-error «{line}» a condition is no node: "
+            f"write `{shown(f'ScriptCondition (code = {quote(code)})')}`",
+            (f"ScriptCondition (code = {quote(code)})",),
+        )
+        for line, code in (
+            ("battery > 20", "battery > 20"),
+            ("{battery} >= 20", "battery >= 20"),
+            ("20 < {@battery}", "20 < @battery"),
+            ("if x != 3", "x != 3"),
+            ("Condition x == 3", "x == 3"),
+            ("(x > 3)", "(x > 3)"),
+            ("x > 3 and lit", "x > 3 && lit"),
+        )
+    ),
+    (
+        "battery > 20 %",
+        f'3:9 error syntax-error «battery > 20 %» a condition is no node: write `ScriptCondition (code = "…")` | '
+        f"{UNITS_OF_SCRIPTS}",
+        (),
+    ),
+    (
+        "speed := 3",
+        '3:9 error syntax-error «speed := 3» an assignment is no node: write `Script (code = "speed := 3")`',
+        ('Script (code = "speed := 3")',),
+    ),
+]
+SYMBOLS_OF_OTHERS: Final = [
+    *(
+        (symbol, f"the symbol with memory is written `M->` | {WITH_MEMORY}", ("M->", "->"))
+        for symbol in ("->*", "*->", "→*", "M->*")
+    ),
+    ("?*", f"the symbol is written `?` | {OF_FALLBACK}", ("?",)),
+    ("R->*", "the symbol is written `R->`", ("R->",)),
+    ("||*", "the symbol is written `||`", ("||",)),
+]
+
+
+@pytest.mark.parametrize(("line", "said", "meant"), NO_NODES)
+def test_a_line_that_is_no_node(line: str, said: str, meant: tuple[str, ...]) -> None:
+    text = tree("?", f"    {line}", "    Go")
+    found = mistakes(text)
+    assert [" | ".join((each, *found[0].notes)) for each in show(text, found)] == [said]
+    mended = [tree("?", f"    {each}", "    Go") for each in meant]
+    assert [after(text, fix) for fix in found[0].fixes] == mended
+    assert [parse(each).diagnostics for each in mended] == [()] * len(mended)
+
+
+@pytest.mark.parametrize(("symbol", "said", "meant"), SYMBOLS_OF_OTHERS)
+def test_a_symbol_with_a_star(symbol: str, said: str, meant: tuple[str, ...]) -> None:
+    text = tree(symbol, "    Go")
+    found = mistakes(text)
+    assert [" | ".join((each, *found[0].notes)) for each in show(text, found)] == [
+        f"2:5 error syntax-error «{symbol}» {said}"
+    ]
+    assert [after(text, fix) for fix in found[0].fixes] == [tree(each, "    Go") for each in meant]
+    assert [mistakes(after(text, fix)) for fix in found[0].fixes] == [[]] * len(meant)
+
+
+@pytest.mark.parametrize(
+    ("brackets", "ports"),
+    [
+        ("(place)", ["input place"]),
+        (" (place, other)", ["input place", "input other"]),
+        ("(place : string, n : int)", ["input place : string", "input n : int"]),
+        ("(string place)", ["input place : string"]),
+        ("(output std::string place)", ["output place : std::string"]),
+        ("(inout place)", ["inout place"]),
+    ],
+)
+@pytest.mark.parametrize(("item", "owner"), [("BehaviorTree Main", "tree"), ("Action Turn", "node")])
+def test_ports_in_brackets(brackets: str, ports: list[str], item: str, owner: str) -> None:
+    below = "\n    Go\n" if owner == "tree" else "\n" + tree("Turn")
+    text = f"{item}{brackets}{below}"
+    (found,) = mistakes(text)
+    assert (found.rule, found.message) == ("syntax-error", "ports do not go in brackets")
+    assert found.notes == (f"a port goes on a line of its own below the {owner}, indented: `input name : type`",)
+    (fix,) = found.fixes
+    assert after(text, fix) == "\n    ".join((item, *ports)) + below
+    assert parse(after(text, fix)).diagnostics == ()
+
+
+TOO_FAR: Final = "what is below it may be indented too far"
+
+
+@pytest.mark.parametrize(
+    ("lines", "dedented", "said"),
+    [
+        (
+            ("    Action Go", "        Turn", "    Turn"),
+            ("    Action Go", "    Turn", "    Turn"),
+            "3:16 error child-count «Go» the Action `Go` requires no children, found 1",
+        ),
+        (
+            ("    AlwaysSuccess", "        Go", "            Turn", "        Go"),
+            ("    AlwaysSuccess", "    Go", "        Turn", "    Go"),
+            "3:9 error child-count «AlwaysSuccess» `AlwaysSuccess` requires no children, found 2",
+        ),
+        (
+            ("    Retry (num_attempts = 3)", "        Go", "        Turn"),
+            ("    Retry (num_attempts = 3)", "        Go", "    Turn"),
+            "3:9 error child-count «Retry» `Retry` requires exactly 1 child, found 2",
+        ),
+    ],
+)
+def test_a_child_that_is_indented_too_far(lines: tuple[str, ...], dedented: tuple[str, ...], said: str) -> None:
+    text = tree("->", *lines)
+    found = [each for each in mistakes(text) if each.rule != "unknown-node"]
+    assert (show(text, found), found[0].notes) == ([said], (TOO_FAR,))
+    assert after(text, found[0].fixes[0]) == tree("->", *dedented)
+    assert [fix.title.split()[0] for fix in found[0].fixes] == ["Dedent", "Put"][: 1 + ("Retry" in lines[0])]
+
+
+def test_a_child_below_an_undeclared_node() -> None:
+    declared = "Action Go\nAction Turn\n"
+    text = declared + tree("->", "    Look", "        Go", "    Turn")
+    (found,) = mistakes(text)
+    assert (found.rule, found.notes[1:]) == ("unknown-node", (TOO_FAR,))
+    assert after(text, found.fixes[-1]) == declared + tree("->", "    Look", "    Go", "    Turn")
+
+
+@pytest.mark.parametrize("lines", [("Action Go", "    Turn"), ("Inverter", "    Action Go", "        Turn")])
+def test_a_child_that_no_parent_takes_is_not_dedented(lines: tuple[str, ...]) -> None:
+    assert [each.fixes for each in mistakes(tree(*lines)) if each.rule == "child-count"] == [()]
 
 
 @pytest.mark.parametrize(("clause", "meant", "note"), CLAUSES)
