@@ -404,10 +404,8 @@ class Lexer(StrangeCharacters):
         fixes: tuple[Fix, ...] = (fix,) if in_value or sign[0] == "/*" else (fix, insert)
         notes: tuple[str, ...] = ()
         if self.raws[:1] == ["apply"] and sign[0] == "/*":
-            notes, fixes = (
-                (f"the nodes below another are selected with `every <node> under {text[start : sign.start()]}`",),
-                (),
-            )
+            notes = (f"the nodes below another are selected with `every <node> under {text[start : sign.start()]}`",)
+            fixes = ()
         if sign.end() == end:  # the word ends with the sign: probably a comment
             fixes = fixes[::-1]
         self.problems.append(

@@ -39,7 +39,8 @@ def composed_time(text: str, start: int) -> Diagnostic | None:
 
 def _readings(unit: str | None) -> list[tuple[str, ...]]:
     """The units of the two numbers of a clock; the unit after them is that of the first, or of the whole."""
-    return {"h": [("h", "min")], None: [("min", "s"), ("h", "min")]}.get(unit, [("min", "s")])
+    hours, minutes = ("h", "min"), ("min", "s")
+    return [minutes, hours] if unit is None else [hours] if unit == "h" else [minutes]
 
 
 def _written(parts: list[int], units: tuple[str, ...]) -> list[str]:

@@ -8,10 +8,11 @@ from __future__ import annotations
 from typing import Final
 
 import pytest
-from check_asserts import after, show
+from check_asserts import after, show, workspace_of
 from safe_fixes import unwanted
 from test_first_mistakes import OTHER, Case, R, S, mistakes, requirement, tree
 
+from btq_lang.checks import check
 from btq_lang.grammar.cursor import shown
 from btq_lang.parser import parse
 from btq_lang.syntax.tree import quote
@@ -685,6 +686,91 @@ def test_a_child_below_an_undeclared_node() -> None:
 @pytest.mark.parametrize("lines", [("Action Go", "    Turn"), ("Inverter", "    Action Go", "        Turn")])
 def test_a_child_that_no_parent_takes_is_not_dedented(lines: tuple[str, ...]) -> None:
     assert [each.fixes for each in mistakes(tree(*lines)) if each.rule == "child-count"] == [()]
+
+
+@pytest.mark.parametrize(
+    ("comment", "path"),
+    [
+        ('#include "x.btq"', "x.btq"),
+        ("#include <x.btq>", "x.btq"),
+        ("#include 'sub/x.xml'", "sub/x.xml"),
+        ("#include x.btq;", "x.btq"),
+        ('#import "x.btq"', "x.btq"),
+    ],
+)
+def test_an_include_in_a_comment(comment: str, path: str) -> None:
+    text = f"{comment}\n{tree('Go')}"
+    (found,) = mistakes(text)
+    assert show(text, [found]) == [
+        f'1:1 hint missing-include «{comment}» this is a comment; did you mean `include "{path}"`?'
+    ]
+    assert [after(text, fix) for fix in found.fixes] == [f'include "{path}"\n{tree("Go")}']
+    assert mistakes(f"{tree('->', f'    Go  {comment}')}")[0].rule == "missing-include"
+
+
+@pytest.mark.parametrize(
+    "comment",
+    [
+        '# include "x.btq"',  # one that is left out on purpose
+        '#include "x.btq" later',
+        '#include "x.hpp"',
+        "#include",
+        "#included in x.btq",
+        '##include "x.btq"',
+        '# see #include "x.btq"',
+    ],
+)
+def test_a_comment_about_an_include(comment: str) -> None:
+    assert mistakes(f"{comment}\n{tree('Go')}") == []
+    assert mistakes(tree(f'Say (text = "{comment[1:].replace(chr(34), chr(39))}")')) == []
+
+
+@pytest.mark.parametrize(
+    ("xml", "said"),
+    [
+        (
+            "<Root><BehaviorTree ID='T'><Go/></BehaviorTree></root>",
+            "xml-syntax «</root>» expected </Root>, found </root> | "
+            "the engine's element is <root>: write <root> where it opens, and </root> here",
+        ),
+        (
+            "<root><BehaviorTree ID='T'><Go/></BehaviorTree></Root>",
+            "xml-syntax «</Root>» expected </root>, found </Root> | write </root>",
+        ),
+        (
+            "<root><BehaviorTree ID='T'><fallback><Go/></Fallback></BehaviorTree></root>",
+            "xml-syntax «</Fallback>» expected </fallback>, found </Fallback> | "
+            "the engine's element is <Fallback>: write <Fallback> where it opens, and </Fallback> here",
+        ),
+        (
+            "<root><BEHAVIORTREE ID='T'><Go/></behaviortree></root>",
+            "xml-syntax «</behaviortree>» expected </BEHAVIORTREE>, found </behaviortree> | "
+            "the engine's element is <BehaviorTree>: write <BehaviorTree> where it opens, and </BehaviorTree> here",
+        ),
+        (
+            "<Root><BehaviorTree ID='T'><Go/></BehaviorTree></Root>",
+            "xml-root «Root» the document element is <Root>, not <root> | "
+            "the engine distinguishes capital letters: write <root> and </root>",
+        ),
+        (
+            "<root BTCPP_format='4'><BehaviorTree ID='T'><Fallback ID='Give'><Go/></Fallback></BehaviorTree></root>",
+            "unknown-port «ID» the engine refuses the attribute `ID` on `Fallback` | a node's own name is its `name`",
+        ),
+        (
+            "<root BTCPP_format='4'><BehaviorTree ID='T'><Fallback label='Give'><Go/></Fallback></BehaviorTree></root>",
+            "unknown-port «label» `Fallback` has no port `label` | it has no ports | a node's own name is its `name`",
+        ),
+        (
+            "<root BTCPP_format='4'><BehaviorTree ID='T'><Inverter child='Go'/></BehaviorTree></root>",
+            "unknown-port «child» `Inverter` has no port `child` | it has no ports | "
+            "children go below their parent, in XML between its tags: `<Inverter><Dock/></Inverter>`",
+        ),
+    ],
+)
+def test_a_slip_in_xml(xml: str, said: str) -> None:
+    found = [each for each in check(workspace_of({"main.xml": xml}), "main.xml") if each.rule != "child-count"]
+    shown_here = [f"{each.rule} «{xml[each.span.start : each.span.end]}» {each.message}" for each in found]
+    assert [" | ".join((line, *each.notes)) for line, each in zip(shown_here, found, strict=True)] == [said]
 
 
 @pytest.mark.parametrize(("clause", "meant", "note"), CLAUSES)
