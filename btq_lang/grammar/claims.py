@@ -143,6 +143,8 @@ class ClaimParser(ConditionParser):
             if self.accept_word("every"):
                 every = True
                 bound = self.within()
+                if self.raws[self.index - 1].endswith("Hz") and self.whole_clause_slip():
+                    bound = None
             else:
                 bound = self.bound()
                 if self.kind == NEWLINE:

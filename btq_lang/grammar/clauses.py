@@ -106,6 +106,7 @@ class ClauseParser(ClaimParser):
     def scope(self) -> Scope:
         """Scope = ( "while" | "when" ) Cond"""
         word = self.take()
+        self.skip_sign(":")
         condition = self.cond()
         return Scope(word.start, self.last_end(), word, condition)
 
@@ -200,6 +201,7 @@ class ClauseParser(ClaimParser):
     def because(self) -> Because:
         """ "because" STRING"""
         start = self.take().start
+        self.skip_sign(":", "=")
         text = self.take() if self.kind == STRING else None
         if text is None:
             begin = self.here().start

@@ -334,6 +334,7 @@ CLAUSES: Final[list[tuple[str, tuple[str, ...], str]]] = [
     ("timeout 30 s", ("takes at most 30 s",), ""),
     ("deadline = 30 s", ("succeeds within 30 s",), ""),
     ("latency < 200 ms", ("takes less than 200 ms", "keeps latency < 200 ms"), _SIGNAL),
+    ("runs every 2 Hz", ("runs at least 2 per 1 s",), ""),
     ("runs at 10 Hz", ("runs at least 10 per 1 s",), ""),
     ("runs at most 2 Hz", ("runs at most 2 per 1 s",), ""),
     ("Go is called 3 times per minute", ("Go runs at least 3 per 1 min",), ""),
@@ -786,6 +787,14 @@ def test_a_clause_of_other_notations(clause: str, meant: tuple[str, ...], note: 
     complete = [each for each in meant if "<node>" not in each and "<signal>" not in each]
     assert [after(text, fix) for fix in found[0].fixes] == [text.replace(clause, each) for each in complete]
     assert [parse(text.replace(clause, each)).diagnostics for each in complete] == [()] * len(complete)
+
+
+@pytest.mark.parametrize(("clause", "mended"), [('because: "x"', 'because "x"'), ("while: node Go", "while node Go")])
+def test_a_sign_after_a_clause_word(clause: str, mended: str) -> None:
+    text = requirement("takes at most 3 s", clause)
+    (found,) = mistakes(text)
+    assert found.message == "unexpected `:`"
+    assert [(after(text, fix), fix.safe) for fix in found.fixes] == [(requirement("takes at most 3 s", mended), True)]
 
 
 def test_a_clause_until_an_event() -> None:
