@@ -39,7 +39,7 @@ def foreign_name(word: str) -> ForeignName | None:
 
 
 def statement(word: str) -> str:
-    """How a tree says what a word of programming languages does, written as there; empty if it is no such word."""
+    """How a tree says what a word of programming languages does, in the words of a message; empty for other words."""
     return _STATEMENTS.get(word, "")
 
 

@@ -66,13 +66,13 @@ def unknown_node(view: View) -> Iterator[Diagnostic]:
                 else "outside of trees, at the start of a line"
             )
             yield Diagnostic("unknown-node", name.span, f"an include goes {place}")
-        elif (said := statement(name.text)) and not name.quoted and not seen.node.category:
+        elif (how := statement(name.text)) and not name.quoted and not seen.node.category:
             label = seen.node.label
             removed = (
                 [Span(name.start, label.start)] if label is not None and label.kind == NAME and not view.is_xml else []
             )
             fixes = tuple([replace_fix(f"Remove `{name.raw}`", span, "") for span in removed])
-            yield Diagnostic("unknown-node", name.span, f"there is no `{name.text}`: {said}", fixes=fixes)
+            yield Diagnostic("unknown-node", name.span, f"there is no `{name.text}`: {how}", fixes=fixes)
         elif (category := _category_meant(view, seen)) is not None:
             fix = replace_fix(f"Replace `{name.text}` with `{category}`", name.span, category)
             message = f"btq reads `{name.text}` as a node here; did you mean `{category}`?"

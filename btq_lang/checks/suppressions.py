@@ -50,6 +50,7 @@ class Suppressions:
 
     def __init__(self, file: File) -> None:
         self._lines = file.lines
+        self._is_btq = file.origin is None
         self._everything: set[int] = set()
         self._silenced: dict[int, set[str]] = {}
         self.useless: list[Diagnostic] = []
@@ -75,7 +76,7 @@ class Suppressions:
     def _read(self, token: Token, line: int) -> None:
         match = re.search(_IGNORE, token.text)
         if match is None:
-            self.useless += _include(token)
+            self.useless += _include(token) if self._is_btq else ()
             return
         if match[1] and not match[3]:
             span = Span(*match.span()).shifted(token.start)

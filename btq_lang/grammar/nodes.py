@@ -355,7 +355,7 @@ class NodeParser(AttributeParser):
         notes = ("a script has numbers without units",) if has_unit else ()
         fixes = (write_fix(written, span),) if not has_unit and self.raws[0] != "unless" else ()
         example = written if fixes else f'{kind} (code = "…")'
-        self.complain(span, f"{what} is no node: write `{shown(example)}`", *fixes, notes=notes)
+        self.complain(span, f"{what} is not a node: write `{shown(example)}`", *fixes, notes=notes)
         return True
 
     def child_on_the_line(self, label: Word | None) -> bool:

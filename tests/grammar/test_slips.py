@@ -564,7 +564,7 @@ NO_NODES: Final[list[tuple[str, str, tuple[str, ...]]]] = [
     *(
         (
             line,
-            f"3:9 error syntax-error «{line}» a condition is no node: "
+            f"3:9 error syntax-error «{line}» a condition is not a node: "
             f"write `{shown(f'ScriptCondition (code = {quote(code)})')}`",
             (f"ScriptCondition (code = {quote(code)})",),
         )
@@ -580,13 +580,13 @@ NO_NODES: Final[list[tuple[str, str, tuple[str, ...]]]] = [
     ),
     (
         "battery > 20 %",
-        f'3:9 error syntax-error «battery > 20 %» a condition is no node: write `ScriptCondition (code = "…")` | '
+        f'3:9 error syntax-error «battery > 20 %» a condition is not a node: write `ScriptCondition (code = "…")` | '
         f"{UNITS_OF_SCRIPTS}",
         (),
     ),
     (
         "speed := 3",
-        '3:9 error syntax-error «speed := 3» an assignment is no node: write `Script (code = "speed := 3")`',
+        '3:9 error syntax-error «speed := 3» an assignment is not a node: write `Script (code = "speed := 3")`',
         ('Script (code = "speed := 3")',),
     ),
 ]
@@ -724,6 +724,11 @@ def test_an_include_in_a_comment(comment: str, path: str) -> None:
 def test_a_comment_about_an_include(comment: str) -> None:
     assert mistakes(f"{comment}\n{tree('Go')}") == []
     assert mistakes(tree(f'Say (text = "{comment[1:].replace(chr(34), chr(39))}")')) == []
+
+
+def test_a_comment_in_xml_is_no_include() -> None:
+    xml = "<root BTCPP_format='4'><!--#include \"x.xml\"--><BehaviorTree ID='T'><Go/></BehaviorTree></root>"
+    assert check(workspace_of({"main.xml": xml}), "main.xml") == ()
 
 
 @pytest.mark.parametrize(
