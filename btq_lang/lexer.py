@@ -401,11 +401,15 @@ class Lexer(StrangeCharacters):
             return self._read_comment(start)
         safe = in_value and text[end : end + 1] not in _QUOTES and self._takes_strings()
         fix = replace_fix("Put quotes around it", Span(start, end), quoted(text[start:end]), safe=safe)
-        fixes = (fix,) if in_value or sign[0] == "/*" else (fix, insert)
+        fixes: tuple[Fix, ...] = (fix,) if in_value or sign[0] == "/*" else (fix, insert)
+        notes: tuple[str, ...] = ()
+        if self.raws[:1] == ["apply"] and sign[0] == "/*":
+            notes = (f"the nodes below another are selected with `every <node> under {text[start : sign.start()]}`",)
+            fixes = ()
         if sign.end() == end:  # the word ends with the sign: probably a comment
             fixes = fixes[::-1]
         self.problems.append(
-            Diagnostic("misplaced-comment", Span(start, end), f"{message}; put this in quotes", fixes=fixes)
+            Diagnostic("misplaced-comment", Span(start, end), f"{message}; put this in quotes", (), notes, fixes)
         )
         return self._add(NAME, start, end)
 

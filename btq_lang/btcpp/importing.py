@@ -105,6 +105,8 @@ def import_xml(
         root = done.document.root
         if root.tag != "root":
             note = 'put the tree into <root BTCPP_format="4"><BehaviorTree ID="…"> … </BehaviorTree></root>'
+            if root.tag.casefold() == "root":
+                note = "the engine distinguishes capital letters: write <root> and </root>"
             message = f"the document element is <{root.tag}>, not <root>"
             problem = Diagnostic("xml-root", root.tag_span, message, notes=(note,))
             return Imported("", (), (*done.problems, problem), Places())

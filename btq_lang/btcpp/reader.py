@@ -220,6 +220,11 @@ class _Reader:
         note = f"write </{element.tag}>"
         if any(other.tag == closing for other in self.open):
             note = f"close <{element.tag}> first: write </{element.tag}>, or /> where it has no children"
+        elif closing.casefold() == element.tag.casefold():
+            from btq_lang.catalog.nodes import engine_element  # after a mistake alone
+
+            if (tag := engine_element(closing)) not in ("", element.tag):
+                note = f"the engine's element is <{tag}>: write <{tag}> where it opens, and </{tag}> here"
         related = (Related(Place(Span(element.start, element.end)), f"<{element.tag}> opens here"),)
         self.broken(span, f"expected </{element.tag}>, found </{closing}>", note, related)
 

@@ -38,6 +38,11 @@ def foreign_name(word: str) -> ForeignName | None:
     return ForeignName(_SPELLINGS[stem]) if known is None and stem in _SPELLINGS else known
 
 
+def statement(word: str) -> str:
+    """How a tree says what a word of programming languages does, in the words of a message; empty for other words."""
+    return _STATEMENTS.get(word, "")
+
+
 def is_of_leaves(word: str) -> bool:
     """Whether programs have leaves of that name too, so that a word after it may well be a label."""
     return _plain(word) in _OF_LEAVES
@@ -99,6 +104,14 @@ _NAMES: Final[dict[str, ForeignName]] = {
     **dict.fromkeys(("oneshot", "once"), ForeignName("RunOnce")),
 }
 
+_STATEMENTS: Final = {
+    **dict.fromkeys(
+        ("else", "elif", "otherwise", "catch", "except"),
+        "a Fallback `?` runs its next child after a failure, and the third child of an IfThenElse is its `else`",
+    ),
+    **dict.fromkeys(("then", "finally", "do", "begin"), "a Sequence `->` runs its children one after another"),
+    **dict.fromkeys(("end", "endif", "fi", "done", "pass"), "indentation shows where a node's children end"),
+}
 _OF_LEAVES: Final = frozenset(
     (
         *("wait", "select", "priority", "once", "succeed", "succeeder", "alwayssucceed", "returnsuccess"),

@@ -42,10 +42,15 @@ _NOTES: Final = {
         "its first child is the condition, such as a ScriptCondition",
     ),
 }
+NAME: Final = "a node's own name is its `name`"
 _ANYWHERE: Final = {
     **dict.fromkeys(("timeout", "time_limit", "max_time", "deadline"), "to limit its time, put a Timeout around it"),
     **dict.fromkeys(
         ("retries", "max_retries", "attempts"), "to try again after a failure, put a RetryUntilSuccessful around it"
     ),
-    **dict.fromkeys(("child", "children", "nodes"), "children go below their parent"),
+    **dict.fromkeys(
+        ("child", "children", "node", "nodes", "task"),
+        "children go below their parent, in XML between its tags: `<Inverter><Dock/></Inverter>`",
+    ),
+    **dict.fromkeys(("id", "label", "title", "name"), NAME),
 }

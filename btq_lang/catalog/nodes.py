@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.engine_nodes import ENGINE_NODES
+from btq_lang.catalog.kinds import CATEGORIES
 from btq_lang.catalog.kinds import NodeKind as NodeKind
 from btq_lang.catalog.kinds import PortKind as PortKind
 from btq_lang.catalog.versions import at_least
@@ -56,6 +57,11 @@ def spellings(kind: NodeKind) -> tuple[str, ...]:
     return (kind.tag, *kind.symbols, *kind.aliases)
 
 
+def engine_element(word: str) -> str:
+    """The element of the engine's XML whose name differs from a word in capital letters at most; empty if none has."""
+    return next((tag for tag in (*_ELEMENTS, *BUILTINS) if tag.casefold() == word.casefold()), "")
+
+
 def available(kind: NodeKind, version: str) -> bool:
     """Whether that version of the engine has the node."""
     return at_least(version, kind.since)
@@ -82,6 +88,7 @@ def of_version(port: PortKind, version: str) -> PortKind:
 
 # By XML tag.
 BUILTINS: Final[Mapping[str, NodeKind]] = {kind.tag: kind for kind in ENGINE_NODES}
+_ELEMENTS: Final = ("root", "BehaviorTree", "TreeNodesModel", "include", *CATEGORIES)
 
 _BY_SPELLING: Final[dict[str, tuple[NodeKind, ...]]] = {}
 for _kind in ENGINE_NODES:

@@ -10,7 +10,7 @@ from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.nodes import is_by_children
 from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks.kinds import OF_SUBTREE, declared_category, model_related
-from btq_lang.checks.one_parent import below, sequence_above
+from btq_lang.checks.one_parent import TOO_FAR, below, dedented, sequence_above
 from btq_lang.checks.own_lines import label_as_child
 from btq_lang.checks.ports import is_case
 from btq_lang.checks.view import View, misspelt_clause
@@ -65,6 +65,8 @@ def child_count(view: View) -> Iterator[Diagnostic]:
             related += (Related(Place(span), "first extra child"),)
         message = f"{_called(seen)} requires {_range(least, most)}, found {count or 'none'}"
         fixes = sequence_above(view, seen.node.children) if most == 1 < count else ()
+        if most is not None and count > most and (moved := dedented(view, seen, seen.node.children[most:])):
+            notes, fixes = (*notes, TOO_FAR), moved + fixes
         if count == 0 and seen.behavior is not None:
             as_child, fixes = label_as_child(view, seen)
             beside, below_it = ((), ()) if as_child else _beside(view, seen, most)

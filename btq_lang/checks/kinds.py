@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.catalog.foreign_names import ForeignName, foreign_name, is_of_leaves
+from btq_lang.catalog.foreign_names import ForeignName, foreign_name, is_of_leaves, statement
 from btq_lang.catalog.kinds import CHILDREN
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
@@ -18,13 +18,14 @@ from btq_lang.checks import calls, lookups
 from btq_lang.checks.engines import is_for_version_3, old_words
 from btq_lang.checks.lookups import Declaration
 from btq_lang.checks.missing_ids import missing_id
+from btq_lang.checks.one_parent import TOO_FAR, dedented
 from btq_lang.checks.own_lines import has_bare_label, label_as_child
 from btq_lang.checks.view import COUNTS, SECOND, View, has_names, is_first_tree, misspelt_clause, near_names
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
-from btq_lang.syntax.tokens import CATEGORIES
+from btq_lang.syntax.tokens import CATEGORIES, NAME
 from btq_lang.syntax.tree import Model, Tree, Word, quote, written
 from btq_lang.util.record import replace
 from btq_lang.util.spelling import did_you_mean, distance, without_digits
@@ -67,6 +68,13 @@ def unknown_node(view: View) -> Iterator[Diagnostic]:
                 else "outside of trees, at the start of a line"
             )
             yield Diagnostic("unknown-node", name.span, f"an include goes {place}")
+        elif (how := statement(name.text)) and not name.quoted and not seen.node.category:
+            label = seen.node.label
+            removed = (
+                [Span(name.start, label.start)] if label is not None and label.kind == NAME and not view.is_xml else []
+            )
+            fixes = tuple([replace_fix(f"Remove `{name.raw}`", span, "") for span in removed])
+            yield Diagnostic("unknown-node", name.span, f"there is no `{name.text}`: {how}", fixes=fixes)
         elif (category := _category_meant(view, seen)) is not None:
             fix = replace_fix(f"Replace `{name.text}` with `{category}`", name.span, category)
             message = f"btq reads `{name.text}` as a node here; did you mean `{category}`?"
@@ -375,6 +383,8 @@ def _unknown(view: View, seen: ResolvedNode, name: Word) -> Iterator[Diagnostic]
         others = "the other nodes of this file" if has_palette else "most nodes of this file"
         why = "it has children and is not built in" if is_parent else f"{others} have models"
         notes = (f"{why}; to declare {'it' if is_parent else 'this one'}, write {shortest}",)
+        if moved := dedented(view, seen, seen.node.children):
+            notes, fixes = (*notes, TOO_FAR), fixes + moved
     severity = None if likely or has_palette else Severity.HINT
     if has_palette and view.factory is not None and view.factory.nodes:
         severity = Severity.ERROR  # the program registers what `nodes` names, and refuses to load any other

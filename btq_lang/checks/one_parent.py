@@ -1,15 +1,18 @@
-"""The fixes that put several nodes below one parent: a new Sequence, or the node before them that lacks children."""
+"""The fixes that give nodes another parent: a new Sequence, the node before them, or the parent of theirs."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
+from btq_lang.catalog.kinds import CHILDREN
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Fix, Place
 from btq_lang.lexer import tokens
 from btq_lang.syntax.scan import line_start
 from btq_lang.syntax.tree import Node, Verbatim
 from btq_lang.util.text import LINE_END, Span
+from btq_lang.workspace.resolved import ResolvedNode
 
 
 def sequence_above(view: View, children: Sequence[Node | Verbatim]) -> tuple[Fix, ...]:
@@ -26,6 +29,23 @@ def below(view: View, parent: Node, siblings: Sequence[Node | Verbatim]) -> tupl
     _, step, starts = _lines(view, siblings)
     title = f"Indent {'it' if len(siblings) == 1 else 'them'} below `{parent.head.text}`"
     return (Fix(title, tuple(_indented(starts, step))),) if starts else ()
+
+
+def dedented(view: View, seen: ResolvedNode, children: Sequence[Node | Verbatim]) -> tuple[Fix, ...]:
+    """The fix that dedents some children of a node to its level; none if its parent takes no more."""
+    parent = seen.parent
+    category = parent.stated_category if parent is not None else None
+    if parent is None or (
+        category and (parent.behavior.children if parent.behavior else CHILDREN[category])[1] is not None
+    ):
+        return ()
+    margin, _, starts = _lines(view, children)
+    outer = view.text[line_start(view.text, 0, seen.node.start) : seen.node.start]
+    if not margin.startswith(outer) or not all(view.text.startswith(margin, start) for start in starts):
+        return ()
+    changes = [Change(Place(Span(start + len(outer), start + len(margin))), "") for start in starts]
+    title = f"Dedent {'it' if len(children) == 1 else 'them'} to the level of `{seen.node.head.text}`"
+    return (Fix(title, tuple(changes)),) if changes else ()
 
 
 def _indented(starts: Sequence[int], step: str) -> list[Change]:
@@ -50,3 +70,6 @@ def _end(child: Node | Verbatim) -> int:
     """Where a node and all that is below it ends."""
     below = [each for node in child.walk() for each in (node, *node.children)] if isinstance(child, Node) else []
     return max(each.end for each in (child, *below))
+
+
+TOO_FAR: Final = "what is below it may be indented too far"

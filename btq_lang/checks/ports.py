@@ -8,7 +8,7 @@ from functools import cache
 from itertools import chain
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
-from btq_lang.catalog.foreign_ports import of_other_engines
+from btq_lang.catalog.foreign_ports import NAME, of_other_engines
 from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name
@@ -451,8 +451,8 @@ def _forbidden_id(seen: ResolvedNode) -> Iterator[Diagnostic]:
         if pair.key.text == "ID":
             message = f"the engine refuses the attribute `ID` on {seen.shown_kind}"
             fix = replace_fix("Replace `ID` with `name`", pair.key.span, "name")
-            fixes = () if node.name is not None else (fix,)
-            yield Diagnostic("unknown-port", pair.key.span, message, fixes=fixes)
+            fixes, notes = ((), ()) if node.name is not None else ((fix,), (NAME,))
+            yield Diagnostic("unknown-port", pair.key.span, message, notes=notes, fixes=fixes)
 
 
 def _remaps_all(seen: ResolvedNode) -> bool:

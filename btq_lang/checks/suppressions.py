@@ -11,9 +11,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from btq_lang.diagnostics.model import Diagnostic, replace_fix
-from btq_lang.diagnostics.rules import RULES, UNREADABLE
+from btq_lang.diagnostics.model import Diagnostic, replace_fix, write_fix
+from btq_lang.diagnostics.rules import RULES, UNREADABLE, Severity
 from btq_lang.syntax.tokens import COMMENT, Token
+from btq_lang.syntax.tree import quote
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 from btq_lang.workspace.config import unknown_rule
@@ -44,11 +45,12 @@ class Suppressions:
     """The comments of a file that silence rules.
 
     Attributes:
-        useless: what is wrong with them; spans count from the start of the file.
+        useless: what is wrong with comments, these and others; spans count from the start of the file.
     """
 
     def __init__(self, file: File) -> None:
         self._lines = file.lines
+        self._is_btq = file.origin is None
         self._everything: set[int] = set()
         self._silenced: dict[int, set[str]] = {}
         self.useless: list[Diagnostic] = []
@@ -74,6 +76,7 @@ class Suppressions:
     def _read(self, token: Token, line: int) -> None:
         match = re.search(_IGNORE, token.text)
         if match is None:
+            self.useless += _include(token) if self._is_btq else ()
             return
         if match[1] and not match[3]:
             span = Span(*match.span()).shifted(token.start)
@@ -85,6 +88,16 @@ class Suppressions:
             for name in re.finditer(r"[^\s,](?:[^,]*[^\s,])?", match[2]):
                 self._silenced.setdefault(line, set()).add(name[0])
                 self.useless += _useless(name[0], Span(*name.span()).shifted(token.start + match.start(2)))
+
+
+def _include(token: Token) -> Iterator[Diagnostic]:
+    """`#include "stations.btq"`, as in C++."""
+    meant = re.fullmatch(r"""#(?:include|import)[ \t]*["'<]?([^"'<>\s]+\.(?:btq|xml))["'>]?[ \t]*;?""", token.text)
+    if meant is not None:
+        span = Span(token.start, token.end)
+        written = f"include {quote(meant[1])}"
+        message = f"this is a comment; did you mean `{written}`?"
+        yield Diagnostic("missing-include", span, message, fixes=(write_fix(written, span),), severity=Severity.HINT)
 
 
 def _useless(name: str, span: Span) -> Iterator[Diagnostic]:

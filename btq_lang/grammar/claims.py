@@ -5,14 +5,17 @@ Each function is a production of docs/grammar.md and named after it; its docstri
 
 from __future__ import annotations
 
+import re
 from typing import Final
 
 from btq_lang.catalog.units import dimension_name, parse_unit
 from btq_lang.catalog.verbs import VERBS, words
 from btq_lang.diagnostics.model import Fix, replace_fix, write_fix
-from btq_lang.grammar.conditions import BOUNDS, COMPARISONS, HEADS, RELATIONS, ConditionParser
+from btq_lang.grammar.clause_slips import clause_slip
+from btq_lang.grammar.conditions import COMPARISONS, HEADS, RELATIONS, ConditionParser
 from btq_lang.grammar.cursor import shown
 from btq_lang.grammar.prose import MODALS, clause_meant, state_meant
+from btq_lang.lexer import Lexer
 from btq_lang.syntax.scan import number_end
 from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
 from btq_lang.syntax.tree import (
@@ -42,7 +45,52 @@ MAX_CASES: Final = 100  # in one value: each case of a table may be another tabl
 
 
 class ClaimParser(ConditionParser):
-    """A cursor that can read claims."""
+    """A cursor that can read claims.
+
+    Attributes:
+        clause_starts: where the last two clauses begin, in the file.
+        title_at: where the title of the last requirement goes, in the file; -1 if it has one.
+    """
+
+    def __init__(self, lexer: Lexer) -> None:
+        super().__init__(lexer)
+        self.clause_starts = -1, -1
+        self.title_at = -1
+
+    # ---- mistakes ----
+
+    def expected(self, what: str, notes: tuple[str, ...] = (), fixes: tuple[Fix, ...] = ()) -> None:
+        """Report that something else was expected, or a clause in the words of other notations."""
+        if self.whole_clause_slip():
+            self.recover()
+        else:
+            super().expected(what, notes, fixes)
+
+    def misspelt(self, span: Span, word: str, likely: str) -> None:
+        """Report a misspelt word, or a clause in the words of other notations."""
+        if not self.whole_clause_slip():
+            super().misspelt(span, word, likely)
+
+    def whole_clause_slip(self) -> bool:
+        """Report that the clause is written otherwise, if it is known how."""
+        last = len(self.kinds) - 2
+        for start in self.clause_starts:  # `succeeds` may be read as a clause before `in 30 s`
+            if start < self.starts[0] or last < 0:
+                continue  # of another line
+            meant = clause_slip(self.text[start : self.starts[last] + len(self.raws[last])])
+            if meant is not None and start + meant.length > self.clause_starts[1]:
+                self.written_instead(Span(start, start + meant.length), meant.clauses, meant.note)
+                return True
+        return False
+
+    def written_instead(self, span: Span, clauses: tuple[str, ...], note: str) -> None:
+        """Report what is written instead of a clause, if it is known; otherwise only the note."""
+        if not clauses:
+            self.complain(span, note)
+            return
+        fixes = [write_fix(clause, span) for clause in clauses if not _OPEN.search(clause)]
+        message = " or ".join(f"`{shown(clause)}`" for clause in clauses)
+        self.complain(span, f"this clause is written {message}", *fixes, notes=(note,) if note else ())
 
     # ---- claims ----
 
@@ -95,6 +143,8 @@ class ClaimParser(ConditionParser):
             if self.accept_word("every"):
                 every = True
                 bound = self.within()
+                if self.raws[self.index - 1].endswith("Hz") and self.whole_clause_slip():
+                    bound = None
             else:
                 bound = self.bound()
                 if self.kind == NEWLINE:
@@ -131,9 +181,6 @@ class ClaimParser(ConditionParser):
             self.recover()
         elif isinstance(subject, Path) and self.kind == NAME and self.raw in NO_VERBS:
             self.expected(_A_VERB, (NO_VERBS[self.raw],))
-        elif isinstance(subject, Path) and self.at("."):
-            self.complain(self.here(), "the names of a path are separated by `/`", write_fix("/", self.here()))
-            self.recover()
         elif isinstance(subject, Path) and (self.at_word("and") or self.at(",")):
             note = "a clause applies to one node; write it for each, or `sum of A, B` for the time of both"
             self.expected(_A_VERB, (note,))
@@ -141,12 +188,11 @@ class ClaimParser(ConditionParser):
             self.expected(f"a verb before `at {self.raw}`", (MEANT["at"],), fixes)
         elif first is not None and first.kind == NAME and (noted := MEANT.get(first.raw) or NO_VERBS.get(first.raw)):
             self.expected(f"a verb after `{first.raw}` (takes, succeeds, needs, keeps, …)", (noted,))
+        elif first is not None and self.kind == OPERATOR and self.raw in COMPARISONS and self.whole_clause_slip():
+            self.recover()
         elif first is not None and self.kind == OPERATOR and self.raw in COMPARISONS:
             at = first.start + self.base
             fix = replace_fix("Put `keeps` before it", Span(at, at), "keeps ")
-            if first.raw in ("time", "duration") and (bound := BOUNDS.get((self.raw,))):
-                written = f"takes {' '.join(bound)}"
-                fix = write_fix(written, Span(at, self.here().end))
             message = "expected a verb before the condition: `keeps`, `never`, `needs` or `leaves`"
             notes = ("`keeps` holds while the node runs, `needs` when it starts, `leaves` when it has succeeded",)
             self.complain(Span(at, self.here().end), message, fix, notes=notes)
@@ -246,6 +292,8 @@ class ClaimParser(ConditionParser):
         names = self.raws[self.index : index]
         is_path = isinstance(path, Path) and path.names[0].raw not in MEANT and NO_VERBS.keys().isdisjoint(names)
         if not names or not is_path or _NO_NAMES.intersection(names) or self.raws[index] not in follow:
+            return False
+        if self.whole_clause_slip():
             return False
         start = path.span.start + self.base if isinstance(path, Path) else 0
         end = self.starts[index - 1] + len(self.raws[index - 1])
@@ -468,6 +516,7 @@ MEANT: Final = {  # by the word that is read as a node before a verb
     ),
 }
 _NO_NAMES: Final = HEADS | {"and", "or", "not", "if", "else", "is", "to", "of", "by", "per", "at", "within", "after"}
+_OPEN: Final = re.compile("<[a-z]+>")  # what is left to choose in a clause
 _A_CHOICE: Final = "60 s if battery_low else 30 s"
 _A_VERB: Final = "a verb: takes, succeeds, needs, keeps, …"
 _NEVER_FAILS: Final = (

@@ -8,10 +8,10 @@ from __future__ import annotations
 from typing import Final
 
 from btq_lang.catalog.measured import measured
-from btq_lang.diagnostics.model import Fix, replace_fix, write_fix
+from btq_lang.diagnostics.model import Change, Fix, Place, replace_fix, write_fix
 from btq_lang.grammar.claims import QUALITY_IN_HEAD, VERB_WORDS, ClaimParser, is_time
 from btq_lang.grammar.conditions import HEADS, SUBJECT_HEADS
-from btq_lang.syntax.scan import line_end
+from btq_lang.syntax.scan import line_end, line_start
 from btq_lang.syntax.suggestions import unknown_unit
 from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPERATOR, QUANTITY, STRING
 from btq_lang.syntax.tree import Because, Clause, Confidence, Goal, How, Odds, OnViolation, Scope, Window, Word, quote
@@ -36,6 +36,7 @@ class ClauseParser(ClaimParser):
                 break
             if self.group and self.is_operator(following, "="):
                 break
+            self.clause_starts = self.clause_starts[1], self.starts[self.index]
             clause = self.clause()
             if clause is None:
                 return tuple(found)
@@ -93,6 +94,10 @@ class ClauseParser(ClaimParser):
         fixes: tuple[Fix, ...] = ()
         if nearest == _BECAUSE and self.kinds[value] == STRING:
             fixes = (replace_fix("Write `because`", Span(at.start, self.starts[value]), "because "),)
+        elif nearest == _TITLE and self.title_at >= 0 and self.index == 0 and self.kinds[value : value + 2] == _STRING:
+            moved = Change(Place(Span(self.title_at, self.title_at)), f" {self.raws[value]}")
+            line = Span(line_start(self.text, 0, at.start), self.lexer.position)
+            fixes = (Fix("Move it after the name", (moved, Change(Place(line), ""))),)
         elif nearest == _COMMENT and self.index == 0:
             fixes = (replace_fix("Write it as a comment", Span(at.start, at.start), "# "),)
         self.complain(at, f"`{self.raw}` is not in btq; nearest is {nearest}", *fixes)
@@ -101,6 +106,7 @@ class ClauseParser(ClaimParser):
     def scope(self) -> Scope:
         """Scope = ( "while" | "when" ) Cond"""
         word = self.take()
+        self.skip_sign(":")
         condition = self.cond()
         return Scope(word.start, self.last_end(), word, condition)
 
@@ -114,8 +120,9 @@ class ClauseParser(ClaimParser):
         value: Word | None = None
         experiments = None
         if self.kind == QUANTITY:
-            message = f"a probability is written `in at least {self.raw}`"
-            self.complain(self.here(), message, self.put_before("at least"))
+            if not self.whole_clause_slip():
+                message = f"a probability is written `in at least {self.raw}`"
+                self.complain(self.here(), message, self.put_before("at least"))
             value = self.take()
         elif self.kind == NUMBER:
             value = self.percentage("at least 98 %", "at least ")
@@ -194,6 +201,7 @@ class ClauseParser(ClaimParser):
     def because(self) -> Because:
         """ "because" STRING"""
         start = self.take().start
+        self.skip_sign(":", "=")
         text = self.take() if self.kind == STRING else None
         if text is None:
             begin = self.here().start
@@ -284,6 +292,7 @@ class ClauseParser(ClaimParser):
         return ends and not is_misspelt and measured(self.raws[: self.index]) == "s"
 
 
+_STRING: Final = [STRING, NEWLINE]
 _ON_VIOLATION: Final = (
     "`on violation` is followed by fail, halt, warn or log; to try again, put a Retry around the node"
 )
@@ -296,11 +305,14 @@ _OTHER_WORDS: Final = {  # for actions and methods
 _A_CLAUSE: Final = "a clause: takes, keeps, in at least, on violation, …"
 _BECAUSE: Final = '`because "…"`'
 _COMMENT: Final = "a comment `# …`"
+_TITLE: Final = 'the title in quotes after the name: `QualityReq fast "in time"`'
 # Words with which other notations begin a part of a requirement, each with what is nearest to it.
 _NOT_IN_BTQ: Final = {
     **dict.fromkeys(("rationale", "reason", "justification", "motivation", "why"), _BECAUSE),
+    **dict.fromkeys(("description", "desc", "title", "text", "summary", "statement", "label"), _TITLE),
     **dict.fromkeys(
-        ("status", "state", "owner", "author", "source", "stakeholder", "version", "date", "note"), _COMMENT
+        ("status", "state", "owner", "author", "source", "stakeholder", "version", "date", "note", "comment", "doc"),
+        _COMMENT,
     ),
     **dict.fromkeys(
         ("priority", "severity", "criticality", "importance", "risk"), "`on violation` with what happens then"

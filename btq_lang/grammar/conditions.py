@@ -249,12 +249,23 @@ class ConditionParser(Cursor):
         if first is None:
             return None
         names = [first]
-        while self.accept("/"):
+        while self.accept("/") or (self.kind != NAME and self.other_separator()):
             name = self.name(what)
             if name is None:
                 break
             names.append(name)
         return Path(tuple(names))
+
+    def other_separator(self) -> bool:
+        """Report `Guide.Home`, `Guide::Home` and `Guide->Home`, and read the sign as `/`."""
+        following = self.index + 1
+        if self.raw not in _SEPARATORS or self.kinds[following] not in (NAME, STRING):
+            return False
+        if not (self.adjacent(self.index) and self.adjacent(following)):
+            return False
+        self.complain(self.here(), "the names of a path are separated by `/`", write_fix("/", self.here()))
+        self.advance()
+        return True
 
     def close_group(self, what: str) -> None:
         """Close a group, whatever precedes its `)`."""
@@ -266,6 +277,7 @@ class ConditionParser(Cursor):
         self.advance()
 
 
+_SEPARATORS: Final = frozenset((".", "::", "->", ":", "\\"))
 _INSTEAD: Final = {"or": "||", "and": "&&"}  # as other languages write them
 _ENDS_OPERAND: Final = HEADS | {"and", "or", "if", "else"}
 _FOLLOWED_BY: Final = {

@@ -13,6 +13,7 @@ from typing import Final, TypeVar
 
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix, write_fix
 from btq_lang.lexer import Lexer
+from btq_lang.syntax.composed_times import composed_time
 from btq_lang.syntax.scan import line_end, line_start, number_end, unit_run
 from btq_lang.syntax.suggestions import close_string, unknown_unit
 from btq_lang.syntax.tokens import BRACED, CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
@@ -104,8 +105,6 @@ class Cursor:
             notes = (QUOTES,)
         if not notes and self.at(".") and self.kinds[self.index + 1] == NAME and self.adjacent(self.index + 1):
             notes = ("a name that contains a point goes in quotes",)
-        if not notes and self.kind == QUANTITY and self.index and self.kinds[self.index - 1] == QUANTITY:
-            notes = ("a quantity has one number and one unit: `1.5 h`, `90 min`",)
         self.expected("the end of the line", notes, fixes)
 
     def skip_sign(self, *signs: str) -> None:
@@ -290,7 +289,13 @@ class Cursor:
 
     def expected(self, what: str, notes: tuple[str, ...] = (), fixes: tuple[Fix, ...] = ()) -> None:
         """Report that something else was expected, and skip to the end of the attribute in brackets, or of the line."""
-        cause = self.lost_quote() or self.wrong_unit() or self.decimal_comma() or self.leading_point()
+        cause = (
+            self.lost_quote()
+            or self.time_of_parts()
+            or self.wrong_unit()
+            or self.decimal_comma()
+            or self.leading_point()
+        )
         if cause is not None:
             self.report(cause)
         else:
@@ -332,6 +337,11 @@ class Cursor:
             end = unit_run(self.text, unit)
             return unknown_unit(self.text, unit, end) if end > at else None
         return None
+
+    def time_of_parts(self) -> Diagnostic | None:
+        """A diagnostic for a time of several numbers, of which one has been read: `3:30 min`, `1 h 30 min`."""
+        is_after = self.index > 0 and self.kinds[self.index - 1] in (NUMBER, QUANTITY)
+        return composed_time(self.text, self.starts[self.index - 1]) if is_after else None
 
     def decimal_comma(self) -> Diagnostic | None:
         """A diagnostic for a comma in a number: `0,5 m/s`."""

@@ -96,10 +96,8 @@ class ItemParser(NodeParser):
         category = self.take()
         self.skip_glued_colon()
         name = self.name("the node's ID")
-        if self.kind == OPEN and self.kinds[self.index + 1] in (NAME, CLOSE) and self.is_operator(self.index + 2, ":"):
-            note = "a port goes on a line of its own below the node, indented: `input name : type`"
-            self.complain(self.here(), "ports do not go in brackets", notes=(note,))
-            self.go_to(len(self.kinds) - 1)
+        if self.at_ports():
+            self.ports_in_brackets("node")
         attributes = self.pairs()
         text = self.take() if self.kind == STRING else None
         end = self.end_line()
@@ -195,7 +193,7 @@ class ItemParser(NodeParser):
         start = self.take().start
         uses = self.listed(self.applied)
         targets = self.listed(self.selector) if self.expect_word("to", ("on", "for", "at")) else ()
-        exceptions = self.listed(self.selector) if self.accept_word("except") else ()
+        exceptions = self.listed(self.selector) if self.accept_selection("except", _EXCEPT) else ()
         return Apply(start, self.end_line(), uses, targets, exceptions)
 
     def applied(self) -> ReqRef | None:
@@ -206,9 +204,12 @@ class ItemParser(NodeParser):
     def selector(self) -> Selector | None:
         """ "every" Name [ "under" Path ] | "every" "node" "tagged" NAME | Path"""
         start = self.start()
+        if self.selects_all():
+            return None
         if not (self.accept_word("every") or self.every_meant()):
             path = self.path("a node, or `every` and a node")
-            self.blank_in_path(path, _END_SELECTORS)
+            if not self.is_selection(_EXCEPT):
+                self.blank_in_path(path, _END_SELECTORS)
             return Selector(path.span.start, path.span.end, path=path) if path else None
         if self.at_word("node") and self.is_word(self.index + 1, "tagged"):
             self.advance()
@@ -221,8 +222,41 @@ class ItemParser(NodeParser):
             self.advance()
             return Selector(start, self.last_end(), tag=self.name("a tag"))
         every = self.name("a node's ID or kind")
-        under = self.path("a tree or node") if self.accept_word("under") else None
+        under = self.path("a tree or node") if self.accept_selection("under", _UNDER) else None
         return Selector(start, self.last_end(), every=every, path=under)
+
+    def accept_selection(self, word: str, others: tuple[tuple[str, ...], ...]) -> bool:
+        """Skip a word between selectors, or report and skip others for it."""
+        length = self.is_selection(others)
+        if not length:
+            return self.accept_word(word)
+        last = self.index + length - 1
+        span = Span(self.here().start, self.starts[last] + len(self.raws[last]))
+        written = self.text[span.start : span.end]
+        fix = replace_fix(f"Replace `{written}` with `{word}`", span, word)
+        self.complain(span, f"expected `{word}`, found `{written}`", fix)
+        self.go_to(last + 1)
+        return True
+
+    def is_selection(self, others: tuple[tuple[str, ...], ...]) -> int:
+        """How many words from here are one of others before another selector."""
+        if self.kind != NAME:
+            return 0
+        lengths = [len(words) for words in others if tuple(self.raws[self.index : self.index + len(words)]) == words]
+        length = max(lengths, default=0)
+        return length if self.kinds[self.index + length] in (NAME, STRING) else 0
+
+    def selects_all(self) -> bool:
+        """Report `apply r to *` and `apply r to every node`."""
+        is_every = self.kind == NAME and self.raw in ("every", "all", "each", "any")
+        is_further = is_every and self.raws[self.index + 1] in ("*", "nodes")
+        last = self.index + is_further
+        if not (is_further or self.at("*") or self.at_word("every")) or self.raws[last + 1] not in _END_SELECTORS:
+            return False
+        span = Span(self.here().start, self.starts[last] + len(self.raws[last]))
+        self.complain(span, "no selector names all nodes", notes=(SELECTORS,))
+        self.go_to(last + 1)
+        return True
 
     def tree(self, level: int) -> Tree:
         """ "BehaviorTree" [ [ "ID" "=" ] Name ] [ Attributes ] NL [ INDENT { Port } { ClauseLine } { Node } DEDENT ]"""
@@ -239,6 +273,8 @@ class ItemParser(NodeParser):
         else:
             self.skip_glued_colon()
             name = self.take() if self.kind == NAME or self.kind == STRING else None
+        if self.kind == OPEN and self.at_ports():
+            self.ports_in_brackets("tree")
         attributes = self.pairs()
         end = self.end_line()
         ports, clauses, children = self.tree_block(level)
@@ -332,4 +368,12 @@ _NOT_FROM: Final = frozenset(("in", "is", "of", "at", "reads", "source"))
 _BEHAVIOURS: Final = frozenset(("level", "counter", "gauge"))
 _SIGNAL_WORDS: Final = ("from", *sorted(_BEHAVIOURS), "fresh", "initially")
 _SIGNAL_ORDER: Final = "the order is: signal x : % from {x} level fresh within 5 s initially 100 %"
+SELECTORS: Final = (
+    "write `every` and an ID or kind, `every MoveBase`; `every node tagged …`; or list the nodes, with `,` between them"
+)
+_EXCEPT: Final = (
+    *(("but",), ("without",), ("excluding",), ("excepting",), ("unless",), ("not",), ("minus",), ("but", "not")),
+    *(("other", "than"), ("except", "for"), ("apart", "from"), ("and", "not")),
+)
+_UNDER: Final = tuple((word,) for word in ("in", "of", "inside", "within", "below", "from", "at", "on"))
 _END_SELECTORS: Final = frozenset((",", "except", "\n", "\r\n", "\r", ""))

@@ -11,7 +11,7 @@ from typing import Final
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix, write_fix
 from btq_lang.grammar.attributes import AttributeParser, meant_clause
 from btq_lang.grammar.claims import VERB_WORDS
-from btq_lang.grammar.conditions import HEADS
+from btq_lang.grammar.conditions import COMPARISONS, HEADS
 from btq_lang.grammar.cursor import VALUES, shown
 from btq_lang.lexer import Lexer
 from btq_lang.syntax.scan import line_end, line_start
@@ -151,7 +151,7 @@ class NodeParser(AttributeParser):
             return None
         elif self.kind == NAME or self.kind == SYMBOL or self.kind == STRING:
             kind = self.take()
-            if self.kind == OPERATOR:
+            if self.kind == OPERATOR and kind.raw not in _STATEMENTS:
                 self.skip_last_sign()
         else:
             self.no_node()
@@ -187,6 +187,10 @@ class NodeParser(AttributeParser):
             return
         if self.symbol_meant():
             return
+        if self.at("*") and self.kinds[following] == SYMBOL and self.adjacent(following):
+            self.with_memory(following, self.index, following)
+            self.advance()
+            return
         fix = replace_fix(f"Remove `{self.raw}`", Span(self.here().start, self.starts[following]), "", safe=True)
         note = "a node needs no dash; its children go below it, indented"
         self.complain(self.here(), f"unexpected `{self.raw}` before a node", fix, notes=(note,))
@@ -216,7 +220,7 @@ class NodeParser(AttributeParser):
         elif self.at("<"):
             self.found_xml()
             self.go_to(len(self.kinds) - 1)
-        else:
+        elif not self.condition_as_node():
             is_negation = self.raw == "!" and self.kinds[self.index + 1] in (NAME, STRING)
             notes = ("to negate a node, put an `Inverter` above it, and indent the node",) if is_negation else ()
             fixes = self.inverter() if is_negation else self.symbol_meant()
@@ -283,6 +287,10 @@ class NodeParser(AttributeParser):
             span = Span(kind.start + self.base, self.here().end)
             symbol = kind.raw.upper() + self.raw
             self.complain(span, f"the symbol is written `{symbol}`", write_fix(symbol, span, safe=True))
+        elif self.at("*") and kind is not None and kind.kind == SYMBOL and self.index == 1 and self.adjacent(1):
+            self.with_memory(0, 0, 1)
+        elif self.kind == OPERATOR and self.condition_as_node():
+            pass
         elif self.kind == NAME and (meant := meant_clause(self.raw)):
             self.attaches_nothing(self.here(), meant)
         elif self.at(",") and kind is not None and kind.kind == NAME and (meant := meant_clause(kind.raw)):
@@ -310,6 +318,45 @@ class NodeParser(AttributeParser):
         else:
             return
         self.go_to(len(self.kinds) - 1)
+
+    def with_memory(self, symbol: int, first: int, last: int) -> None:
+        """Report `->*` or `*->`: the tokens from `first` to `last`, of which one is the symbol."""
+        plain = self.raws[symbol].replace("→", "->").lstrip("M")
+        span = Span(self.starts[first], self.starts[last] + len(self.raws[last]))
+        if f"M{plain}" in SYMBOLS:
+            fixes = write_fix(f"M{plain}", span), write_fix(plain, span)
+            self.complain(span, f"the symbol with memory is written `M{plain}`", *fixes, notes=(_WITH_MEMORY,))
+        else:
+            notes = (_MEMORY,) if plain == "?" else ()
+            self.complain(span, f"the symbol is written `{plain}`", write_fix(plain, span), notes=notes)
+
+    def condition_as_node(self) -> bool:
+        """Report `battery > 20` and `speed := 3`, which are a ScriptCondition and a Script."""
+        first = 1 if self.raws[0] in ("if", "Condition", "ScriptCondition", "Script", "when", "unless") else 0
+        signs = [index for index in range(first, len(self.raws)) if self.kinds[index] == OPERATOR]
+        signs = [
+            index for index in signs if self.raws[index] in COMPARISONS or self.raws[index : index + 2] == [":", "="]
+        ]
+        last = len(self.kinds) - 2
+        if not signs or SYMBOL in self.kinds:
+            return False
+        right = signs[0] + (2 if self.raws[signs[0]] == ":" else 1)
+        if signs[0] == first or self.kinds[signs[0] - 1] not in VALUES or self.kinds[right] not in VALUES:
+            return False
+        begin, end = self.starts[first], self.starts[last] + len(self.raws[last])
+        span = Span(self.starts[0], end)
+        kind = "Script" if self.raws[signs[0]] == ":" else "ScriptCondition"
+        code = _ENTRY.sub(r"\1", self.text[begin:end])
+        for word, sign in ((" and ", " && "), (" or ", " || ")):
+            code = code.replace(word, sign)
+        has_unit = QUANTITY in self.kinds[first:]
+        written = f"{kind} (code = {quote(code)})"
+        what = "an assignment" if kind == "Script" else "a condition"
+        notes = ("a script has numbers without units",) if has_unit else ()
+        fixes = (write_fix(written, span),) if not has_unit and self.raws[0] != "unless" else ()
+        example = written if fixes else f'{kind} (code = "…")'
+        self.complain(span, f"{what} is not a node: write `{shown(example)}`", *fixes, notes=notes)
+        return True
 
     def child_on_the_line(self, label: Word | None) -> bool:
         """Report `Inverter Condition Dark`, whose child lacks a line of its own; False if there is none."""
@@ -492,6 +539,39 @@ class NodeParser(AttributeParser):
         notes = ("write a port's type after `:`, and its text in quotes",)
         return Port(direction.start, self.end_line(notes), direction, name, type_, default, attributes, text)
 
+    def at_ports(self) -> bool:
+        """Whether brackets have ports in them, as the parameters of a function: `(place, speed : double)`."""
+        first = self.index + 1
+        if self.kind != OPEN or self.kinds[first] != NAME or self.raws[first] in _NO_PORTS or "=" in self.raws[first:]:
+            return False
+        return self.kinds[first + 1] in (NAME, CLOSE) or self.raws[first + 1] in (":", ",", "::")
+
+    def ports_in_brackets(self, owner: str) -> None:
+        """Report ports in the brackets of a tree or a model; the fix writes each on its line."""
+        at = self.here()
+        note = f"a port goes on a line of its own below the {owner}, indented: `input name : type`"
+        closing = self.kinds.index(CLOSE, self.index) if CLOSE in self.kinds[self.index :] else -1
+        fixes: tuple[Fix, ...] = ()
+        if closing > 0 and self.raws[closing] and self.kinds[closing + 1] == NEWLINE:
+            inside = self.text[at.end : self.starts[closing]]
+            ports = [_BRACKETED_PORT.fullmatch(part.strip()) for part in inside.split(",")]
+            line = line_end(self.text, self.starts[closing])
+            below = _NEXT_MARGIN.match(self.text, line)
+            step = below[1] if below else "    "
+            gone = Change(Place(Span(self.last_end() + self.base, self.starts[closing] + 1)), "")
+            lines = [
+                f"\n{step}{port['direction'] or 'input'} {port['name']}{f' : {type_}' if type_ else ''}"
+                for port in ports
+                if port is not None
+                for type_ in [port["type"] or port["before"]]
+            ]
+            if len(lines) == len(ports):
+                fixes = (
+                    Fix("Put them on lines of their own", (gone, Change(Place(Span(line, line)), "".join(lines)))),
+                )
+        self.complain(at, "ports do not go in brackets", *fixes, notes=(note,))
+        self.go_to(len(self.kinds) - 1)
+
     def type_(self) -> Word | None:
         """Type = Name { "::" Name }; as one word"""
         found = self.name("the port's type")
@@ -554,7 +634,18 @@ _STATEMENTS: Final = {
 _ONLY_IF: Final = (
     "a node that runs only if something holds goes below a Precondition, or after a Condition in a Sequence `->`"
 )
+_WITH_MEMORY: Final = (
+    "`->` goes on with the child that is running; `M->` goes on with the one that failed too, when it is ticked again"
+)
+_MEMORY: Final = "`?` goes on with the child that is running; `R?` begins with the first one at every tick"
+_ENTRY: Final = re.compile(r"\{(@?[^\W\d]\w*)\}")
 _ARROW: Final = re.compile(r"[-=~]+ ?>")
+_BRACKETED_PORT: Final = re.compile(
+    r"(?:(?P<direction>input|output|inout)\s+)?(?:(?P<before>(?:\w+::)*\w+)\s+)?(?P<name>[^\W\d]\w*)"
+    r"(?:\s*:\s*(?P<type>(?:\w+::)*\w+))?"
+)
+_NO_PORTS: Final = NODE_CLAUSES | {"parameters", "QualityReq"}
+_NEXT_MARGIN: Final = re.compile(r"(?:[ \t]*\r?\n)+([ \t]+)")
 _BEFORE_TYPES: Final = frozenset(("const", "unsigned", "signed", "long", "short"))
 MAX_DEPTH: Final = 256  # levels below a BehaviorTree; the engine's limit (4.9 and later)
 OF_ITS_OWN: Final = "move a part of them into a BehaviorTree of its own and call it with SubTree"

@@ -65,7 +65,7 @@ _STATES: Final = frozenset(("be", "stay", "stays", "remain", "remains", "is", "k
 _CLAUSES: Final[dict[tuple[str, ...], str]] = {
     **{
         (f"{verb}{ending}", preposition): "succeeds within"
-        for verb in ("finish", "complete", "terminate", "arrive", "return", "respond")
+        for verb in ("arrive", "respond")
         for ending in ("", "s", "es", "d", "ed")
         for preposition in ("within", "in")
     },

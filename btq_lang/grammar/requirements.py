@@ -50,6 +50,7 @@ class RequirementParser(ClauseParser):
             self.complain(self.here(), "a requirement's quality goes before its title")
             self.advance()
             quality = self.quality_path()
+        self.title_at = self.last_end() + self.base if title is None else -1
         clauses = self.clauses()
         return Requirement(start, self.last_end(), name, False, parameters, quality, title, clauses)
 

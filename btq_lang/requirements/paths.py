@@ -12,8 +12,10 @@ from typing import Final
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix, write_fix
 from btq_lang.diagnostics.rules import Severity
+from btq_lang.grammar.items import SELECTORS
 from btq_lang.requirements import nodes
 from btq_lang.requirements.model import Parameter, Target
+from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.syntax.tree import Path, Word, written
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import did_you_mean, near
@@ -142,6 +144,7 @@ class PathReader:
             )
             message = f"{self._missing(names, shown)}{did_you_mean(name for _, name in likely)}"
             notes = (_ONE_DEMAND,) if path.names[0].raw == "and" else notes
+            notes = (SELECTORS,) if shown in ("all", "everything", "everywhere") else notes
             self.complain("unmatched-path", path.span, message, notes=notes, fixes=fixes)
         return None
 
@@ -152,6 +155,8 @@ class PathReader:
         notes: tuple[str, ...] = ()
         if self.find((name.text,)):
             notes = (f"`{name.text}` is the name of one node, not of a kind: write it without `every`",)
+        elif name.raw in ("node", "nodes") or name.raw in CATEGORIES:
+            notes = (SELECTORS,)
         self._no_match(name, f"no node matches `every {name.raw}`", "kinds", notes)
 
     def no_tag(self, tag: Word) -> None:

@@ -36,7 +36,7 @@ from btq_lang.requirements.terms import (
 from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import NAME, NUMBER, QUANTITY, STRING
-from btq_lang.util.spelling import did_you_mean
+from btq_lang.util.spelling import did_you_mean, sharing_a_word
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts
@@ -248,6 +248,8 @@ class Reader(PathReader):
         if not self.store.ask(inputs.is_complete, self.viewpoint):
             return
         meant = self.near(word.text, *kinds) if word.text not in OF_PYTHON else (word.text.lower(),)
+        if not meant and "contexts" in kinds:
+            meant = sharing_a_word(word.text, self.names("contexts"))
         title = f"Replace `{word.text}` with"
         fixes = tuple(replace_fix(f"{title} `{name}`", word.span, syntax.written(name)) for name in meant)
         if word.text[-1] in "²³":
@@ -376,7 +378,7 @@ class Reader(PathReader):
         if word.kind == STRING or self.find((name,)):
             return self._running(syntax.Path((word,)))
         if not self._is_subtraction(word):
-            self.unknown(word, ("parameters", "signals", "contexts", "nodes"))
+            self.unknown(word, ("parameters", "signals", "contexts", "nodes"), "bool")
         return None
 
     def _no_condition(self, term: Term) -> None:

@@ -12,6 +12,7 @@ from typing import Final
 from btq_lang.catalog.measured import measured
 from btq_lang.catalog.units import nearest_units
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix, write_fix
+from btq_lang.syntax.composed_times import composed_time
 from btq_lang.syntax.scan import line_end, line_start, number_end
 from btq_lang.syntax.tree import quote
 from btq_lang.util.text import Span
@@ -49,6 +50,10 @@ def unknown_unit(text: str, start: int, end: int) -> Diagnostic:
     word = text[start:end]
     glued = start > 0 and text[start - 1].isdigit()
     wanted = measured(_WORD.findall(text[line_start(text, 0, start) : start]))
+    if glued and wanted == "s" and (number := _NUMBER_BEFORE.search(text, line_start(text, 0, start), start)):
+        composed = composed_time(text, number.start())
+        if composed is not None:
+            return composed
     symbols = _nearest_units(word, wanted)
     fixes = tuple(
         replace_fix(f"Replace `{word}` with `{symbol}`", Span(start, end), f" {symbol}" if glued else symbol)
@@ -164,6 +169,7 @@ _BRACED_ATTRIBUTES: Final = re.compile(
     r"""\{[ \t]*[\w-]+[ \t]*=(?:[^{}"'\r\n]|"[^"\r\n]*"|'[^'\r\n]*'|\{[^{}"'\r\n]*\})*\}"""
 )
 _nearest_units: Final = lru_cache(256)(nearest_units)  # the same mistake is often repeated
+_NUMBER_BEFORE: Final = re.compile(r"(?<![\w.])\d+\Z")
 _ESCAPE: Final = re.compile(r"(?s)\\(.)")
 _OTHER_QUOTES: Final = "“”„‟«»‘’"
 _LOOKS_LIKE: Final = {

@@ -6,6 +6,7 @@ the candidates are: a caller that wants names of one kind passes only those.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from functools import lru_cache
 from typing import Final
@@ -35,6 +36,18 @@ def near(word: str, candidates: Iterable[str], limit: int = 3) -> tuple[str, ...
         return tuple(name for _, name in sorted(same_letters))[:limit]
     found.sort()
     return tuple(name for edits, _, name in found if edits <= found[0][0] + 1)[:limit]
+
+
+def sharing_a_word(name: str, candidates: Iterable[str]) -> tuple[str, ...]:
+    """The candidates that have a word in common with a name of several: `people_near` for `person_near`; empty if
+    more than three have."""
+    words = _long_words(name)
+    found = sorted({each for each in candidates if not words.isdisjoint(_long_words(each))})
+    return tuple(found) if len(found) <= 3 else ()
+
+
+def _long_words(name: str) -> set[str]:
+    return {word for word in re.split("[_-]", name.casefold()) if len(word) > 3}
 
 
 def without_digits(word: str) -> str:

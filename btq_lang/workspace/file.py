@@ -80,8 +80,10 @@ class File:
             if "includes" in self.__dict__ and Include not in touched:
                 after.includes = self.includes
             if change is not None and not self.__dict__.get("has_directives", True):
-                end = change.end + len(text) - len(self.text) + len(_DIRECTIVE)
-                after.has_directives = _DIRECTIVE in text[max(change.start - len(_DIRECTIVE), 0) : end]
+                longest = max(map(len, _DIRECTIVES))
+                end = change.end + len(text) - len(self.text) + longest
+                edited = text[max(change.start - longest, 0) : end]
+                after.has_directives = any(word in edited for word in _DIRECTIVES)
             if "names" in self.__dict__:
                 names = self.names.edited(gone, come)
                 if names is not None:
@@ -162,8 +164,8 @@ class File:
 
     @cached_property
     def has_directives(self) -> bool:
-        """Whether a comment in it may silence rules."""
-        return _DIRECTIVE in self.text
+        """Whether a comment in it may silence rules, or be meant as an include."""
+        return any(word in self.text for word in _DIRECTIVES)
 
     @cached_property
     def defined(self) -> tuple[Definition, ...]:
@@ -362,7 +364,7 @@ _NOT_AS_IT_IS = _ESCAPED | {"."}  # between the names of a quality there may be 
 # Kept when the tree is released: what refers to no part of it.
 _KEPT = ("included_paths", "defined_names", "used_names")
 _KEPT_IF_ASKED = ("kinds",)  # seldom
-_DIRECTIVE = "btq:"
+_DIRECTIVES = ("btq:", "#include", "#import")
 _LINE_ENDS = frozenset("\r\n")
 _SWALLOWING = frozenset(("unclosed-string", "string-over-items"))
 

@@ -312,10 +312,10 @@ FROM_PYTHON: Final[list[Case]] = [
         tree("->", "    Go", "    Turn"),
     ),
     (
-        "Action Go (station : string)\n" + tree("Go"),
+        "Action Go (station : string)\n" + tree("Go (station = home)"),
         "1:11 error syntax-error «(» ports do not go in brackets | "
         "a port goes on a line of its own below the node, indented: `input name : type`",
-        None,
+        "Action Go\n    input station : string\n" + tree("Go (station = home)"),
     ),
 ]
 
@@ -446,9 +446,7 @@ FROM_THE_PUBLISHED_SYNTAX: Final[list[Case]] = [
     ),
     (
         requirement("time <= 30 s"),
-        "4:5 error syntax-error «time <=» expected a verb before the condition: `keeps`, `never`, `needs` or "
-        "`leaves` | "
-        "`keeps` holds while the node runs, `needs` when it starts, `leaves` when it has succeeded",
+        "4:5 error syntax-error «time <= 30 s» this clause is written `takes at most 30 s`",
         requirement("takes at most 30 s"),
     ),
     (

@@ -519,7 +519,7 @@ def test_apply_with_arguments() -> None:
         ("apply a, to b", "a to MISSING", "1:10 syntax-error «to» expected a requirement, found `to`"),
         ("apply a to", "a to MISSING", f"1:11 syntax-error «» expected a node, or `every` and a node, {END}"),
         ("apply a to b,", "a to b", f"1:14 syntax-error «» expected a node, or `every` and a node, {END}"),
-        ("apply a to every", "a to MISSING", f"1:17 syntax-error «» expected a node's ID or kind, {END}"),
+        ("apply a to every", "a to MISSING", "1:12 syntax-error «every» no selector names all nodes"),
         ("apply a to b c", "a to b", "1:12 syntax-error «b c» a path is written with `/`: `b/c`"),
         ("apply a to b c, d", "a to b, d", "1:12 syntax-error «b c» a path is written with `/`: `b/c`"),
         ("apply a to b c except d", "a to b except d", "1:12 syntax-error «b c» a path is written with `/`: `b/c`"),

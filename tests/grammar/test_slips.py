@@ -8,9 +8,14 @@ from __future__ import annotations
 from typing import Final
 
 import pytest
-from check_asserts import after, show
+from check_asserts import after, show, workspace_of
 from safe_fixes import unwanted
 from test_first_mistakes import OTHER, Case, R, S, mistakes, requirement, tree
+
+from btq_lang.checks import check
+from btq_lang.grammar.cursor import shown
+from btq_lang.parser import parse
+from btq_lang.syntax.tree import quote
 
 BELOW: Final = "a child goes on a line of its own below its parent, indented"
 CHILDREN: Final = "children go on lines of their own below their parent, indented"
@@ -299,8 +304,7 @@ PROSE: Final[list[Case]] = [
             ("needs to take at most 30 s", "needs to take", "takes at most 30 s"),
             ("should be reached within 30 s", "should be reached within", "succeeds within 30 s"),
             ("Go should be done within 30 s", "should be done within", "Go succeeds within 30 s"),
-            ("Go must finish in 30 s", "must finish in", "Go succeeds within 30 s"),
-            ("completes within 30 s", "completes within", "succeeds within 30 s"),
+            ("arrives within 30 s", "arrives within", "succeeds within 30 s"),
             ("Main/Go shall not exceed 30 s", "shall not exceed", "Main/Go takes at most 30 s"),
             ("must not take longer than 30 s", "must not take longer than", "takes at most 30 s"),
             ("Go must not fail", "must not fail", "Go succeeds"),
@@ -370,6 +374,76 @@ PROSE: Final[list[Case]] = [
     ),
 ]
 
+_FAILURE: Final = "`succeeds within` is violated by a failure too, `takes at most` is not"
+_OTHER: Final = "`follows` goes to the node that runs second, with the event that it waits for"
+_USED: Final = "a signal whose use is limited is a `counter` or a `level`: `signal energy : Wh from {energy} counter`"
+_SITUATION: Final = "`while` counts the time in which it holds, `when` the activations at whose start it holds"
+_SIGNAL: Final = "a name alone is a signal or context: `signal latency : s from {latency}`"
+# A clause, how it is written here (the first is the likeliest), and the note.
+CLAUSES: Final[list[tuple[str, tuple[str, ...], str]]] = [
+    *(
+        (clause, ("succeeds within 30 s",), "")
+        for clause in ("succeeds in 30 s", "succeeds by 30 s", "succeeds within at most 30 s", "done within 30 s")
+    ),
+    ("Go succeeds in under 30 s", ("Go succeeds within 30 s",), ""),
+    *(
+        (clause, ("succeeds within 30 s", "takes at most 30 s"), _FAILURE)
+        for clause in ("finishes within 30 s", "completes within 30 s", "ends before 30 s", "must finish in 30 s")
+    ),
+    ("Go must finish in 30 s", ("Go succeeds within 30 s", "Go takes at most 30 s"), _FAILURE),
+    ("response time < 200ms", ("takes less than 200ms",), ""),
+    ("the reaction time is at most 200 ms", ("takes at most 200 ms",), ""),
+    ("execution time of Go <= 3 s", ("Go takes at most 3 s",), ""),
+    ("maximum duration: 30 s", ("takes at most 30 s",), ""),
+    ("timeout 30 s", ("takes at most 30 s",), ""),
+    ("deadline = 30 s", ("succeeds within 30 s",), ""),
+    ("latency < 200 ms", ("takes less than 200 ms", "keeps latency < 200 ms"), _SIGNAL),
+    ("runs every 2 Hz", ("runs at least 2 per 1 s",), ""),
+    ("runs at 10 Hz", ("runs at least 10 per 1 s",), ""),
+    ("runs at most 2 Hz", ("runs at most 2 per 1 s",), ""),
+    ("Go is called 3 times per minute", ("Go runs at least 3 per 1 min",), ""),
+    ("runs at least 10 per second", ("runs at least 10 per 1 s",), ""),
+    ("runs once every 2 s", ("runs every 2 s",), ""),
+    ("runs once per hour", ("runs at least 1 per 1 h",), ""),
+    ("update rate > 10 Hz", ("runs more than 10 per 1 s",), ""),
+    ("period <= 100 ms", ("runs every 100 ms",), ""),
+    ("retries at most 3", ("tries at most 3",), ""),
+    *(
+        (clause, ("succeeds in at least 95 % of activations", "succeeds in at least 95 % of runs"), "")
+        for clause in ("success rate >= 95 %", "succeeds 95 % of the time", "succeeds at least 95 %")
+    ),
+    *(
+        (clause, ("over last 200 activations",), "")
+        for clause in (
+            *("window 200 activations", "window of 200 activations", "over 200 activations", "last 200 activations"),
+            *("in the last 200 activations", "sliding window: 200 activations", "over the past 200 activations"),
+        )
+    ),
+    ("window 200", ("over last 200 activations", "over last 200 runs"), ""),
+    ("sliding window 1 h", ("over last 1 h",), ""),
+    ("during lit", ("while lit",), ""),
+    ("as long as v > 1 m/s", ("while v > 1 m/s",), ""),
+    ("provided that lit", ("while lit", "when lit"), _SITUATION),
+    ("only when lit or v > 1 m/s", ("while lit or v > 1 m/s", "when lit or v > 1 m/s"), _SITUATION),
+    ("until lit", ("while not lit",), ""),
+    ("except when lit", ("while not lit",), ""),
+    ("Go ends before Turn starts", ("Turn follows Go finishes",), _OTHER),
+    ("Go must precede Turn", ("Turn follows Go succeeds",), _OTHER),
+    ("Go -> Turn", ("Turn follows Go succeeds",), _OTHER),
+    ("ends before Turn starts", ("Turn follows <node> finishes",), _OTHER),
+    ("starts after Turn fails", ("follows Turn fails",), ""),
+    (
+        "Go runs after Turn",
+        ("Go follows Turn succeeds", "Go follows Turn finishes"),
+        "`finishes` is a success or a failure",
+    ),
+    ("uses at most 20 m", ("uses at most 20 m of <signal>",), _USED),
+    ("uses at most 5", ("uses at most 5 of <signal>",), _USED),
+    ("uses at most 20 m way", ("uses at most 20 m of way",), ""),
+    ("consumes <= 20 m from way", ("uses at most 20 m of way",), ""),
+    ("uses way at most 20 m", ("uses at most 20 m of way",), ""),
+    ("uses 20 m of way", ("uses at most 20 m of way",), ""),
+]
 AMONG_PORTS: Final = "expected a port (input, output or inout), metadata or xml, found"
 MEMORY: Final = (
     "a Sequence or Fallback goes on with the child that is running; "
@@ -451,6 +525,394 @@ def test_a_slip_is_one_diagnostic(text: str, said: str, mended: str | None) -> N
     assert [" | ".join((line, *found[0].notes)) for line in show(text, found)] == [said]
     assert [after(text, fix) for fix in found[0].fixes] == ([mended] if mended else [])
     assert [each for each in mistakes(mended or "") if each.rule != "unset-entry"] == []  # programs may set entries
+
+
+SELECTORS: Final = (
+    "write `every` and an ID or kind, `every MoveBase`; `every node tagged …`; or list the nodes, with `,` between them"
+)
+TARGETS: Final = (
+    tree("->", "    Go Home", "    SubTree Bye")
+    + "BehaviorTree Bye\n    ->\n        Go Out\n"
+    + requirement("succeeds")[len(tree("Go satisfies r")) :]
+)
+
+
+@pytest.mark.parametrize(
+    ("targets", "slip", "message", "mended"),
+    [
+        *(
+            (f"Main{sign}Home", sign, "the names of a path are separated by `/`", "Main/Home")
+            for sign in (".", "::", "->", ":")
+        ),
+        *(
+            (f"every Go {word} Home", word, f"expected `except`, found `{word}`", "every Go except Home")
+            for word in ("but", "without", "but not", "except for", "other than", "excluding")
+        ),
+        *(
+            (f"every Go {word} Bye", word, f"expected `under`, found `{word}`", "every Go under Bye")
+            for word in ("in", "of", "inside", "within", "below")
+        ),
+    ],
+)
+def test_a_selector_in_other_words(targets: str, slip: str, message: str, mended: str) -> None:
+    text = f"apply r to {targets}\n{TARGETS}"
+    found = mistakes(text)
+    column = len("apply r to ") + targets.index(slip) + 1
+    assert show(text, found) == [f"1:{column} error syntax-error «{slip}» {message}"]
+    assert [after(text, fix) for fix in found[0].fixes] == [f"apply r to {mended}\n{TARGETS}"]
+    assert mistakes(after(text, found[0].fixes[0])) == []
+
+
+@pytest.mark.parametrize(
+    ("targets", "rule", "message"),
+    [
+        *((all_, "syntax-error", "no selector names all nodes") for all_ in ("*", "every", "every *", "all nodes")),
+        ("all", "unmatched-path", "unknown node `all`"),
+        ("everything", "unmatched-path", "unknown node `everything`"),
+        ("every node", "unmatched-path", "no node matches `every node`"),
+        ("every Action", "unmatched-path", "no node matches `every Action`"),
+    ],
+)
+def test_a_selector_of_all_nodes(targets: str, rule: str, message: str) -> None:
+    found = [each for each in mistakes(f"apply r to {targets}\n{TARGETS}") if each.rule in (rule, "syntax-error")]
+    assert [(each.rule, each.message, each.notes, each.fixes) for each in found] == [(rule, message, (SELECTORS,), ())]
+
+
+def test_a_node_that_is_called_all_is_one() -> None:
+    assert mistakes("apply r to all, everything\n" + TARGETS.replace("Home", "all").replace("Out", "everything")) == []
+
+
+def test_a_path_with_a_wildcard() -> None:
+    (found,) = [each for each in mistakes("apply r to Main/*\n" + TARGETS) if each.rule == "misplaced-comment"]
+    assert found.notes == ("the nodes below another are selected with `every <node> under Main`",)
+    assert found.fixes == ()
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [
+        ("person_near", ("people_near",)),
+        ("near_people", ("people_near",)),
+        ("person-near", ("people_near",)),
+        ("not people", ("people_near",)),
+        ("robot_docked", ()),
+    ],
+)
+def test_a_context_with_a_word_of_another(written: str, meant: tuple[str, ...]) -> None:
+    of = "signal far : m from {far}\ncontext people_near : far < 1 m\ncontext raining : far > 1 m and not people_near\n"
+    text = f"{of}{requirement('takes at most 3 s', f'while {written}', 'when raining')}"
+    (found,) = [each for each in mistakes(text) if each.rule == "unknown-signal"]
+    name = written.removeprefix("not ")
+    assert found.message == f"unknown signal `{name}`" + "".join(f"; did you mean `{each}`?" for each in meant)
+    assert found.notes == (f"{'or ' if meant else ''}declare it: `signal {name} : bool from {{{name}}}`",)
+    assert [after(text, fix) for fix in found.fixes] == [text.replace(f" {name}\n", f" {each}\n") for each in meant]
+
+
+ELSE: Final = "a Fallback `?` runs its next child after a failure, and the third child of an IfThenElse is its `else`"
+THEN: Final = "a Sequence `->` runs its children one after another"
+WITH_MEMORY: Final = (
+    "`->` goes on with the child that is running; `M->` goes on with the one that failed too, when it is ticked again"
+)
+OF_FALLBACK: Final = "`?` goes on with the child that is running; `R?` begins with the first one at every tick"
+UNITS_OF_SCRIPTS: Final = "a script has numbers without units"
+NO_NODES: Final[list[tuple[str, str, tuple[str, ...]]]] = [
+    *(
+        (f"{word} Go", f"3:9 warning unknown-node «{word}» there is no `{word}`: {how}", ("Go",))
+        for word, how in (("else", ELSE), ("otherwise", ELSE), ("catch", ELSE), ("then", THEN), ("finally", THEN))
+    ),
+    ("else", f"3:9 warning unknown-node «else» there is no `else`: {ELSE}", ()),
+    (
+        "else:",
+        "3:9 error syntax-error «else» expected a node, found the statement `else` | "
+        "to choose, use a Fallback `?` with a Condition, or `_skipIf` on the node",
+        (),
+    ),
+    *(
+        (
+            line,
+            f"3:9 error syntax-error «{line}» a condition is not a node: "
+            f"write `{shown(f'ScriptCondition (code = {quote(code)})')}`",
+            (f"ScriptCondition (code = {quote(code)})",),
+        )
+        for line, code in (
+            ("battery > 20", "battery > 20"),
+            ("{battery} >= 20", "battery >= 20"),
+            ("20 < {@battery}", "20 < @battery"),
+            ("if x != 3", "x != 3"),
+            ("Condition x == 3", "x == 3"),
+            ("(x > 3)", "(x > 3)"),
+            ("x > 3 and lit", "x > 3 && lit"),
+        )
+    ),
+    (
+        "battery > 20 %",
+        f'3:9 error syntax-error «battery > 20 %» a condition is not a node: write `ScriptCondition (code = "…")` | '
+        f"{UNITS_OF_SCRIPTS}",
+        (),
+    ),
+    (
+        "speed := 3",
+        '3:9 error syntax-error «speed := 3» an assignment is not a node: write `Script (code = "speed := 3")`',
+        ('Script (code = "speed := 3")',),
+    ),
+]
+SYMBOLS_OF_OTHERS: Final = [
+    *(
+        (symbol, f"the symbol with memory is written `M->` | {WITH_MEMORY}", ("M->", "->"))
+        for symbol in ("->*", "*->", "→*", "M->*")
+    ),
+    ("?*", f"the symbol is written `?` | {OF_FALLBACK}", ("?",)),
+    ("R->*", "the symbol is written `R->`", ("R->",)),
+    ("||*", "the symbol is written `||`", ("||",)),
+]
+
+
+@pytest.mark.parametrize(("line", "said", "meant"), NO_NODES)
+def test_a_line_that_is_no_node(line: str, said: str, meant: tuple[str, ...]) -> None:
+    text = tree("?", f"    {line}", "    Go")
+    found = mistakes(text)
+    assert [" | ".join((each, *found[0].notes)) for each in show(text, found)] == [said]
+    mended = [tree("?", f"    {each}", "    Go") for each in meant]
+    assert [after(text, fix) for fix in found[0].fixes] == mended
+    assert [parse(each).diagnostics for each in mended] == [()] * len(mended)
+
+
+@pytest.mark.parametrize(("symbol", "said", "meant"), SYMBOLS_OF_OTHERS)
+def test_a_symbol_with_a_star(symbol: str, said: str, meant: tuple[str, ...]) -> None:
+    text = tree(symbol, "    Go")
+    found = mistakes(text)
+    assert [" | ".join((each, *found[0].notes)) for each in show(text, found)] == [
+        f"2:5 error syntax-error «{symbol}» {said}"
+    ]
+    assert [after(text, fix) for fix in found[0].fixes] == [tree(each, "    Go") for each in meant]
+    assert [mistakes(after(text, fix)) for fix in found[0].fixes] == [[]] * len(meant)
+
+
+@pytest.mark.parametrize(
+    ("brackets", "ports"),
+    [
+        ("(place)", ["input place"]),
+        (" (place, other)", ["input place", "input other"]),
+        ("(place : string, n : int)", ["input place : string", "input n : int"]),
+        ("(string place)", ["input place : string"]),
+        ("(output std::string place)", ["output place : std::string"]),
+        ("(inout place)", ["inout place"]),
+    ],
+)
+@pytest.mark.parametrize(("item", "owner"), [("BehaviorTree Main", "tree"), ("Action Turn", "node")])
+def test_ports_in_brackets(brackets: str, ports: list[str], item: str, owner: str) -> None:
+    below = "\n    Go\n" if owner == "tree" else "\n" + tree("Turn")
+    text = f"{item}{brackets}{below}"
+    (found,) = mistakes(text)
+    assert (found.rule, found.message) == ("syntax-error", "ports do not go in brackets")
+    assert found.notes == (f"a port goes on a line of its own below the {owner}, indented: `input name : type`",)
+    (fix,) = found.fixes
+    assert after(text, fix) == "\n    ".join((item, *ports)) + below
+    assert parse(after(text, fix)).diagnostics == ()
+
+
+TOO_FAR: Final = "what is below it may be indented too far"
+
+
+@pytest.mark.parametrize(
+    ("lines", "dedented", "said"),
+    [
+        (
+            ("    Action Go", "        Turn", "    Turn"),
+            ("    Action Go", "    Turn", "    Turn"),
+            "3:16 error child-count «Go» the Action `Go` requires no children, found 1",
+        ),
+        (
+            ("    AlwaysSuccess", "        Go", "            Turn", "        Go"),
+            ("    AlwaysSuccess", "    Go", "        Turn", "    Go"),
+            "3:9 error child-count «AlwaysSuccess» `AlwaysSuccess` requires no children, found 2",
+        ),
+        (
+            ("    Retry (num_attempts = 3)", "        Go", "        Turn"),
+            ("    Retry (num_attempts = 3)", "        Go", "    Turn"),
+            "3:9 error child-count «Retry» `Retry` requires exactly 1 child, found 2",
+        ),
+    ],
+)
+def test_a_child_that_is_indented_too_far(lines: tuple[str, ...], dedented: tuple[str, ...], said: str) -> None:
+    text = tree("->", *lines)
+    found = [each for each in mistakes(text) if each.rule != "unknown-node"]
+    assert (show(text, found), found[0].notes) == ([said], (TOO_FAR,))
+    assert after(text, found[0].fixes[0]) == tree("->", *dedented)
+    assert [fix.title.split()[0] for fix in found[0].fixes] == ["Dedent", "Put"][: 1 + ("Retry" in lines[0])]
+
+
+def test_a_child_below_an_undeclared_node() -> None:
+    declared = "Action Go\nAction Turn\n"
+    text = declared + tree("->", "    Look", "        Go", "    Turn")
+    (found,) = mistakes(text)
+    assert (found.rule, found.notes[1:]) == ("unknown-node", (TOO_FAR,))
+    assert after(text, found.fixes[-1]) == declared + tree("->", "    Look", "    Go", "    Turn")
+
+
+@pytest.mark.parametrize("lines", [("Action Go", "    Turn"), ("Inverter", "    Action Go", "        Turn")])
+def test_a_child_that_no_parent_takes_is_not_dedented(lines: tuple[str, ...]) -> None:
+    assert [each.fixes for each in mistakes(tree(*lines)) if each.rule == "child-count"] == [()]
+
+
+@pytest.mark.parametrize(
+    ("comment", "path"),
+    [
+        ('#include "x.btq"', "x.btq"),
+        ("#include <x.btq>", "x.btq"),
+        ("#include 'sub/x.xml'", "sub/x.xml"),
+        ("#include x.btq;", "x.btq"),
+        ('#import "x.btq"', "x.btq"),
+    ],
+)
+def test_an_include_in_a_comment(comment: str, path: str) -> None:
+    text = f"{comment}\n{tree('Go')}"
+    (found,) = mistakes(text)
+    assert show(text, [found]) == [
+        f'1:1 hint missing-include «{comment}» this is a comment; did you mean `include "{path}"`?'
+    ]
+    assert [after(text, fix) for fix in found.fixes] == [f'include "{path}"\n{tree("Go")}']
+    assert mistakes(f"{tree('->', f'    Go  {comment}')}")[0].rule == "missing-include"
+
+
+@pytest.mark.parametrize(
+    "comment",
+    [
+        '# include "x.btq"',  # one that is left out on purpose
+        '#include "x.btq" later',
+        '#include "x.hpp"',
+        "#include",
+        "#included in x.btq",
+        '##include "x.btq"',
+        '# see #include "x.btq"',
+    ],
+)
+def test_a_comment_about_an_include(comment: str) -> None:
+    assert mistakes(f"{comment}\n{tree('Go')}") == []
+    assert mistakes(tree(f'Say (text = "{comment[1:].replace(chr(34), chr(39))}")')) == []
+
+
+def test_a_comment_in_xml_is_no_include() -> None:
+    xml = "<root BTCPP_format='4'><!--#include \"x.xml\"--><BehaviorTree ID='T'><Go/></BehaviorTree></root>"
+    assert check(workspace_of({"main.xml": xml}), "main.xml") == ()
+
+
+@pytest.mark.parametrize(
+    ("xml", "said"),
+    [
+        (
+            "<Root><BehaviorTree ID='T'><Go/></BehaviorTree></root>",
+            "xml-syntax «</root>» expected </Root>, found </root> | "
+            "the engine's element is <root>: write <root> where it opens, and </root> here",
+        ),
+        (
+            "<root><BehaviorTree ID='T'><Go/></BehaviorTree></Root>",
+            "xml-syntax «</Root>» expected </root>, found </Root> | write </root>",
+        ),
+        (
+            "<root><BehaviorTree ID='T'><fallback><Go/></Fallback></BehaviorTree></root>",
+            "xml-syntax «</Fallback>» expected </fallback>, found </Fallback> | "
+            "the engine's element is <Fallback>: write <Fallback> where it opens, and </Fallback> here",
+        ),
+        (
+            "<root><BEHAVIORTREE ID='T'><Go/></behaviortree></root>",
+            "xml-syntax «</behaviortree>» expected </BEHAVIORTREE>, found </behaviortree> | "
+            "the engine's element is <BehaviorTree>: write <BehaviorTree> where it opens, and </BehaviorTree> here",
+        ),
+        (
+            "<Root><BehaviorTree ID='T'><Go/></BehaviorTree></Root>",
+            "xml-root «Root» the document element is <Root>, not <root> | "
+            "the engine distinguishes capital letters: write <root> and </root>",
+        ),
+        (
+            "<root BTCPP_format='4'><BehaviorTree ID='T'><Fallback ID='Give'><Go/></Fallback></BehaviorTree></root>",
+            "unknown-port «ID» the engine refuses the attribute `ID` on `Fallback` | a node's own name is its `name`",
+        ),
+        (
+            "<root BTCPP_format='4'><BehaviorTree ID='T'><Fallback label='Give'><Go/></Fallback></BehaviorTree></root>",
+            "unknown-port «label» `Fallback` has no port `label` | it has no ports | a node's own name is its `name`",
+        ),
+        (
+            "<root BTCPP_format='4'><BehaviorTree ID='T'><Inverter child='Go'/></BehaviorTree></root>",
+            "unknown-port «child» `Inverter` has no port `child` | it has no ports | "
+            "children go below their parent, in XML between its tags: `<Inverter><Dock/></Inverter>`",
+        ),
+    ],
+)
+def test_a_slip_in_xml(xml: str, said: str) -> None:
+    found = [each for each in check(workspace_of({"main.xml": xml}), "main.xml") if each.rule != "child-count"]
+    shown_here = [f"{each.rule} «{xml[each.span.start : each.span.end]}» {each.message}" for each in found]
+    assert [" | ".join((line, *each.notes)) for line, each in zip(shown_here, found, strict=True)] == [said]
+
+
+@pytest.mark.parametrize(("clause", "meant", "note"), CLAUSES)
+@pytest.mark.parametrize("further", ["", " on violation warn"])
+def test_a_clause_of_other_notations(clause: str, meant: tuple[str, ...], note: str, further: str) -> None:
+    signals = "signal v : m/s from {v}\nsignal lit : bool from {lit}\nsignal way : m from {way} counter\n"
+    text = f"{signals}{tree('->', '    Go satisfies r', '    Turn')}QualityReq r\n    {clause}{further}\n"
+    found = mistakes(text)
+    assert show(text, found) == [
+        f"9:5 error syntax-error «{clause}» this clause is written {' or '.join(f'`{each}`' for each in meant)}"
+    ]
+    assert found[0].notes == ((note,) if note else ())
+    complete = [each for each in meant if "<node>" not in each and "<signal>" not in each]
+    assert [after(text, fix) for fix in found[0].fixes] == [text.replace(clause, each) for each in complete]
+    assert [parse(text.replace(clause, each)).diagnostics for each in complete] == [()] * len(complete)
+
+
+@pytest.mark.parametrize(("clause", "mended"), [('because: "x"', 'because "x"'), ("while: node Go", "while node Go")])
+def test_a_sign_after_a_clause_word(clause: str, mended: str) -> None:
+    text = requirement("takes at most 3 s", clause)
+    (found,) = mistakes(text)
+    assert found.message == "unexpected `:`"
+    assert [(after(text, fix), fix.safe) for fix in found.fixes] == [(requirement("takes at most 3 s", mended), True)]
+
+
+def test_a_clause_until_an_event() -> None:
+    text = requirement("takes at most 3 s", "until Go succeeds")
+    assert show(text, mistakes(text)) == [
+        "5:5 error syntax-error «until Go succeeds» "
+        "no clause ends at an event; limit it with a condition: `while not docked`"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [
+        ("3:30 min", "3.5 min, 210 s"),
+        ("3:30", "3.5 min, 210 s, 3.5 h, 210 min"),
+        ("0:30 h", "0.5 h, 30 min"),
+        ("00:03:30", "210 s"),
+        ("1 min 30 s", "1.5 min, 90 s"),
+        ("1 h 20 min", "80 min"),
+        ("1m30s", "1.5 min, 90 s"),
+        ("3min30", "3.5 min, 210 s"),
+        ("3 min, 30 s", "3.5 min, 210 s"),
+    ],
+)
+def test_a_time_of_several_numbers(written: str, meant: str) -> None:
+    text = requirement(f"takes at most {written}")
+    found = mistakes(text)
+    shown = meant.replace(", ", "` or `")
+    assert show(text, found) == [f"4:19 error syntax-error «{written}» a time has one number and one unit: `{shown}`"]
+    fixed = [requirement(f"takes at most {each}") for each in meant.split(", ")]
+    assert [after(text, fix) for fix in found[0].fixes] == fixed
+    assert [mistakes(each) for each in fixed] == [[]] * len(fixed)
+
+
+@pytest.mark.parametrize("word", ["description", "title", "text:", "summary ="])
+def test_a_title_in_the_block_of_a_requirement(word: str) -> None:
+    text = requirement("takes at most 3 s", f'{word} "in time"')
+    found = mistakes(text)
+    plain = word.strip(":= ")
+    assert show(text, found) == [
+        f"5:5 error syntax-error «{plain}» `{plain}` is not in btq; "
+        'nearest is the title in quotes after the name: `QualityReq fast "in time"`'
+    ]
+    mended = requirement("takes at most 3 s").replace("QualityReq r", 'QualityReq r "in time"')
+    assert [after(text, fix) for fix in found[0].fixes] == [mended]
+    titled = text.replace("QualityReq r", 'QualityReq r "soon"')
+    assert [each.fixes for each in mistakes(titled)] == [()]
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,192 @@
+"""Whole clauses in the words of other notations: `during people_near`, `window 200 runs`, `response time < 200 ms`.
+
+One invariant: no pattern matches a clause of this notation, so the parser may ask about any that it could not read.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+from typing import Final
+
+from btq_lang.catalog.verbs import VERBS
+from btq_lang.grammar.conditions import BOUNDS, HEADS, RELATIONS
+from btq_lang.grammar.prose import MODALS
+from btq_lang.util.record import Record
+
+
+class ClauseMeant(Record):
+    """What a clause of other notations means.
+
+    Attributes:
+        length: of its text.
+        clauses: in this notation, the likeliest first; a word in `<…>` is left to choose.
+        note: in what the clauses differ, or what is left to choose; may be empty; without clauses, why there is none.
+    """
+
+    length: int
+    clauses: tuple[str, ...]
+    note: str
+
+
+def clause_slip(text: str) -> ClauseMeant | None:
+    """The meaning of the clause with which a text begins; None if the table has none."""
+    for pattern, clauses, note in _table():
+        if match := pattern.match(text):
+            parts = {name: value or "" for name, value in match.groupdict().items()}
+            bound = BOUNDS.get(tuple(parts.get("bound", "").split()), ("at", "most"))
+            parts |= {"bound": " ".join(bound), "sign": RELATIONS[bound]}
+            subject = parts.get("subject", "")
+            parts |= {"subject": f"{subject} " if subject else "", "node": subject or "<node>"}
+            return ClauseMeant(match.end(), tuple([clause.format_map(parts) for clause in clauses]), note)
+    return None
+
+
+@lru_cache(1)
+def _table() -> list[tuple[re.Pattern[str], tuple[str, ...], str]]:
+    """The table, compiled when the first clause of a process cannot be read."""
+    return [(_compiled(pattern), clauses, note) for pattern, clauses, note in _SLIPS]
+
+
+def _compiled(pattern: str) -> re.Pattern[str]:
+    for name, piece in _PIECES.items():
+        pattern = pattern.replace(name, piece)
+    return re.compile(rf"(?:{pattern})(?= *(?:$|[),])| +{_any(*HEADS)}\b)".replace(" ", r"\s"))
+
+
+def _any(*words: str) -> str:
+    return f"(?:{'|'.join(words)})"
+
+
+_GOES: Final = ("starts?", "runs?", "begins?", "comes?", "happens?", "goes", "executes?")
+_PATH: Final = r"[^\W\d][\w-]*(?:/[^\W\d][\w-]*)*"
+_BOUNDS: Final = sorted((" ".join(map(re.escape, words)) for words in BOUNDS), key=len, reverse=True)
+_NO_NODES: Final = rf"(?!{_any(*HEADS, *VERBS, *MODALS, 'of', 'has', 'have', 'ought', 'needs', *_GOES)}\b)"
+_PIECES: Final = {
+    "SUBJECT": rf"(?:(?P<subject>{_NO_NODES}{_PATH}) +)?",
+    "OTHER": rf"(?P<other>{_NO_NODES}{_PATH})",
+    "BOUND": rf"(?:(?:is|be|of) )?(?P<bound>{'|'.join(_BOUNDS)}) *",
+    "CONDITION": rf"(?P<condition>.+?)(?= +{_any(*HEADS - {'in', 'with'}, 'in at', 'with probability')}\b|$)",
+    "TIME": r"(?P<time>[\d.]+ *(?:[num]?s|secs?|seconds?|mins?|minutes?|h|hrs?|hours?|d|days?))",
+    "SHARE": r"(?P<share>[\d.]+ *%)",
+    "VALUE": rf"(?P<value>[\d.]+ *(?:(?!{_any('of', *HEADS)}\b)[^\W\d][\w/^*]*|%))",
+    "NUMBER": r"(?P<number>[\d.]+)",
+    "COUNT": r"(?P<count>\d+ (?:activations|runs))",
+    "EVENT": r"(?P<event>starts|succeeds|fails|finishes|halts)",
+}
+_LIMIT: Final = r"(?: (?:at most|under|less than|no more than|max))?"
+_LATEST: Final = "(?: of)?(?: the)?(?: (?:last|past|latest|most recent|previous))?"
+_TIMES: Final = _any(
+    "(?:response|reaction|execution|completion|processing|cycle|run|running|elapsed|travel)[ _-]?time",
+    *("latency", "duration", "time"),
+)
+_RATE: Final = _any("runs?", "ticks?", "repeats?", "executes", "is executed", "updates?", "is called")
+_PER: Final = "(?:times )?(?:per|a|each|every) (?:1 ?)?(?P<unit>s|min|h)(?:ec|ecs|econd|econds|ute|utes|our|ours)?"
+_IN_WORDS: Final = _any("during", "for as long as", "as long as", "so long as", "whilst")
+_IF: Final = _any(
+    "whenever", "only when", "only if", "only while", "provided(?: that)?", "given(?: that)?", "where", "for"
+)
+_NOT: Final = _any("except(?: (?:when|while|if|during))?", "until", "but not (?:when|while|if)")
+_MODAL: Final = _any(*MODALS, "has to", "have to", "ought to", "needs to")
+_ENDS: Final = "(?:be |is )?(?:finish(?:es|ed)?|ends?|ended|over|terminate[sd]?|complete[sd]?|returns?|stops?)"
+_STARTS: Final = "(?: (?:starts|runs|begins))?"
+_USES: Final = "SUBJECT(?:uses?|consumes?|drains?|spends?)"
+_SITUATION: Final = "`while` counts the time in which it holds, `when` the activations at whose start it holds"
+_FAILURE: Final = "`succeeds within` is violated by a failure too, `takes at most` is not"
+_SIGNAL: Final = "a name alone is a signal or context: `signal latency : s from {latency}`"
+_USED: Final = "a signal whose use is limited is a `counter` or a `level`: `signal energy : Wh from {energy} counter`"
+_AT_THE_OTHER: Final = "`follows` goes to the node that runs second, with the event that it waits for"
+# Patterns, in which a word in capitals is a piece of above; what is written instead; a note.
+_SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
+    # how long
+    (
+        rf"SUBJECT(?:succeeds?|is done|done|is ready) (?:in|by|before|within){_LIMIT} TIME",
+        ("{subject}succeeds within {time}",),
+        "",
+    ),
+    (
+        f"SUBJECT(?:{_MODAL} )?{_ENDS} (?:in|by|before|within){_LIMIT} TIME",
+        ("{subject}succeeds within {time}", "{subject}takes at most {time}"),
+        _FAILURE,
+    ),
+    (
+        "(?P<name>latency|runtime|delay|[a-z]+_time) *BOUNDTIME",
+        ("takes {bound} {time}", "keeps {name} {sign} {time}"),
+        _SIGNAL,
+    ),
+    (
+        rf"(?:the )?(?:(?:max(?:imum)?|total) )?{_TIMES}(?: of SUBJECT|[^<>=:]*?) *BOUNDTIME",
+        ("{subject}takes {bound} {time}",),
+        "",
+    ),
+    (rf"(?:(?:max(?:imum)? )?{_TIMES}|timeout|time limit)(?: *[:=]| of)? *TIME", ("takes at most {time}",), ""),
+    ("deadline(?: *[:=]| of)? *TIME", ("succeeds within {time}",), ""),
+    # how often
+    (f"SUBJECT{_RATE} BOUNDNUMBER *Hz", ("{subject}runs {bound} {number} per 1 s",), ""),
+    (f"SUBJECT{_RATE}(?: (?:at|with|every))? NUMBER *Hz", ("{subject}runs at least {number} per 1 s",), ""),
+    (f"SUBJECT{_RATE} BOUNDNUMBER {_PER}", ("{subject}runs {bound} {number} per 1 {unit}",), ""),
+    (f"SUBJECT{_RATE}(?: (?:at|with|every))? NUMBER {_PER}", ("{subject}runs at least {number} per 1 {unit}",), ""),
+    (f"SUBJECT{_RATE} once {_PER}", ("{subject}runs at least 1 per 1 {unit}",), ""),
+    (f"SUBJECT{_RATE} (?:once|each|at most|at least)(?: every)? TIME", ("{subject}runs every {time}",), ""),
+    ("(?:the )?(?:update |tick |control )?(?:frequency|rate) *BOUNDNUMBER *Hz", ("runs {bound} {number} per 1 s",), ""),
+    ("(?:the )?(?:period|cycle) *BOUNDTIME", ("runs every {time}",), ""),
+    (r"(?:attempts|retries) *BOUND(?P<number>\d+)", ("tries {bound} {number}",), ""),
+    # how probably
+    (
+        "(?:the )?(?:success[ _-]?(?:rate|ratio|probability)|probability of success|reliability|availability) *"
+        "(?:is |of )?(?:>=|at least|min|minimum|[:=]) *SHARE",
+        ("succeeds in at least {share} of activations", "succeeds in at least {share} of runs"),
+        "",
+    ),
+    (
+        "SUBJECTsucceeds (?:at least )?SHARE(?: of (?:the time|times|activations))?",
+        ("{subject}succeeds in at least {share} of activations", "{subject}succeeds in at least {share} of runs"),
+        "",
+    ),
+    # of which activations
+    (
+        f"(?:(?:sliding |moving )?window|over|for|in|within|across|during|history)(?: size)?(?: *[:=])?{_LATEST} COUNT",
+        ("over last {count}",),
+        "",
+    ),
+    ("(?:the )?(?:last|past|latest|most recent) COUNT", ("over last {count}",), ""),
+    (f"(?:(?:sliding |moving )?window(?: size)?(?: *[:=])?|over){_LATEST} TIME", ("over last {time}",), ""),
+    (
+        rf"(?:(?:sliding |moving )?window(?: size)?(?: *[:=])?|over){_LATEST} (?P<number>\d+)",
+        ("over last {number} activations", "over last {number} runs"),
+        "",
+    ),
+    # in which situation
+    (f"{_IN_WORDS} CONDITION", ("while {condition}",), ""),
+    (f"{_IF} CONDITION", ("while {condition}", "when {condition}"), _SITUATION),
+    ("until OTHER EVENT", (), "no clause ends at an event; limit it with a condition: `while not docked`"),
+    (rf"{_NOT} (?!\d)CONDITION", ("while not {condition}",), ""),
+    # in which order
+    (
+        f"SUBJECT(?P<event>starts|succeeds|fails) (?:only )?before OTHER{_STARTS}",
+        ("{other} follows {node} {event}",),
+        _AT_THE_OTHER,
+    ),
+    (
+        f"SUBJECT(?:ends|finishes|stops|completes|is done) (?:only )?before OTHER{_STARTS}",
+        ("{other} follows {node} finishes",),
+        _AT_THE_OTHER,
+    ),
+    (
+        f"(?!before)SUBJECT(?:{_MODAL} )?(?:{_any(*_GOES)} )?(?:only )?(?:before|precedes?|then|->) OTHER{_STARTS}",
+        ("{other} follows {node} succeeds",),
+        _AT_THE_OTHER,
+    ),
+    (f"SUBJECT{_any(*_GOES)} (?:only )?after OTHER EVENT", ("{subject}follows {other} {event}",), ""),
+    (
+        f"SUBJECT(?:{_any(*_GOES)} (?:only )?after|follows) OTHER",
+        ("{subject}follows {other} succeeds", "{subject}follows {other} finishes"),
+        "`finishes` is a success or a failure",
+    ),
+    # how much of what
+    (f"{_USES} BOUNDVALUE (?:(?:of|from) )?OTHER", ("{subject}uses {bound} {value} of {other}",), ""),
+    (f"{_USES} BOUNDVALUE(?: of)?", ("{subject}uses {bound} {value} of <signal>",), _USED),
+    (f"{_USES} BOUNDNUMBER(?: of)?", ("{subject}uses {bound} {number} of <signal>",), _USED),
+    (f"{_USES} VALUE (?:(?:of|from) )?OTHER", ("{subject}uses at most {value} of {other}",), ""),
+    (f"{_USES} OTHER *BOUNDVALUE", ("{subject}uses {bound} {value} of {other}",), ""),
+)
