@@ -332,13 +332,13 @@ class NodeParser(AttributeParser):
 
     def condition_as_node(self) -> bool:
         """Report `battery > 20` and `speed := 3`, which are a ScriptCondition and a Script."""
-        first = 1 if self.raws[0] in ("if", "Condition", "ScriptCondition", "Script", "when", "unless") else 0
+        first = 1 if self.raws[0] in ("if", "Condition", "when", "unless") else 0
         signs = [index for index in range(first, len(self.raws)) if self.kinds[index] == OPERATOR]
         signs = [
             index for index in signs if self.raws[index] in COMPARISONS or self.raws[index : index + 2] == [":", "="]
         ]
         last = len(self.kinds) - 2
-        if not signs or SYMBOL in self.kinds:
+        if not signs or SYMBOL in self.kinds or self.raws[0] in ("Script", "ScriptCondition"):
             return False
         right = signs[0] + (2 if self.raws[signs[0]] == ":" else 1)
         if signs[0] == first or self.kinds[signs[0] - 1] not in VALUES or self.kinds[right] not in VALUES:

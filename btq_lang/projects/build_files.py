@@ -137,7 +137,7 @@ def _version_problem(groups: tuple[Group, ...], options: BuildOptions) -> str | 
 
 
 def _planned(groups: tuple[Group, ...], options: BuildOptions, messages: Messages) -> list[Output] | None:
-    """What is to be written; None: there is a reason not to write anything, which is told."""
+    """What is to be written; None: a message says why nothing is written."""
     empty = [path for group in groups for path in without_tree(group.workspace, group.given)]
     for path in empty:
         messages.remark(f"btq build: {shown(path)} has no tree to run")

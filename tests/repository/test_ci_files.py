@@ -187,7 +187,7 @@ def test_each_night_all_tests_run_with_another_seed() -> None:
     assert workflow["env"] == {"BTQ_SEED": "${{ inputs.seed || github.run_number }}"}
     tests, issue = (workflow["jobs"][name] for name in ("tests", "issue"))
     (step,) = (step for step in tests["steps"] if "run" in step)
-    assert step == {"run": ".ci/run", "env": {"PYTEST_ADDOPTS": '-m "scheduled or not scheduled"'}}
+    assert step == {"run": ".ci/run", "env": {"PYTEST_ADDOPTS": '--timeout 3600 -m "scheduled or not scheduled"'}}
     assert (issue["needs"], issue["if"], issue["permissions"]) == ("tests", "failure()", {"issues": "write"})
 
 

@@ -20,6 +20,7 @@ TAG = re.compile(
 )
 # Modules that write such tags, each with the reason.
 WRITERS = {
+    "btcpp/importing.py": "the engine's Script, which a message names",
     "evidence/compare/markdown.py": "Markdown, in which only HTML folds and ends a line",
     "evidence/markdown.py": "Markdown, in which only HTML ends a line of a table",
     "graph/mermaid.py": "Mermaid, in which only HTML ends a line",
