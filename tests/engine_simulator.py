@@ -154,6 +154,8 @@ class Sim:
 
 
 class Leaf(Sim):
+    length: float | None
+
     def tick(self) -> str:
         if self.source.tag in ("AlwaysSuccess", "Script"):
             return SUCCESS
@@ -170,7 +172,7 @@ class Leaf(Sim):
         return SUCCESS if self.source.tag == "Sleep" else self.run.ended(self.source)
 
     def begin(self) -> None:
-        self.length: float | None = None
+        self.length = None
 
 
 class InOrder(Sim):

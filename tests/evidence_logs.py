@@ -12,7 +12,7 @@ import re
 import shutil
 import sqlite3
 import struct
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -20,6 +20,8 @@ from xml.etree import ElementTree
 import pytest
 
 from btq_lang.cli import main
+from btq_lang.evidence.model import Session
+from btq_lang.evidence.readers import read
 
 START = 1_795_209_740_000_000  # µs since the epoch: 2026-11-20 21:22:20 UTC
 MAIN = "Root Main\nBehaviorTree Main\n    ->\n        Action Move\n        Action Pick\nAction Move\nAction Pick\n"
@@ -91,7 +93,14 @@ def write_db3(
     database.close()
 
 
-def samples(name: str, values: Mapping[float, object]) -> str:
+def sessions_of(log: Path) -> Iterator[Session]:
+    """The sessions of a log that has the tree of each."""
+    for session in read(str(log)):
+        assert isinstance(session, Session)
+        yield session
+
+
+def samples(name: str, values: Mapping[int, object] | Mapping[float, object]) -> str:
     """A CSV file with the samples of one signal, by ms since the log's start."""
     lines = [f"{(START + round(ms * 1000)) / 1e6:.6f},{value}" for ms, value in values.items()]
     return "\n".join([f"t,{name}", *lines, ""])

@@ -115,7 +115,8 @@ def _listen(listening: socket.socket) -> None:
     _ = make_server().session  # what is forked finds all imported, and the types of messages resolved
 
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for those that wait for a server
-    while listening in select.select([listening, 0], [], [])[0]:
+    awaited: list[socket.socket | int] = [listening, 0]
+    while listening in select.select(awaited, [], [])[0]:
         answers, _ = listening.accept()
         if os.fork() == 0:
             listening.close()

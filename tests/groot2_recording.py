@@ -47,7 +47,8 @@ def write(path: Path, found: Sequence[Exchange]) -> None:
 def read(path: Path) -> list[Exchange]:
     """The exchanges that were kept."""
     texts = json.loads(path.read_text(encoding="utf-8"))
-    return [tuple([part.encode("latin-1") for part in parts] for parts in each) for each in texts]
+    encoded = [[[part.encode("latin-1") for part in parts] for parts in each] for each in texts]
+    return [(request, reply) for request, reply in encoded]
 
 
 def meaning(found: Sequence[Exchange]) -> list[object]:

@@ -115,7 +115,7 @@ class Robot(Publisher):
         self._socket = self._context.socket(zmq.REP)
         self._socket.setsockopt(zmq.LINGER, 0)
         self._socket.bind(f"tcp://127.0.0.1:{port or '*'}")
-        self.address = self._socket.getsockopt(zmq.LAST_ENDPOINT).decode().rstrip("\0")
+        self.address = self._socket.getsockopt_string(zmq.LAST_ENDPOINT).rstrip("\0")
         self.port = int(self.address.rpartition(":")[2])
         self.is_gone = False
         self._thread = threading.Thread(target=self._serve)
@@ -130,12 +130,13 @@ class Robot(Publisher):
         self._socket.close()
         self._context.term()
 
-    def play(self, text: str) -> None:
+    def play(self, *texts: str) -> None:
         """Change statuses, as `evidence_logs.rows` reads them, at these times, and publish exactly these."""
-        begin = self.clock()
-        for at, uid, status in rows(text):
-            time.sleep(max(0, begin + at - self.clock()) / 1e6)
-            self.change(uid, status, begin + at)
+        for text in texts:
+            begin = self.clock()
+            for at, uid, status in rows(text):
+                time.sleep(max(0, begin + at - self.clock()) / 1e6)
+                self.change(uid, status, begin + at)
 
     def wait_for(self, *kinds: str) -> None:
         """Wait until requests of these types have come, one after the other."""

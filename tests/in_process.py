@@ -28,7 +28,7 @@ def run_btq(*arguments: str, cwd: Path, stdin: str | bytes = "") -> tuple[int, s
         except SystemExit as end:  # so argparse ends
             code = int(end.code or 0)
     gc.unfreeze()  # `btq check` freezes what it has imported, and here all that is there
-    return code, *map(_written, (out, err))
+    return code, _written(out), _written(err)
 
 
 def _written(stream: io.TextIOWrapper) -> str:

@@ -166,8 +166,8 @@ def _node(draw: st.DrawFn, below: Sequence[str], depth: int) -> list[str]:
         head, pairs = _parted(draw(st.sampled_from(ONE_CHILD)))
         children = 1
     elif group == 7:
-        head, pairs, children = draw(st.sampled_from(_OF_SOME_SHAPE))
-        pairs = list(pairs)
+        head, shape, children = draw(st.sampled_from(_OF_SOME_SHAPE))
+        pairs = [*shape]
     else:
         head, pairs = _parted(draw(st.sampled_from(SOME_CHILDREN)))
         children = draw(st.integers(2, 3))

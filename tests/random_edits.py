@@ -130,11 +130,11 @@ class Drift:
             end, piece = self.chance.choice(((at, "# "), (text.find("\n", at) + 1 or len(text), "")))
         self.texts[name] = text[:at] + piece + text[end:]
         lines = LineIndex(text)
-        places = [lines.position(offset, "utf-16") for offset in (at, end)]
-        if any(lines.offset(place, "utf-16") != offset for place, offset in zip(places, (at, end), strict=True)):
+        first, last = (lines.position(offset, "utf-16") for offset in (at, end))
+        if (lines.offset(first, "utf-16"), lines.offset(last, "utf-16")) != (at, end):
             self.editor.change(name, self.texts[name])  # no position is between \r and \n
         else:
-            self.editor.change(name, part(*places, piece))
+            self.editor.change(name, part(first, last, piece))
 
     def _compare_everything(self, workspace: Workspace, name: str, lines: LineIndex) -> None:
         path, text = str(self.root / name), self.texts[name]

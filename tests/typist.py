@@ -5,7 +5,7 @@ The language of recordings is at the head of `recordings/an_hour.keys`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from btq_lang.formatter import format_text
@@ -155,7 +155,7 @@ class Typist:
     def _change(self, start: int, end: int, text: str) -> None:
         self._apply({self.path: (Edit(Span(start, end), text),)})
 
-    def _apply(self, changes: dict[str, tuple[Edit, ...]]) -> None:
+    def _apply(self, changes: Mapping[str, tuple[Edit, ...]]) -> None:
         """Edits of files; the cursor stays where it is in the text."""
         workspace = self.session.workspace_of(self.path)
         assert workspace is not None, "what is open is known"

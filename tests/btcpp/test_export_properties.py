@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from lxml import etree
 from mission_strategies import odd_missions
-from missions import mission
+from missions import Spelling, mission
 from seeds import seeds
 
 from btq_lang.btcpp.document import write
@@ -25,7 +25,7 @@ VERSIONS = ("4.6", "4.8", "4.10")
 @pytest.mark.parametrize("version", VERSIONS)
 @pytest.mark.parametrize("spelling", ["classic", "short"])
 @pytest.mark.parametrize("seed", seeds(4))
-def test_missions_made_up_keep_the_engines_rules(version: str, spelling: str, seed: int) -> None:
+def test_missions_made_up_keep_the_engines_rules(version: str, spelling: Spelling, seed: int) -> None:
     workspace = Workspace.of({"m.btq": mission(150, seed, spelling)}, Project(engines=(version,)))
     done = export(workspace, "m.btq")
     assert done.problems == ()

@@ -76,8 +76,8 @@ def test_side_files_that_say_nothing(tmp_path: Path) -> None:
     assert of_elements(side, f"{xml}\n", ()).problem == "belongs to other XML than this"
     newer = json.dumps({**json.loads(side), "version": 99})
     assert of_elements(newer, xml, ()).problem == "cannot be read by this version of btq"
-    damaged = ("", "{", "[]", "{}", "[" * 100_000, side[:-40], side.replace('"uid": 2', '"uid": []'))
-    damaged += (side.replace('"nodes": [3]', '"nodes": 3'), side.replace('"arguments": {', '"arguments": [], "x": {'))
+    damaged = ["", "{", "[]", "{}", "[" * 100_000, side[:-40], side.replace('"uid": 2', '"uid": []')]
+    damaged += [side.replace('"nodes": [3]', '"nodes": 3'), side.replace('"arguments": {', '"arguments": [], "x": {')]
     for each in damaged:
         assert each != side
         assert of_elements(each, xml, ()).problem == "cannot be read", each[:80]

@@ -55,7 +55,7 @@ def read(text: str) -> tuple[str, str, str, str, tuple[str, ...]] | None:
         ("<root></A><$0", ("tag", "", "", "", ("root",))),
     ],
 )
-def test_what_is_typed(text: str, found: tuple[str, ...] | None) -> None:
+def test_what_is_typed(text: str, found: tuple[str, str, str, str, tuple[str, ...]] | None) -> None:
     assert read(text) == found
 
 

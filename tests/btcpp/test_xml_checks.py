@@ -145,8 +145,8 @@ def test_what_can_be_no_tag_is_refused_directly_below_a_reactive_sequence() -> N
     for node in ("Action Scan", "Scan", '"Größe"', 'SubTree "3d scan"', 'ScriptAction (name = "3d scan")', '"3d scan"'):
         assert found(node) == []  # a forbidden tag is reported as such
     xml = '<root BTCPP_format="4"><BehaviorTree ID="T"><ReactiveSequence><Action ID="3d scan"/></ReactiveSequence>'
-    (told,) = [each for each in problems(f"{xml}</BehaviorTree></root>") if each.rule == "explicit-in-reactive"]
-    assert told.notes == (
+    (problem,) = [each for each in problems(f"{xml}</BehaviorTree></root>") if each.rule == "explicit-in-reactive"]
+    assert problem.notes == (
         "its message `Unknown node type: Action` refers to the tag: put it in a Sequence of its own",
         '4.6 accepts it: if you run that, set `engine = "4.6"` in btq.toml',
     )

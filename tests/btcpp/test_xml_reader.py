@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -32,7 +33,7 @@ def strict_elements(data: bytes) -> list[object]:
     root = etree.fromstring(data, STRICT)
     around = [*root.itersiblings(preceding=True)][::-1], [*root.itersiblings()]
     found += [comment.text for comment in around[0] if comment.tag is etree.Comment]
-    stack: list[tuple[str, object]] = [("node", root)]
+    stack: list[tuple[str, Any]] = [("node", root)]
     while stack:
         kind, node = stack.pop()
         if kind == "text":
@@ -40,7 +41,7 @@ def strict_elements(data: bytes) -> list[object]:
             continue
         if node.tag is etree.Comment:
             found.append(node.text)
-            inner: list[tuple[str, object]] = []
+            inner: list[tuple[str, Any]] = []
         else:
             found.append((node.tag, list(node.items())))
             inner = [("text", node.text)] if node.text and node.text.strip() else []

@@ -242,7 +242,7 @@ def test_the_text_of_a_node() -> None:
 
 
 def test_the_same_files_give_the_same_text() -> None:
-    other = Workspace(dict(reversed(WORKSPACE.files.items())), Project())
+    other = Workspace(dict(reversed([*WORKSPACE.files.items()])), Project())
     assert xsd([other], "4.10", ()) == xsd([WORKSPACE], "4.10", ())
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from typing import Any
 
 import pint
 import pytest
@@ -65,7 +66,7 @@ EXPECTED = """
 
 
 @pytest.fixture(scope="module")
-def registry() -> pint.UnitRegistry:
+def registry() -> pint.UnitRegistry[Any]:
     return pint.UnitRegistry()
 
 
@@ -76,7 +77,7 @@ def unit(text: str) -> Unit:
 
 
 @pytest.mark.parametrize("spelling", sorted(SYMBOLS))
-def test_every_spelling_means_what_pint_says(spelling: str, registry: pint.UnitRegistry) -> None:
+def test_every_spelling_means_what_pint_says(spelling: str, registry: pint.UnitRegistry[Any]) -> None:
     ours = unit(spelling)
     theirs = registry(PINT_NAMES.get(spelling, spelling))
     base = theirs.to_root_units()
@@ -89,7 +90,7 @@ def test_every_spelling_means_what_pint_says(spelling: str, registry: pint.UnitR
     assert {PINT_BASES[base]: powers[base] for base in PINT_BASES if powers[base]} == dict(theirs.dimensionality)
 
 
-def test_pint_is_not_helped_where_it_knows_better(registry: pint.UnitRegistry) -> None:
+def test_pint_is_not_helped_where_it_knows_better(registry: pint.UnitRegistry[Any]) -> None:
     """Every exception is needed: pint does not know the word, or means another thing."""
     for spelling in PINT_NAMES:
         try:

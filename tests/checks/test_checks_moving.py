@@ -135,7 +135,7 @@ def test_a_list_that_no_script_writes_is_what_it_was() -> None:
 def test_each_change_of_the_engine_is_on_the_page_of_one_step() -> None:
     pages = [page for path, page in moving_pages().items() if path[7:8].isdigit()]
     assert len(pages) == 3
-    for what in {row.what for row in (*ENGINE_CHANGES, *versions.CHANGES)}:
+    for what in {row.what for row in ENGINE_CHANGES} | {row.what for row in versions.CHANGES}:
         assert sum(what in page for page in pages) == 1, what
     named = [each for name, each in vars(versions).items() if name.isupper() and isinstance(each, versions.Change)]
     assert named == [*versions.CHANGES]

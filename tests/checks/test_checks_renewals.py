@@ -209,7 +209,7 @@ def _writes_meanwhile(text: str, seed: int) -> bool:
     seen: list[bool] = []
     for sim in sims:
         if sim.source.node.attribute("w") is not None:
-            sim.execute = _noting(sim.execute, lambda: seen.append(any(each.started is not None for each in targets)))
+            sim.execute = _noting(sim.execute, lambda: seen.append(any(each.started is not None for each in targets)))  # type: ignore[method-assign]  # of this one alone
     with suppress(Endless):
         for _ in range(5):
             run.mission()

@@ -154,7 +154,9 @@ def test_a_node_of_this_file_that_another_one_attaches_it_to() -> None:
         "skills.btq": 'include "rules.btq"\napply q to every B\nAction B\n',
         "main.btq": 'include "rules.btq"\ninclude "skills.btq"\nRoot Main\nBehaviorTree Main\n    B\n',
     }
-    found = findings(texts.pop("main.btq"), RULE, **{path.removesuffix(".btq"): text for path, text in texts.items()})
+    main = texts.pop("main.btq")
+    others = {path.removesuffix(".btq"): text for path, text in texts.items()}
+    found = findings(main, RULE, project=None, **others)
     why = "the engine can stop a node, but cannot make it do more"
     assert found == [f"5 warning «B» the engine cannot enforce `on violation halt`: {why}"]
 

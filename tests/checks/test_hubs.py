@@ -41,7 +41,7 @@ def reached(answer: Any) -> Iterator[Any]:
 def test_no_hub_depends_on_another_through_other_queries() -> None:
     met = set()
     for example in EXAMPLES.iterdir():
-        workspace = open_workspace(example)
+        workspace = open_workspace(str(example))
         for path in workspace.files:
             checks.findings(workspace.store, path)
         for answer in workspace.store._answers.values():

@@ -692,7 +692,7 @@ def test_init_offers_a_table_for_logs(btq: Run, tmp_path: Path) -> None:
     text = (tmp_path / "btq.toml").read_text(encoding="utf-8")
     before, _, offered = text.partition("# [evidence]\n")
     lines = ["[evidence]", *(line.removeprefix("# ").removeprefix("#") for line in offered.splitlines())]
-    project, problems = parse_project("\n".join((before, *lines)), str(tmp_path))
+    project, problems = parse_project("\n".join((before, *lines)), root=str(tmp_path))
     assert [*problems] == []
     assert project.evidence is not None
     assert project.evidence.logs == ("logs/**/*.btlog",)

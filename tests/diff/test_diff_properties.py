@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import copy
 import random
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from missions import mission
+from missions import Spelling, mission
 from seeds import seeds
 
 from btq_lang.diff import Change, compare
@@ -29,7 +30,7 @@ def compare_texts(old: str, new: str) -> tuple[Change, ...]:
 
 @pytest.mark.parametrize("spelling", ["short", "classic"])
 @pytest.mark.parametrize("seed", seeds(3))
-def test_a_mission_and_itself(seed: int, spelling: str) -> None:
+def test_a_mission_and_itself(seed: int, spelling: Spelling) -> None:
     text = mission(300, seed, spelling)
     assert compare_texts(text, text) == ()
     assert compare_texts(text, format_text(text).text) == ()
@@ -129,7 +130,9 @@ def replace_kind(trees: list[Made], chance: random.Random) -> tuple[str, str]:
 @pytest.mark.parametrize("edit", [add, remove, change, rename, wrap, replace_kind], ids=lambda edit: edit.__name__)
 @settings(max_examples=40)  # each parses two missions
 @given(trees=missions, seed=st.integers(0, 1_000))
-def test_one_edit_is_told_as_just_that(edit, trees: list[Made], seed: int) -> None:
+def test_one_edit_is_told_as_just_that(
+    edit: Callable[[list[Made], random.Random], tuple[str, str]], trees: list[Made], seed: int
+) -> None:
     edited = copy.deepcopy(trees)
     what, name = edit(edited, random.Random(seed))
     changes = compare_texts(text_of(trees), text_of(edited))

@@ -116,7 +116,7 @@ def test_every_library_is_pure_python(unpacked: Path) -> None:
 
 
 def test_the_bundled_server_starts_and_answers(unpacked: Path, tmp_path: Path) -> None:
-    messages = [
+    messages: list[dict[str, object]] = [
         {"id": 1, "method": "initialize", "params": {"processId": None, "rootUri": None, "capabilities": {}}},
         {"method": "initialized", "params": {}},
         {"id": 2, "method": "shutdown"},

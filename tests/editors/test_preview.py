@@ -5,14 +5,14 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
+    from playwright.sync_api import Browser, Page, ViewportSize
 
 # On a busy machine the first picture may come again between a focus and a key: what fails is tried once more.
 pytestmark = pytest.mark.flaky(reruns=1)
@@ -60,9 +60,10 @@ def keys(page: Page, *names: str) -> None:
 
 def boxes(page: Page) -> list[str]:
     """What is written in each box."""
-    return page.locator(".box").evaluate_all(
+    texts: list[str] = page.locator(".box").evaluate_all(
         "boxes => boxes.map(box => [...box.querySelectorAll('text')].map(text => text.textContent).join(' '))"
-    )  # type: ignore[no-any-return]  # whatever a page's script gives
+    )
+    return texts
 
 
 def focused(page: Page) -> str:
@@ -239,20 +240,29 @@ def load(page: Page, folder: Path, nodes: int) -> None:
 @pytest.mark.parametrize("nodes", [12, 100, 1000])
 def test_it_opens_fitted_with_the_root_in_the_middle(page: Page, tmp_path: Path, artifacts: Path, nodes: int) -> None:
     load(page, tmp_path, nodes)
-    for size in ({"width": 1400, "height": 900}, {"width": 700, "height": 900}, {"width": 500, "height": 700}):
-        page.set_viewport_size(size)  # type: ignore[arg-type]  # whose keys are spelt out
+    sizes: list[ViewportSize] = [
+        {"width": 1400, "height": 900},
+        {"width": 700, "height": 900},
+        {"width": 500, "height": 700},
+    ]
+    for size in sizes:
+        page.set_viewport_size(size)
         page.wait_for_function("width => document.getElementById('view').clientWidth === width", arg=size["width"])
         page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
         see_fitted(page)
         for scheme in ("light", "dark"):
-            page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]  # a literal
+            page.emulate_media(color_scheme=scheme)
             page.screenshot(path=str(artifacts / f"preview-{nodes}-nodes-{size['width']}-{scheme}.png"))
 
 
 @pytest.mark.scheduled
 def test_f_and_a_button_fit_it_again(page: Page) -> None:
     whole = rectangle(page, PICTURE)
-    for fit in (lambda: keys(page, "f"), lambda: page.get_by_role("button", name="Fit").click()):
+    ways: list[Callable[[], None]] = [
+        lambda: keys(page, "f"),
+        lambda: page.get_by_role("button", name="Fit").click(),
+    ]
+    for fit in ways:
         page.locator(".box").first.focus()
         keys(page, "+", "+", "+")
         assert rectangle(page, PICTURE) != pytest.approx(whole, abs=1)

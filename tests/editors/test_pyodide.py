@@ -58,7 +58,7 @@ def pyodide() -> Path:
 def test_it_does_the_same_as_everywhere(node: Path, pyodide: Path, tmp_path: Path) -> None:
     """Parse, check, format, build and import, by calls and by commands."""
     here = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True, cwd=tmp_path, timeout=100)
-    command = [node, ROOT / "tests/editors/pyodide.mjs", pyodide, ROOT, PROGRAM]
+    command: list[str | Path] = [node, ROOT / "tests/editors/pyodide.mjs", pyodide, ROOT, PROGRAM]
     in_pyodide = subprocess.run(command, capture_output=True, text=True, timeout=300)
     assert (in_pyodide.returncode, in_pyodide.stderr) == (0, "")
     assert in_pyodide.stdout == here.stdout

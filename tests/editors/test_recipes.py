@@ -21,6 +21,7 @@ TIDY = WRONG.replace("   Main", " Main")
 
 def recipe(language: str) -> str:
     """The block of a language; there is one."""
+    block: str
     (block,) = re.findall(rf"^```{language}\n(.*?)^```$", RECIPES, re.DOTALL | re.MULTILINE)
     return block.replace("/path/to/btq", str(ROOT))
 

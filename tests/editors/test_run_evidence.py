@@ -117,7 +117,7 @@ def test_neovim_sends_a_run_to_the_page(nvim: Path, tmp_path: Path) -> None:
         f"let g:btq_program = ['{sys.executable}', '-m', 'btq_lang']",
     ]
     options = [word for line in setup for word in ("--cmd", line)]
-    command = [nvim, "--headless", "--clean", *options, "main.btq", "-S", "show.lua", "-c", "qall!"]
+    command: list[str | Path] = [nvim, "--headless", "--clean", *options, "main.btq", "-S", "show.lua", "-c", "qall!"]
     environment = {**os.environ, **scratch, "HOME": str(tmp_path), "PYTHONPATH": str(ROOT)}
     run = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=180)
     assert json.loads((tmp_path / "seen.json").read_text(encoding="utf-8")) == [

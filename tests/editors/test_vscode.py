@@ -9,6 +9,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 from chromium import CHROMIUM
@@ -483,7 +484,7 @@ COLUMNS = """[...document.querySelectorAll(".editor-group-container")].map(colum
 
 @pytest.mark.scheduled
 def test_the_overview_takes_at_most_half_of_the_pane_and_no_text_away(code: Workbench) -> None:
-    def columns(count: int) -> list[list[object]]:
+    def columns(count: int) -> list[list[Any]]:
         code.page.wait_for_function(f"count => {COLUMNS}.length === count", arg=count)
         return code.page.evaluate(COLUMNS)  # type: ignore[no-any-return]  # whatever a page's script gives
 

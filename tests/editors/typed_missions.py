@@ -9,9 +9,9 @@ from installed import ROOT
 
 def mission(page: str, number: int) -> str:
     """A mission on a page."""
-    return re.findall(r"^```btq\n(.*?)^```$", (ROOT / page).read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)[
-        number
-    ]
+    text = (ROOT / page).read_text(encoding="utf-8")
+    blocks: list[str] = re.findall(r"^```btq\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
+    return blocks[number]
 
 
 TEXTS = {

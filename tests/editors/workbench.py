@@ -397,7 +397,7 @@ def workbench(
     user.parent.mkdir()
     user.write_text(json.dumps(_KEYBINDINGS))
     with _server(store, node, scratch, programs) as origin, sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS, env=_home(scratch))
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS, env={**_home(scratch)})
         page = browser.new_page(viewport={"width": size[0], "height": size[1]})
         page.set_default_timeout(_WAIT)
         page.goto(f"{origin}/?folder={urllib.parse.quote(str(folder))}")

@@ -209,7 +209,7 @@ def job(
     return asked | ({"log": str(log)} if log is not None else {})
 
 
-def stubs_of(source: str | Path) -> list[dict[str, object]]:
+def stubs_of(source: str | Path) -> list[dict[str, Any]]:
     """The custom nodes of a file and of what it includes: those of its models, and those it uses without a model.
 
     A node with a model has the ports of the model alone; one without has those that are written somewhere.

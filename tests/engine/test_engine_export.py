@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from engine_loader import Answer, Engine, job, stubs_of
-from missions import mission
+from missions import Spelling, mission
 
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.export import export, xml_name
@@ -72,7 +72,7 @@ def test_side_files_number_nodes_as_the_engine_does(engine: Engine, example: str
 
 
 @pytest.mark.parametrize("spelling", ["classic", "short"])
-def test_missions_made_up_load_and_tick(engine: Engine, spelling: str, tmp_path: Path) -> None:
+def test_missions_made_up_load_and_tick(engine: Engine, spelling: Spelling, tmp_path: Path) -> None:
     sizes = (20, 20, 50, 50, 100, 100, 200, 200, 500)
     texts = {f"mission{seed}.btq": mission(size, seed, spelling) for seed, size in enumerate(sizes)}
     # Their scripts read an entry that no skill of theirs puts out.

@@ -7,6 +7,7 @@ import json
 import re
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from engine_loader import Answer, Engine, job
 from mission_strategies import START, made_up, missions, odd_missions
@@ -50,7 +51,7 @@ def run(engine: Engine, texts: Sequence[str], folder: Path) -> dict[str, Answer]
     answers = engine.run(_job(file) for file in files)
     for file, answer in zip(files, answers, strict=True):
         side = file.with_name(f"{file.stem}.qreq.json")
-        said = json.loads(side.read_text(encoding="utf-8")) if side.exists() else {"main_tree": None}
+        said: dict[str, Any] = json.loads(side.read_text(encoding="utf-8")) if side.exists() else {"main_tree": None}
         if said["main_tree"] is not None and answer.stage == "done":
             made = [(node.uid, node.path) for node in answer.tree]
             assert made == [(each["uid"], each["path"]) for each in said["nodes"]], file.read_text(encoding="utf-8")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 from engine_loader import Answer, Engine, job
@@ -107,7 +108,7 @@ def parts(chance: random.Random) -> dict[str, list[object]]:
 @pytest.mark.parametrize("seed", seeds(4))
 def test_random_trees_do_the_same(engine: Engine, seed: int) -> None:
     chance = random.Random(seed)
-    cases = []
+    cases: list[tuple[str, Document, Document, dict[str, Any]]] = []
     clauses = 0
     while len(cases) < 60:
         text = mission(chance)

@@ -52,7 +52,9 @@ def campaign(mission: Candidate, kind: type[Robot]) -> tuple[bytes, str]:
         robot.mission()
         robot.write(robot.root, engine.IDLE)
         # Those of one tick have the same time in the model.
-        rows[first:] = [(time - START + 20 * index, *row) for index, (time, *row) in enumerate(rows[first:])]
+        rows[first:] = [
+            (time - START + 20 * index, uid, status) for index, (time, uid, status) in enumerate(rows[first:])
+        ]
         reports.append(robot.now + PAUSE / 2)
         robot.spend(PAUSE, OTHERWISE)
         robot.now += PAUSE
@@ -117,7 +119,9 @@ class Robot(LoggedRun):
 
     def name_of(self, leaf: ResolvedNode) -> str:
         """What a leaf does."""
-        return (leaf.name or leaf.id).text
+        name = leaf.name or leaf.id
+        assert name is not None
+        return name.text
 
 
 class Inspector(Robot):

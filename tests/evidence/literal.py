@@ -15,7 +15,7 @@ from literal_verbs import OPEN, OUT, Judged, counted
 
 from btq_lang.evidence.model import ROOT
 from btq_lang.evidence.odds import lower_limit, upper_limit
-from btq_lang.requirements.model import Mission, Span, Total
+from btq_lang.requirements.model import Mission, Span, Target, Total
 
 if TYPE_CHECKING:
     from literal_log import Truth
@@ -50,6 +50,7 @@ class World(OverRuns):
             part: the only end of `between` that counts.
         """
         requirement = applied.requirement
+        assert isinstance(applied.subject, Target | Mission)
         found = []
         for uid in self.uids(applied.subject):
             if isinstance(applied.subject, Mission) and claim.verb == "succeeds":
@@ -72,7 +73,7 @@ class Session:
 
     def __init__(self, *log: Any) -> None:
         """As `Log`, but for the end."""
-        self.early, self.late = World(*log, "earliest"), World(*log, "latest")
+        self.early, self.late = World("earliest", *log), World("latest", *log)
         self.worlds = self.early, self.late
         self.runs = self.late.runs
         self.activations = self.late.activations
@@ -137,14 +138,14 @@ class Session:
             verdict = False
         elif not is_answered and verdict:
             verdict = OPEN
-        verdict = counted(alike(one.counts, other.counts), verdict)
+        verdict = counted(one.counts if one.counts == other.counts else None, verdict)
         verdict = False if other.is_stopped else verdict
         decided = other.at.end if verdict is False and is_answered else other.until
         return Judged(run.run, other.at.uid, verdict, run.end, decided)
 
     def total(self, total: Total, claim: Claim, requirement: Requirement) -> list[Judged]:
         """sum of X, Y: what they did in a run, together."""
-        found = []
+        found: list[Judged] = []
         early, late = (world.parts(total, requirement) for world in self.worlds)
         for ones, others in zip(early, late, strict=True):
             run = self.runs[len(found)]
@@ -180,7 +181,7 @@ def alike(one: Verdict, other: Verdict) -> Verdict:
 
 def both_parts(upper: Judged, lower: Judged) -> Judged:
     """`between` by what its ends come to: what is cut off, or not counted, is so by the upper one."""
-    if upper.verdict in (OPEN, OUT) or lower.verdict in (OPEN, OUT):
+    if isinstance(upper.verdict, str) or isinstance(lower.verdict, str):
         return upper
     return replace(upper, verdict=both(upper.verdict, lower.verdict))
 

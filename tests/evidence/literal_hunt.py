@@ -15,6 +15,7 @@ if __name__ == "__main__":  # as pytest has it for tests
 
 import literal
 from literal import ClauseResult, Literal
+from literal_log import as_amount
 from literal_verbs import OPEN
 from random_runs import Case, case
 
@@ -100,7 +101,10 @@ def literal_of(made: Case) -> Literal:
     """The literal judge of a case."""
     signals = made.mission.requirements.signals
     samples = {
-        name: [(time, value if (unit := signals[name].unit) is None else to_si(value, unit)) for time, value in values]
+        name: [
+            (time, value if (unit := signals[name].unit) is None else to_si(as_amount(value), unit))
+            for time, value in values
+        ]
         for name, values in made.samples.items()
     }
 

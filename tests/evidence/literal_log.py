@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.model import SampleValue, Transition
     from btq_lang.requirements.model import Bounded, Condition, Mission, Number, Signal
 
+    Measure = Callable[[Sequence[float]], float]
     Truth = bool | None
     Samples = Mapping[str, Sequence[tuple[int, SampleValue]]]
 
@@ -46,13 +47,13 @@ class Log:
     """A session, all of it.
 
     Args:
+        end: which end of the interval in which it began is the begin of an activation: all is judged at both.
         subtrees: which of the tree's nodes are SubTree nodes.
         delays: how long each Delay waits, in µs.
         samples: by signal, in SI, in the order of their times.
         signals: all of the mission, by name.
         instances: the uids of the instances of a written node.
         guards: the nodes that a build has put around others, with the requirement of each.
-        end: which end of the interval in which it began is the begin of an activation: all is judged at both.
 
     Attributes:
         changes: the moments at which anything changes: rows, samples, and samples that grow too old.
@@ -60,6 +61,7 @@ class Log:
 
     def __init__(
         self,
+        end: Literal["earliest", "latest"],
         tree: LoggedTree,
         subtrees: frozenset[int],
         delays: Mapping[int, int],
@@ -68,7 +70,6 @@ class Log:
         signals: Mapping[str, Signal],
         instances: Callable[[Target], list[int]],
         guards: Mapping[int, str],
-        end: Literal["earliest", "latest"],
     ) -> None:
         self.tree = tree
         self.subtrees = subtrees
@@ -103,8 +104,8 @@ class Log:
             case Flag(value):
                 return value
             case Read(signal):
-                value = self.sample(signal, moment[0], initially=initially)
-                return None if value is None else bool(value)
+                sample = self.sample(signal, moment[0], initially=initially)
+                return None if sample is None else bool(sample)
             case InContext(_, inner):
                 return self.holds(inner, moment, a, initially=initially)
             case Not(inner):
@@ -141,10 +142,10 @@ class Log:
             case Read(signal):
                 return self.sample(signal, moment[0], initially=initially)
             case Minus(operand):
-                value = self.number(operand, moment, a, initially=initially)
-                return None if value is None else -value
+                amount = self.amount(operand, moment, a, initially=initially)
+                return None if amount is None else -amount
             case Arithmetic(operator, left, right):
-                one, other = (self.number(each, moment, a, initially=initially) for each in (left, right))
+                one, other = (self.amount(each, moment, a, initially=initially) for each in (left, right))
                 if one is None or other is None or (operator == "/" and other == 0):
                     return None
                 return {"+": one + other, "-": one - other, "*": one * other, "/": other and one / other}[operator]
@@ -158,6 +159,13 @@ class Log:
             case Aggregate(function, signal):
                 return self.aggregate(function, signal, a)
         raise AssertionError(number)
+
+    def amount(
+        self, number: Number | Bounded, moment: Moment, a: Activation, *, initially: bool = False
+    ) -> float | None:
+        """`number`, of what is counted with."""
+        value = self.number(number, moment, a, initially=initially)
+        return None if value is None else as_amount(value)
 
     def sample(self, signal: Signal, time: int, *, initially: bool = False) -> SampleValue | None:
         """The last sample up to a time, unless it is too old.
@@ -177,22 +185,23 @@ class Log:
         """Over what a signal was in an activation: as it began, if a sample tells that, and each sample since; `count`
         of samples alone."""
         if function == "count":
-            times = {time for time, _ in self.samples.get(signal.name, ()) if a.begin <= time <= a.end}
-            is_unclear = not a.is_exact and any(time > a.begin for time in times)
-            return None if is_unclear or not self.samples.get(signal.name) else len(times)
+            counted = {time for time, _ in self.samples.get(signal.name, ()) if a.begin <= time <= a.end}
+            is_unclear = not a.is_exact and any(time > a.begin for time in counted)
+            return None if is_unclear or not self.samples.get(signal.name) else len(counted)
         sampled = [time for time, _ in self.samples.get(signal.name, ()) if a.begin < time <= a.end]
         times = sorted({a.begin, *(time for time, _ in self.changes if a.begin < time <= a.end)})
         known = [(time, self.sample(signal, time)) for time in times]
         while known and known[0][1] is None:
             known.pop(0)
-        values = [value for time, value in known if time == a.begin or time in sampled]
+        values = [as_amount(value) for time, value in known if value is not None and time in (a.begin, *sampled)]
         if not values or any(value is None for _, value in known) or (sampled and not a.is_exact):
             return None
         if function == "change":
             return values[-1] - values[0]
         if function == "p95":
             return sorted(values)[-(-len(values) * 95 // 100) - 1]
-        return {"max": max, "min": min, "mean": statistics.fmean, "stddev": statistics.pstdev}[function](values)
+        measures: dict[str, Measure] = {"max": max, "min": min, "mean": statistics.fmean, "stddev": statistics.pstdev}
+        return measures[function](values)
 
     def uids(self, subject: Target | Mission | None) -> list[int]:
         """The instances of a node; the mission is the written root, never a wrapper."""
@@ -237,14 +246,16 @@ def negated(truth: Truth, is_negated: bool) -> Truth:
 def compare(operator: str, one: SampleValue | None, other: SampleValue | None) -> Truth:
     if one is None or other is None:
         return None
-    return {
-        "<": lambda: one < other,
-        "<=": lambda: one <= other,
-        ">": lambda: one > other,
-        ">=": lambda: one >= other,
-        "==": lambda: one == other,
-        "!=": lambda: one != other,
-    }[operator]()
+    if operator in ("==", "!="):
+        return (one == other) == (operator == "==")
+    left, right = as_amount(one), as_amount(other)
+    return {"<": left < right, "<=": left <= right, ">": left > right, ">=": left >= right}[operator]
+
+
+def as_amount(value: SampleValue) -> float:
+    """A value that is counted with; texts are compared alone."""
+    assert not isinstance(value, str)
+    return value
 
 
 def micros(seconds: float) -> int:

@@ -92,6 +92,7 @@ class OverRuns(OfActivations):
         self, uid: int, own: Sequence[Activation], run: Activation, claim: Claim, requirement: Requirement
     ) -> list[Decided]:
         """How many starts that count lie in each activation of the other node, or in the run."""
+        assert not isinstance(claim.per, Value)
         around = [ROOT] if claim.per is None else self.nearest(uid, self.uids(claim.per))
         refused = [
             check
@@ -201,7 +202,7 @@ class OverRuns(OfActivations):
                 _, by, is_exact = answers[0] if answers else (None, run.stop, True)
                 least, most = spent(event.times, ends[0] if ends else (run.end, run.end))
                 at = between(run, uid, event.moment, by)
-                bound = self.number(claim.limit.value, at.start, at) if claim.limit is not None else None
+                bound = self.amount(claim.limit.value, at.start, at) if claim.limit is not None else None
                 until = by if bound is None else min(by, (at.begin + micros(bound), by[1]))
                 counts = self.counts(between(run, uid, at.start, until), requirement) if event.is_sure else None
                 found.append(Spent(at, until[0], counts, event.is_sure, bool(answers), not is_exact, least, most))

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
-from literal_log import Log, both, either, negated
+from literal_log import Log, as_amount, both, either, negated
 
 if TYPE_CHECKING:
     from literal_log import Truth
@@ -15,10 +15,11 @@ if TYPE_CHECKING:
 
     from btq_lang.requirements.model import Claim, Limit, Requirement
 
-    Verdict = Truth | str
+    Verdict = Truth | Literal["open", "out"]
     Part = Literal["upper", "lower"] | None
 
-OPEN, OUT = "open", "out"  # cut off by the end of the log before it breaks anything; not counted
+OPEN: Final = "open"  # cut off by the end of the log before it breaks anything
+OUT: Final = "out"  # not counted
 
 
 @dataclass(frozen=True)
@@ -145,14 +146,14 @@ class OfActivations(Log):
             if a.outcome == "F":
                 return False
             if claim.limit is None:
-                return {"S": True, "H": OUT, "O": OPEN}[a.outcome]
+                return True if a.outcome == "S" else OPEN if a.outcome == "O" else OUT
             return self.bounded(a, (a.end - a.begin) / 1e6, claim.limit)
         if claim.verb == "needs":
             holds = self.holds(claim.condition, a.start, a)
             return OPEN if holds and a.outcome == "O" else holds
         if claim.verb == "leaves":
             holds = self.holds(claim.condition, a.stop, a)
-            return {"S": holds, "F": OUT, "H": OUT, "O": OPEN}[a.outcome]
+            return holds if a.outcome == "S" else OPEN if a.outcome == "O" else OUT
         assert claim.verb == "uses"
         return self.bounded(a, self.used(claim, a), claim.limit, part)
 
@@ -166,15 +167,16 @@ class OfActivations(Log):
         """
         assert claim.signal is not None
         assert claim.limit is not None
-        bound = self.number(claim.limit.upper or claim.limit.value, a.start, a)
+        bound = self.amount(claim.limit.upper or claim.limit.value, a.start, a)
         before, after = self.sample(claim.signal, a.begin), self.sample(claim.signal, a.end)
         if bound is None or before is None or after is None:
             return None
         later = {time: value for time, value in self.samples[claim.signal.name] if a.begin < time <= a.end}
-        values = [before, *later.values()]
+        values = [as_amount(value) for value in (before, *later.values())]
+        risen = as_amount(after) - as_amount(before)
         if claim.signal.behaviour == "level":
-            return before - after + recharged(values, bound / 2)
-        return after - before + sum(value for value, following in pairwise(values) if following < value / 2)
+            return recharged(values, bound / 2) - risen
+        return risen + sum(value for value, following in pairwise(values) if following < value / 2)
 
     def keeps(self, a: Activation, claim: Claim, requirement: Requirement) -> Verdict:
         """keeps, never: a sample in [b, e] with C that breaks it; it counts if C holds at all meanwhile."""
@@ -204,15 +206,14 @@ class OfActivations(Log):
     def within(self, measured: float | None, limit: Limit | None, a: Activation) -> tuple[Truth, Truth]:
         """Whether a measure keeps the upper and the lower end of a limit, read at the start."""
         assert limit is not None
-        low = self.number(limit.value, a.start, a)
-        high = self.number(limit.upper, a.start, a) if limit.upper is not None else low
-        is_known = measured is not None
-        above: Truth = None if high is None or not is_known else measured <= high
-        below: Truth = None if low is None or not is_known else measured >= low
+        low = self.amount(limit.value, a.start, a)
+        high = self.amount(limit.upper, a.start, a) if limit.upper is not None else low
+        above: Truth = None if high is None or measured is None else measured <= high
+        below: Truth = None if low is None or measured is None else measured >= low
         if limit.relation == "<":
-            above = None if high is None or not is_known else measured < high
+            above = None if high is None or measured is None else measured < high
         if limit.relation == ">":
-            below = None if low is None or not is_known else measured > low
+            below = None if low is None or measured is None else measured > low
         return (True if limit.relation in (">", ">=") else above), (True if limit.relation in ("<", "<=") else below)
 
     def scoped(self, a: Activation, verdict: Verdict, requirement: Requirement) -> Verdict:

@@ -427,7 +427,7 @@ def samples(chance: random.Random, rows: list[Transition]) -> dict[str, list[tup
     level = itertools.accumulate(iter(lambda: chance.choice(steps) * EXACT, None), charged, initial=10 * EXACT)
     count = itertools.accumulate(iter(lambda: chance.choice([0, 1, 3, 5, 10, -1, -100]), None), increased, initial=20)
     walks = chance.random() < 0.5
-    values = {
+    values: dict[str, Callable[[], SampleValue]] = {
         "battery": lambda: next(level) if walks else chance.randint(0, 16) * EXACT,
         "energy": lambda: next(count) if walks else chance.randint(0, 10) * 5,
         "speed": lambda: chance.randint(-1, 4) / 4,

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import bare_loops
 import pytest
 import robot_log
-from evidence_logs import btlog, write_db3
+from evidence_logs import Row, btlog, write_db3
 
 from btq_lang.evidence.judging import Means
 from btq_lang.evidence.verdicts import MissionVerdicts
 from btq_lang.evidence.verifying import verify
 
 
-def judged(robot: robot_log.Robot, rows: list[robot_log.Row], log: Path) -> MissionVerdicts:
+def judged(robot: robot_log.Robot, rows: list[Row], log: Path) -> MissionVerdicts:
     report = verify([str(log)], Means([robot.mission], robot_log.battery(rows[-1][0])))
     assert report.problems == ()
     (mission,) = report.missions
@@ -22,7 +23,7 @@ def judged(robot: robot_log.Robot, rows: list[robot_log.Row], log: Path) -> Miss
 
 
 @pytest.mark.parametrize(("make", "nodes", "runs"), [(robot_log.tiny, 3, 200), (robot_log.fetching, 31, 5)])
-def test_loop_finds_what_is_judged(make, nodes, runs, tmp_path):
+def test_loop_finds_what_is_judged(make: Callable[[], robot_log.Robot], nodes: int, runs: int, tmp_path: Path) -> None:
     robot = make()
     rows = robot.rows(1800)
     log, database = tmp_path / "a.btlog", tmp_path / "a.db3"

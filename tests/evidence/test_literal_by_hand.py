@@ -23,7 +23,7 @@ from literal_verbs import OPEN
 from random_runs import as_case
 
 from btq_lang.evidence.identity import Candidate
-from btq_lang.evidence.model import LoggedTree
+from btq_lang.evidence.model import LoggedTree, SampleValue
 
 SIGNALS = """
 signal speed : m/s from {speed} initially 0 m/s
@@ -45,7 +45,9 @@ def said(demand: str, log: str, tree: str = TWO, **samples: Sequence[tuple[float
     shown = "\n".join(f"    {line}" for line in tree.split("\n"))
     text = f"Root Main\n{SIGNALS}QualityReq r : safety\n    {demand}\nBehaviorTree Main\n{shown}\n"
     mission = Candidate(workspace_of({"main.btq": text}), "main.btq", "main", None)
-    in_micros = {name: [(START + round(ms * 1000), value) for ms, value in values] for name, values in samples.items()}
+    in_micros: dict[str, list[tuple[int, SampleValue]]] = {
+        name: [(START + round(ms * 1000), value) for ms, value in values] for name, values in samples.items()
+    }
     logged = [(START + time, uid, status) for time, uid, status in rows(log)]
     made = replace(as_case(text, mission), sessions=[logged], samples=in_micros)
     applied = next(each for each in mission.requirements.applied if each.requirement.name == "r")
@@ -91,7 +93,7 @@ LATE = [(20.0, 0.5)]
     ],
 )
 def test_initially_is_no_measurement(demand: str, speed: list[tuple[float, float]] | None, expected: str) -> None:
-    assert said(demand, LONG, **({} if speed is None else {"speed": speed})) == expected
+    assert said(demand, LONG, TWO, **({} if speed is None else {"speed": speed})) == expected
 
 
 DELAY = "Delay d (delay_msec = 300)\n  Action Move a"
@@ -284,7 +286,7 @@ def test_a_guard_around_a_span_violates_it() -> None:
 )
 def test_use_adds_up(demand: str, values: list[tuple[float, float]], expected: str) -> None:
     name = "energy" if "energy" in demand else "battery"
-    assert said(demand, LONG, **{name: values}) == expected
+    assert said(demand, LONG, TWO, **{name: values}) == expected
 
 
 @pytest.mark.parametrize(

@@ -105,7 +105,7 @@ def plain(text: str, robot: Robot) -> list[str]:
 
 def test_verdicts_are_printed_as_they_fall_and_then_the_table(live: Live) -> None:
     with Robot(MAIN_XML) as robot:
-        printed = live.watch(robot, lambda: robot.play(GOOD) or robot.play(SLOW))
+        printed = live.watch(robot, lambda: robot.play(GOOD, SLOW))
     assert live.code == 1
     assert live.errors == ""
     assert plain(printed, robot)[:7] == [
@@ -123,7 +123,7 @@ def test_verdicts_are_printed_as_they_fall_and_then_the_table(live: Live) -> Non
 
 def test_a_robot_of_which_no_mission_is_known(live: Live) -> None:
     with Robot(MAIN_XML) as robot:
-        printed = live.watch(robot, lambda: robot.play(GOOD) or robot.play(SLOW), mission="")
+        printed = live.watch(robot, lambda: robot.play(GOOD, SLOW), mission="")
     lines = plain(printed, robot)
     assert any(line.endswith("mission Main (the tree in the log, 3 of 3 nodes)") for line in lines)
     assert "runs: 2 succeeded" in lines
@@ -143,14 +143,14 @@ def test_the_page_shows_what_is_printed(live: Live) -> None:
     *_, shown = re.findall(r"^```text\n(.*?)^```$", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
     first, second = "0 1R 2R 80 2S 3R 90 3S 1S 2I 3I 1I", "0 1R 2R 150 2F 1F 2I 1I"
     with Robot(MAIN_XML) as robot:
-        printed = live.watch(robot, lambda: robot.play(first) or robot.play(second))
+        printed = live.watch(robot, lambda: robot.play(first, second))
     assert plain(printed, robot)[:5] == plain(shown, robot)
 
 
 def test_a_run_that_is_open_is_left_out(live: Live) -> None:
     with Robot(MAIN_XML) as robot:
         robot.play("1R 2R")
-        printed = live.watch(robot, lambda: robot.play("200 2S 3R 3S 1S 2I 3I 1I") or robot.play(GOOD))
+        printed = live.watch(robot, lambda: robot.play("200 2S 3R 3S 1S 2I 3I 1I", GOOD))
     assert live.code == 0
     assert "  a run is open already; what is active now is left out" in printed
     assert "  note: it was running already, so what was active then is left out" in printed
@@ -279,7 +279,12 @@ PORT = "Groot2Publisher has the port 1667 unless the program names another one"
 )
 def test_another_protocol_is_an_error(does: Callable[[socket.socket], object], told: str, live: Live) -> None:
     kept: list[socket.socket] = []
-    address, server = listening(lambda connection: (kept.append(connection), does(connection)))
+
+    def keeps(connection: socket.socket) -> None:
+        kept.append(connection)
+        does(connection)
+
+    address, server = listening(keeps)
     (live.folder / "main.btq").write_text(MISSION, encoding="utf-8")
     with server:
         live.text("--live", address, "--mission", "main.btq")
@@ -300,10 +305,10 @@ def test_another_socket_of_zeromq_is_an_error(kind: int, live: Live) -> None:
     assert (live.code, live.errors) == (2, f"btq verify: {address}: {told}\n")
 
 
-def test_a_server_of_another_protocol_over_zeromq_is_an_error(live: Live) -> None:
+def test_a_server_of_another_protocol_over_zeromq_is_an_error(live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
     """As that of the port 1667 of BehaviorTree.CPP 3, which replies to whatever it is asked."""
     with Robot(MAIN_XML) as robot:
-        robot.answer = lambda parts: [b"\x0c\0\0\0flatbuffer"]
+        monkeypatch.setattr(robot, "answer", lambda parts: [b"\x0c\0\0\0flatbuffer"])
         (live.folder / "main.btq").write_text(MISSION, encoding="utf-8")
         live.text("--live", robot.address, "--mission", "main.btq")
     told = "expected a reply of a Groot2Publisher, found one that begins with 14 bytes"
@@ -344,7 +349,7 @@ def test_odds_use_limits_that_hold_at_every_look(live: Live) -> None:
         f"QualityReq rq : reliability\n    mission succeeds\n    in at least 10 % of runs\n    confidence 90 %\n{MAIN}"
     )
     with Robot(MAIN_XML) as robot:
-        printed = live.watch(robot, lambda: [robot.play(GOOD) for _ in range(3)], mission=mission)
+        printed = live.watch(robot, lambda: robot.play(GOOD, GOOD, GOOD), mission=mission)
     assert "3 of 3, at least 29.2 % with confidence 90 % at every look" in printed
 
 
@@ -515,11 +520,11 @@ class Terminal:
         return self._btq.wait(), self._text.rpartition("\x1b[?1049l")[2]
 
 
-def test_a_small_screen_leaves_verdicts_out_and_says_so() -> None:
+def test_a_small_screen_leaves_verdicts_out_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     watched = Watched((), "tcp://robot:1667", lambda news: None)
     news = [f"news {number}" for number in range(9)]
     assert drawn(watched, news, 80, 10, painter(False)) == ["tcp://robot:1667", "", *news[3:], "", HINT]
-    watched.so_far = lambda: iter([(REQUIREMENT,) * 9])
+    monkeypatch.setattr(watched, "so_far", lambda: iter([(REQUIREMENT,) * 9]))
     assert drawn(watched, news, 80, 14, painter(False)) == [
         "tcp://robot:1667",
         "",

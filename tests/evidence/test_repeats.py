@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from evidence_logs import MAIN, MAIN_XML, START, Row, Verify, btlog, rows, write_db3
 
-from btq_lang.evidence import judging
+from btq_lang.evidence import judging, readers
 from btq_lang.evidence.written_verdicts import read_verdicts
 from btq_lang.ide.runs import logged_run
 from btq_lang.ide.verdicts import Evidence
@@ -59,7 +59,7 @@ def later(by: int, of: Sequence[Row] = RUNS) -> list[Row]:
     return [(time + by, uid, status) for time, uid, status in of]
 
 
-JITTERED = [(time + 31 * number, *rest) for number, (time, *rest) in enumerate(RUNS)]
+JITTERED = [(time + 31 * number, uid, status) for number, (time, uid, status) in enumerate(RUNS)]
 
 
 @pytest.mark.parametrize(
@@ -143,7 +143,8 @@ def test_a_robot_that_logs_twice_into_one_file(mission: Verify) -> None:
 def test_clones_that_start_together_are_robots_of_their_own(mission: Verify) -> None:
     """The first rows agree within a millisecond; later ones do not."""
     for number in range(5):
-        write(mission, f"{number}.btlog", [(time + (time > 0) * number * 1500, *rest) for time, *rest in RUNS])
+        logged = [(time + (time > 0) * number * 1500, uid, status) for time, uid, status in RUNS]
+        write(mission, f"{number}.btlog", logged)
     sources, *_ = counts(mission, *(f"{number}.btlog" for number in range(5)))
     assert sources == [(f"{number}.btlog", 3, []) for number in range(5)]
 
@@ -158,7 +159,7 @@ def test_several_processes_leave_out_the_same(mission: Verify) -> None:
 
 def test_where_nothing_overlaps_no_log_is_read_again(mission: Verify, monkeypatch: pytest.MonkeyPatch) -> None:
     read: list[str] = []
-    of_log: Callable[..., object] = judging.read
+    of_log: Callable[..., object] = readers.read
 
     def counted(path: str, *sources: object) -> object:
         read.append(path)

@@ -9,12 +9,11 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from evidence_logs import MAIN_XML, START, btlog, rows, write_db3
+from evidence_logs import MAIN_XML, START, btlog, rows, sessions_of, write_db3
 from hypothesis import given
 from hypothesis import strategies as st
 
 from btq_lang.evidence.model import GAP, PAUSE, Activation, LoggedTree, Session
-from btq_lang.evidence.readers import read
 from btq_lang.evidence.runs import activations
 
 FILES = ("lab.btlog", "lab.db3", "lab_sessions.db3", "nav.btlog", "nav.db3", "nav_noidle.btlog", "nav_noidle.db3")
@@ -27,7 +26,7 @@ def runs_of(path: Path) -> tuple[list[list[Activation]], list[str]]:
     """The activations of each run, the root's last; and what is to be said of the file."""
     found: list[list[Activation]] = [[]]
     remarks: list[str] = []
-    for session in read(str(path)):
+    for session in sessions_of(path):
         for each in activations(session):
             found[-1].append(each)
             if each.uid == 1:
@@ -82,7 +81,7 @@ def made(text: str, folder: Path) -> tuple[list[str], list[str]]:
     write_db3(folder / "made.db3", MAIN_XML, [rows(text)])
     both = []
     for name in ("made.btlog", "made.db3"):
-        sessions = read(str(folder / name))
+        sessions = sessions_of(folder / name)
         session = next(sessions)
         marks = {"exact": "", "latest": "?", "broken": "!"}
         both.append(
@@ -134,7 +133,7 @@ def test_rows_of_nodes_that_the_tree_lacks_are_reported_once(tmp_path: Path) -> 
 
 def test_durations_across_a_clock_that_was_set_back_are_unknown(tmp_path: Path) -> None:
     (tmp_path / "a.btlog").write_bytes(btlog(MAIN_XML, [*rows("9 1R 2R"), *rows("5 2S 6 3R 8 3S 1S")]))
-    sessions = read(str(tmp_path / "a.btlog"))
+    sessions = sessions_of(tmp_path / "a.btlog")
     session = next(sessions)
     found = [(each.uid, each.outcome, each.timing) for each in activations(session)]
     assert found == [(2, "S", "broken"), (3, "S", "exact"), (1, "S", "broken")]

@@ -360,9 +360,14 @@ def test_scopes(demand: str, expected: str, verify: Verify) -> None:
 
 
 def test_a_context_is_read_once_at_a_moment(verify: Verify, monkeypatch: pytest.MonkeyPatch) -> None:
-    read = []
+    read: list[tuple[Any, ...]] = []
     reading = Signals.reading
-    monkeypatch.setattr(Signals, "reading", lambda *asked: read.append(asked) or reading(*asked))
+
+    def noted(*asked: Any) -> object:
+        read.append(asked)
+        return reading(*asked)
+
+    monkeypatch.setattr(Signals, "reading", noted)
     doubled = "".join(f"context c{at} : c{at - 1} and c{at - 1}\n" for at in range(1, 41))
     before = f"{LEVEL}\ncontext c0 : battery < 90 %\n{doubled}"
     clause = verify.clause("Move needs c40\nwhile c39", LONG, samples("battery", SAMPLES), before=before)

@@ -590,7 +590,7 @@ def answer_everything(
     assert all(_lies_in(span, whole) for span in linked_ranges(*at))
 
 
-def words_of(tokens: Iterable[Token]) -> list[tuple[str, str]]:
+def words_of(tokens: Iterable[Token]) -> list[tuple[int, str]]:
     """Those of some tokens that may have a colour."""
     silent = (BLANK, OPEN, CLOSE, ERROR, NEWLINE, INDENT, DEDENT)
     return [(token.kind, token.text) for token in tokens if token.kind not in silent]

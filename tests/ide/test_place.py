@@ -9,6 +9,7 @@ import pytest
 
 from btq_lang.ide import place
 from btq_lang.ide.completion import complete
+from btq_lang.lexer import tokens as all_tokens
 from btq_lang.syntax.tokens import Token
 from btq_lang.util.text import Span
 from btq_lang.workspace.file import File
@@ -53,7 +54,6 @@ def test_a_completion_does_not_look_through_the_whole_tree(typed: str, monkeypat
         return all_tokens(text)
 
     lengths: list[int] = []
-    all_tokens = place.tokens_of
     monkeypatch.setattr(place, "tokens_of", counted)
     assert cut(20) == cut(2_000)
 

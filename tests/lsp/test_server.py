@@ -9,7 +9,7 @@ import shutil
 import socket
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from time import sleep
 
@@ -120,7 +120,7 @@ def test_closing_a_file_that_is_on_no_disk_clears_it(editor: Editor) -> None:
 
 
 def test_a_file_has_one_name_at_a_time(tmp_path: Path) -> None:
-    def told(uri: str) -> list[str]:
+    def told(editor: Editor, uri: str) -> list[str]:
         message = editor.wait_for(lambda message: message.get("params", {}).get("uri") == uri)
         return [each["code"] for each in message["params"]["diagnostics"]]
 
@@ -130,9 +130,9 @@ def test_a_file_has_one_name_at_a_time(tmp_path: Path) -> None:
     assert theirs != ours
     document = {"uri": theirs, "languageId": "btq", "version": 1, "text": WRONG}
     editor = Editor(tmp_path)
-    assert told(ours) == ["unknown-node"]
+    assert told(editor, ours) == ["unknown-node"]
     editor.notify("textDocument/didOpen", textDocument=document)
-    assert (told(ours), told(theirs)) == ([], ["unknown-node"])
+    assert (told(editor, ours), told(editor, theirs)) == ([], ["unknown-node"])
     assert editor.close() == ""
 
     editor = Editor(tmp_path, capabilities=PULLS)
@@ -315,7 +315,7 @@ def test_what_is_shown_of_closed_files_goes_when_they_are_deleted_or_no_longer_w
     else:
         editor.notify("workspace/didChangeConfiguration", settings={"btq": {"checkClosedFiles": False}})
     again = editor.request("workspace/diagnostic", previousResultIds=known)["items"]
-    gone = {"uri": editor.uri("closed.btq"), "version": None, "kind": "full", "items": []}
+    gone: Message = {"uri": editor.uri("closed.btq"), "version": None, "kind": "full", "items": []}
     assert again[0] == gone
     assert [(Path(each["uri"]).name, each["kind"]) for each in again[1:]] == (
         [("main.btq", "unchanged")] if why == "deleted" else []
@@ -339,7 +339,7 @@ def test_what_is_shown_of_a_document_goes_when_it_is_closed_and_deleted_or_no_lo
     assert last["kind"] == "unchanged"
     editor.shut("main.btq")
     editor.request("textDocument/diagnostic", **editor.document("main.btq"), previousResultId=first["resultId"])
-    gone = {"uri": editor.uri("main.btq"), "version": None, "kind": "full", "items": []}
+    gone: Message = {"uri": editor.uri("main.btq"), "version": None, "kind": "full", "items": []}
     assert editor.request("workspace/diagnostic", previousResultIds=[])["items"] == [gone]
     (tmp_path / "main.btq").write_text(RIGHT, encoding="utf-8")
     editor.open("main.btq", RIGHT)
@@ -675,17 +675,23 @@ def test_tokens_are_made_in_a_pause_for_an_editor_that_asks_for_them(
 
     async def pause() -> None:
         server = Server()
-        tokens = types.SemanticTokensClientCapabilities({}, [], [], []) if asks else None
+        requests = types.ClientSemanticTokensRequestOptions()
+        tokens = types.SemanticTokensClientCapabilities(requests, [], [], []) if asks else None
         document = types.TextDocumentClientCapabilities(semantic_tokens=tokens)
         server.protocol.client_capabilities = types.ClientCapabilities(text_document=document)
         server.check_soon(server.session.edit(path, RIGHT))
         while "the rest" not in made:
             await asyncio.sleep(0)
 
-    monkeypatch.setattr("btq_lang.ide.colours.making", lambda *_: iter(made.append("tokens") or ()), raising=False)
-    monkeypatch.setattr(
-        "btq_lang.ide.readiness.getting_ready", lambda *_: iter(made.append("the rest") or ()), raising=False
-    )
+    def making(what: str) -> Callable[..., Iterator[None]]:
+        def make(*_: object) -> Iterator[None]:
+            made.append(what)
+            return iter(())
+
+        return make
+
+    monkeypatch.setattr("btq_lang.ide.colours.making", making("tokens"), raising=False)
+    monkeypatch.setattr("btq_lang.ide.readiness.getting_ready", making("the rest"), raising=False)
     asyncio.run(pause())
     assert made == [*["tokens"] * asks, "the rest"]
 
@@ -1171,6 +1177,10 @@ def test_a_completion_does_not_wait_for_the_check_of_the_key_before_it(tmp_path:
     assert {*said} == {"completion", f"check of {len(RIGHT)} characters"}  # of none of the keys
 
 
+def is_answer_to(request: str) -> Callable[[Message], bool]:
+    return lambda message: message.get("id") == request
+
+
 def test_nor_does_it_where_the_editor_asks_for_diagnostics(tmp_path: Path) -> None:
     editor = Editor(tmp_path, capabilities=PULLS, program=SLOW)
     editor.open("main.btq", RIGHT)
@@ -1180,7 +1190,7 @@ def test_nor_does_it_where_the_editor_asks_for_diagnostics(tmp_path: Path) -> No
         editor.send(id=f"slow{number}", method="textDocument/diagnostic", params=editor.document("main.btq"))
         assert editor.request("textDocument/completion", **editor.at("main.btq", 3, 17))["items"] != []
         editor.notify("$/cancelRequest", id=f"slow{number}")  # as an editor does at the next key
-        answer = editor.wait_for(lambda message, number=number: message.get("id") == f"slow{number}")
+        answer = editor.wait_for(is_answer_to(f"slow{number}"))
         assert answer["error"]["code"] == -32800
     said = editor.close().splitlines()
     assert said.count("completion") == 5

@@ -408,7 +408,7 @@ def test_what_xml_is_not_served_with(foreign: Editor) -> None:
     for method in ("signatureHelp", "linkedEditingRange"):
         assert foreign.request(f"textDocument/{method}", **foreign.at("dock.xml", 3, 21)) is None
     place = {"start": {"line": 3, "character": 21}, "end": {"line": 3, "character": 21}}
-    context = {"diagnostics": []}
+    context: dict[str, list[Message]] = {"diagnostics": []}
     asked = {**foreign.document("dock.xml"), "range": place, "context": context}
     assert foreign.request("textDocument/codeAction", **asked) == []
 

@@ -172,8 +172,8 @@ def test_what_is_told_is_what_a_new_session_finds(folder: Path, seed: int, monke
             for feature in (complete, find_references):
                 mine, fresh = (feature(each, path, at) for each in workspaces if each is not None)
                 assert mine == fresh
-            mine, fresh = (document_symbols(each, path) for each in workspaces if each is not None)
-            assert mine == fresh
+            outline, outline_anew = (document_symbols(each, path) for each in workspaces if each is not None)
+            assert outline == outline_anew
             coloured, anew = (colours(each, path, "utf-16") for each in workspaces if each is not None)
             assert coloured.data == anew.data
             assert patched(known.get(path, coloured).data, delta(known.get(path, coloured), coloured)) == coloured.data
@@ -314,9 +314,9 @@ def test_a_file_that_two_projects_have(tmp_path: Path, monkeypatch: pytest.Monke
         one / "main.btq": 'include "requirements.btq"\n' + REQUIREMENTS.replace("3 s", "4 s"),
         other / "main.btq": 'include "../one/requirements.btq"\n' + REQUIREMENTS.replace("3 s", "5 s"),
     }
-    for path, text in files.items():
-        path.parent.mkdir(exist_ok=True)
-        path.write_text(text, encoding="utf-8")
+    for file, text in files.items():
+        file.parent.mkdir(exist_ok=True)
+        file.write_text(text, encoding="utf-8")
     opened, convert = str(one / "main.btq"), Converter()
     texts = {opened: files[one / "main.btq"]}
     session = session_of(tmp_path, texts)

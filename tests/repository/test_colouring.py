@@ -53,5 +53,5 @@ def test_kate_finds_the_mode_where_the_documentation_puts_it(tmp_path: Path) -> 
 def test_the_recipe_for_emacs_has_the_words_that_begin_a_line() -> None:
     page = (ROOT / "docs" / "editors.md").read_text("utf-8")
     (quoted,) = re.findall(r"\(regexp-opt '\(([^)]*)\)", page)
-    words = (*vocabulary.ITEMS, vocabulary.MODELS, *vocabulary.CATEGORIES, *vocabulary.DIRECTIONS)
+    words = (*vocabulary.ITEMS, vocabulary.MODELS, *vocabulary.CATEGORY_WORDS, *vocabulary.PORT_WORDS)
     assert sorted(re.findall(r'"(\w+)"', quoted)) == sorted(words)

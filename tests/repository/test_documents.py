@@ -12,6 +12,7 @@ import re
 import shutil
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -71,16 +72,21 @@ RUN_BY = {
 }
 
 
-def blocks(language: str, *names: str) -> list[object]:
-    """The blocks of a language, of the pages of these names or of all."""
-    found: list[object] = []
+def blocks(language: str, *names: str) -> list[tuple[str, str]]:
+    """The blocks of a language, of the pages of these names or of all: where each begins, and its text."""
+    found: list[tuple[str, str]] = []
     for page in PAGES:
         text = page.read_text(encoding="utf-8")
         for match in BLOCK.finditer(text):
             if match[1] == language and (not names or page.name in names):
                 line = text.count("\n", 0, match.start()) + 1
-                found.append(pytest.param(match[2], id=f"{page.relative_to(ROOT)}:{line}"))
+                found.append((f"{page.relative_to(ROOT)}:{line}", match[2]))
     return found
+
+
+def parameters(*found: tuple[str, str]) -> pytest.MarkDecorator:
+    """A test runs for each of some blocks."""
+    return pytest.mark.parametrize("block", [pytest.param(text, id=place) for place, text in found])
 
 
 def test_every_block_is_run_by_somebody() -> None:
@@ -156,7 +162,7 @@ def environment(tmp_path: Path) -> dict[str, str]:
 
 
 @pytest.mark.skipif(os.name == "nt", reason="the blocks are for a POSIX shell")
-@pytest.mark.parametrize("block", [block for block in blocks("sh") if not block.values[0].startswith(INSTALLS)])
+@parameters(*(block for block in blocks("sh") if not block[1].startswith(INSTALLS)))
 def test_a_shell_block_runs(block: str, clone: Path, environment: dict[str, str], tmp_path: Path) -> None:
     if any(words in block for words in ("btq verify", "run.db3", "--evidence logs")):
         _write_logs(clone)
@@ -193,7 +199,7 @@ def _write_logs(folder: Path) -> None:
 # ---- the language, and what is made of it ----
 
 
-@pytest.mark.parametrize("block", blocks("text", *FRAGMENTS) + blocks("btq classic", *FRAGMENTS))
+@parameters(*blocks("text", *FRAGMENTS), *blocks("btq classic", *FRAGMENTS))
 def test_a_fragment_parses(block: str) -> None:
     """As a file, or as what stands in a tree."""
     inside = "BehaviorTree X\n" + re.sub(r"(?m)^(?=.)", "    ", block)
@@ -221,7 +227,7 @@ def test_an_import_gives_what_the_page_shows(tmp_path: Path) -> None:
 
 
 def test_a_diff_says_what_the_page_shows(tmp_path: Path) -> None:
-    (shown,) = (block.values[0] for block in blocks("text", "commands.md"))  # type: ignore[attr-defined]  # a ParameterSet
+    ((_, shown),) = blocks("text", "commands.md")
     before = (ROOT / "examples" / "laboratory" / "mission.btq").read_text(encoding="utf-8")
     after = before
     charge = "            R? ChargeUntilFull\n                BatteryFull\n                Charge\n"
@@ -249,7 +255,7 @@ def test_a_diff_says_what_the_page_shows(tmp_path: Path) -> None:
 # ---- settings ----
 
 
-@pytest.mark.parametrize("block", blocks("toml", "commands.md", "evidence.md", "language.md", "nav2.md"))
+@parameters(*blocks("toml", "commands.md", "evidence.md", "language.md", "nav2.md"))
 def test_a_project_file_is_read(block: str, tmp_path: Path) -> None:
     (tmp_path / "btq.toml").write_text(block, encoding="utf-8")
     found = find_project(str(tmp_path))
@@ -257,13 +263,10 @@ def test_a_project_file_is_read(block: str, tmp_path: Path) -> None:
 
 
 def test_editors_recipes_are_well_formed() -> None:
-    if sys.version_info >= (3, 11):
-        import tomllib
-    else:
-        import tomli as tomllib
+    toml = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
     text = (ROOT / "docs" / "editors.md").read_text(encoding="utf-8")
     kate, xml = (json.loads(match[2]) for match in BLOCK.finditer(text) if match[1] == "json")
-    helix, project = (tomllib.loads(match[2]) for match in BLOCK.finditer(text) if match[1] == "toml")
+    helix, project = (toml.loads(match[2]) for match in BLOCK.finditer(text) if match[1] == "toml")
     assert kate["servers"]["btq"]["command"] == ["btq-lsp"]
     assert helix["language-server"]["btq"]["command"] == "btq-lsp"
     assert helix["language"][0]["file-types"] == ["btq", "qualitybtcpp"]

@@ -45,9 +45,9 @@ def strings(path: Path) -> str:
     tree = ast.parse(path.read_text(encoding="utf-8"))
     alone = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
     return "\n".join(
-        "…".join(part.value for part in node.values if isinstance(part, ast.Constant))
+        "…".join(str(part.value) for part in node.values if isinstance(part, ast.Constant))
         if isinstance(node, ast.JoinedStr)
-        else node.value
+        else str(node.value)
         for node in ast.walk(tree)
         if isinstance(node, ast.JoinedStr)
         or (isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in alone)

@@ -102,6 +102,7 @@ addEventListener("load", () => setTimeout(() => {
 @pytest.mark.parametrize(("page", "wide"), [("index.html", 1), ("evidence/index.html", 1), ("nodes/index.html", 5)])
 def test_a_wide_table_scrolls_in_its_box_on_a_phone(site: Path, page: str, wide: int) -> None:
     """The page itself does not, and shadows show where there is more."""
+    assert CHROMIUM is not None
     html = (site / page).read_text(encoding="utf-8")
     phone = (site / page).with_name("phone.html")
     phone.write_text(html.replace("</body>", ON_A_PHONE), encoding="utf-8")

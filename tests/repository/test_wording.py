@@ -53,9 +53,10 @@ def literals(source: str) -> Iterator[tuple[int, str]]:
         if isinstance(node, DOCUMENTED) and node.body and isinstance(node.body[0], ast.Expr)
     }
     for node in ast.walk(tree):
-        text = node.value if isinstance(node, ast.Constant) else None
-        if isinstance(text, str) and id(node) not in docstrings and not text.isidentifier():
-            yield node.lineno, text
+        if not isinstance(node, ast.Constant) or id(node) in docstrings:
+            continue
+        if isinstance(node.value, str) and not node.value.isidentifier():
+            yield node.lineno, node.value
 
 
 def remarks(source: str) -> Iterator[tuple[int, str]]:

@@ -247,7 +247,7 @@ def test_without_a_script_links_lead_to_nodes_and_back(tmp_path: Path, seen: Cal
 
 
 @pytest.mark.scheduled
-def test_it_prints_and_is_dark_where_the_reader_wants_it(seen: Callable[..., dict[str, Any]], tmp_path: Path) -> None:
+def test_it_prints_and_is_dark_where_the_reader_wants_it(seen: Callable[..., object], tmp_path: Path) -> None:
     page = write(overview_of("laboratory"), "html")
     target = ARTIFACTS / "trace-laboratory.pdf"
     ARTIFACTS.mkdir(exist_ok=True)

@@ -432,10 +432,11 @@ def contrast(one: str, other: str) -> float:
 @pytest.mark.parametrize("column", [2, 3], ids=["light", "dark"])
 def test_texts_of_a_picture_can_be_read(column: int) -> None:
     """4.5 for texts, 3 for outlines and lines against the ground (WCAG 2.2, 1.4.3 and 1.4.11)."""
-    ground = next(row[column] for row in _COLOURS if row[0] == ".ground")
-    ink = next(row[column] for row in _COLOURS if row[0] == "text")
-    assert all(contrast(ink, row[column]) >= 4.5 for row in _COLOURS if row[1] == "fill" and "text" not in row[0])
-    assert all(contrast(ground, row[column]) >= 3 for row in _COLOURS if row[1] == "stroke")
+    colours = [(row[0], row[1], row[column]) for row in _COLOURS]
+    ground = next(colour for part, _, colour in colours if part == ".ground")
+    ink = next(colour for part, _, colour in colours if part == "text")
+    assert all(contrast(ink, colour) >= 4.5 for part, what, colour in colours if what == "fill" and "text" not in part)
+    assert all(contrast(ground, colour) >= 3 for _, what, colour in colours if what == "stroke")
 
 
 @pytest.mark.parametrize("at", [0, 1], ids=["light", "dark"])

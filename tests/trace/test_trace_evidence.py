@@ -147,9 +147,26 @@ def test_missions_that_share_a_requirement_are_named() -> None:
 
     def verdicts(path: str) -> tuple[RequirementVerdict, ...]:
         why = "it did not start in any run"
-        clause = "mission succeeds", f"{path[0]}/Sequence", "", "never exercised", why, "activations", 0, 0, 0, 0
-        more = None, None, "one look", None, None, (), None
-        return (RequirementVerdict("safe", "", "never exercised", (ClauseVerdict(*clause, *more),)),)
+        clause = ClauseVerdict(
+            text="mission succeeds",
+            path=f"{path[0]}/Sequence",
+            of="",
+            verdict="never exercised",
+            why=why,
+            unit="activations",
+            counted=0,
+            violated=0,
+            unknown=0,
+            cut_off=0,
+            worst=None,
+            interval=None,
+            limits="one look",
+            confidence=None,
+            more=None,
+            violations=(),
+            histogram=None,
+        )
+        return (RequirementVerdict("safe", "", "never exercised", (clause,)),)
 
     overview = collect([(Workspace.of(texts), ("a.btq", "b.btq"))], verdicts_of=verdicts)
     (row,) = overview.requirements

@@ -40,7 +40,7 @@ def test_frozen() -> None:
     with pytest.raises(AttributeError, match="Point is frozen: cannot change 'x'"):
         Point(1).x = 2  # type: ignore[misc]
     with pytest.raises(AttributeError):
-        Point(1).z = 2  # type: ignore[attr-defined]
+        Point(1).z = 2
 
 
 def test_replace_repr_match_pickle() -> None:

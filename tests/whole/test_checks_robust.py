@@ -4,8 +4,10 @@ diagnostic, and a workspace reached by edits gives the same as a new one."""
 from __future__ import annotations
 
 import random
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pytest
 from check_asserts import assert_sound
@@ -155,7 +157,7 @@ def mutated(draw: st.DrawFn) -> tuple[dict[str, str], str]:
     return files, path
 
 
-def mutation(draw: st.DrawFn, text: str) -> str:
+def mutation(draw: Callable[[st.SearchStrategy[Any]], Any], text: str) -> str:
     chance = draw(st.randoms(use_true_random=False))
     for _ in range(draw(st.integers(1, 4))):
         text = damaged(chance, text)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -77,8 +77,12 @@ def references(schema: object) -> Iterator[str]:
 
 def test_it_has_every_key_of_the_reader_with_a_line() -> None:
     definitions = SCHEMA["definitions"]
-    tables = ((SCHEMA, KEYS), (definitions["evidence"], EVIDENCE_KEYS), (definitions["signal"], SOURCE_KEYS))
-    tables += ((definitions["overrides"]["items"], OVERRIDE_KEYS),)
+    tables: list[tuple[dict[str, Any], Mapping[str, object]]] = [
+        (SCHEMA, KEYS),
+        (definitions["evidence"], EVIDENCE_KEYS),
+        (definitions["signal"], SOURCE_KEYS),
+        (definitions["overrides"]["items"], OVERRIDE_KEYS),
+    ]
     for table, keys in tables:
         assert [*table["properties"]] == [*keys]
         assert all(key["description"] for key in table["properties"].values())

@@ -405,13 +405,14 @@ def test_robots_of_different_reliability_in_unequal_shares_explain_nothing() -> 
     """Two robots fail in 50 % and in 1 % of runs, with both versions; pooled, nearly all splits seem to differ."""
     chance = random.Random(3)
     found = pooled = 0
+
+    def failed(rate: float, runs: int) -> int:
+        return sum(chance.random() < rate for _ in range(runs))
+
     for _ in range(1000):
-        strata = [
-            tuple((sum(chance.random() < rate for _ in range(runs)), runs) for runs in shares)
-            for rate, shares in ((0.5, (60, 20)), (0.01, (20, 60)))
-        ]
-        found += exact(strata) <= 0.05
-        pooled += exact([tuple(tuple(map(sum, zip(*side, strict=True))) for side in zip(*strata, strict=True))]) <= 0.05
+        one, other = (failed(0.5, 60), failed(0.5, 20)), (failed(0.01, 20), failed(0.01, 60))
+        found += exact([((one[0], 60), (one[1], 20)), ((other[0], 20), (other[1], 60))]) <= 0.05
+        pooled += exact([((one[0] + other[0], 80), (one[1] + other[1], 80))]) <= 0.05
     assert (found, pooled) == (44, 966)
 
 

@@ -9,22 +9,23 @@ import sqlite3
 import subprocess
 import sys
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from typing import Any, Literal
 
-import lz4.frame
+import lz4.frame  # type: ignore[import-untyped]  # which has no types
 import pytest
 from evidence_bags import HUMBLE, LOG, STORE, late_ends, names_of, text, tree_log, write_bag
 from evidence_logs import MAIN, MAIN_XML, START, Verify, logged, rows
 from json_schema import violations
 from rosbags.rosbag2 import storage_mcap
-from rosbags.rosbag2.storage_mcap import zstd
 from test_identity import DEMANDS
 
 from btq_lang.cli import main
 from btq_lang.evidence.model import NamedLog
 from btq_lang.evidence.readers import read, unpacking
 
+zstd = import_module("compression.zstd" if sys.version_info >= (3, 14) else "backports.zstd")  # as rosbags does
 SCHEMA = json.loads((Path(__file__).parents[3] / "btq_lang/evidence/verdicts.schema.json").read_text(encoding="utf-8"))
 LIMIT = "QualityReq rq : safety\n    Move takes at most 10 ms\n"
 NAMES = names_of(MAIN_XML)

@@ -18,7 +18,7 @@ from btq_lang.evidence.judging import Means
 from btq_lang.evidence.model import GAP, PAUSE, Session
 from btq_lang.evidence.readers import read
 from btq_lang.evidence.readers.groot2.following import Began, Came, Event, Following, Lost, Notice, Passed, Sampled
-from btq_lang.evidence.readers.groot2.messages import reply, request
+from btq_lang.evidence.readers.groot2.messages import Reply, reply, request
 from btq_lang.evidence.readers.groot2.publisher import NoAnswer
 from btq_lang.evidence.readers.groot2.sessions import sessions_of
 from btq_lang.evidence.readers.tree import read_tree
@@ -47,7 +47,7 @@ class Line:
     def another(self, xml: str = MAIN_XML) -> Publisher:
         return Publisher(xml, clock=lambda: START + self.now)
 
-    def ask(self, kind: str, argument: str | None = None) -> object:
+    def ask(self, kind: str, argument: str | None = None) -> Reply:
         if self.robot is None:
             raise NoAnswer
         parts = request(kind, len(self.robot.asked), argument)
@@ -236,11 +236,13 @@ def test_samples_are_of_the_main_tree_or_of_the_only_subtree_that_has_them() -> 
         (lambda parts: [parts[0]], "its tree is not BehaviorTree.CPP XML"),
     ],
 )
-def test_a_bad_reply_is_told(damage: Callable[[list[bytes]], list[bytes]], told: str) -> None:
+def test_a_bad_reply_is_told(
+    damage: Callable[[list[bytes]], list[bytes]], told: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     line = Line()
     assert line.robot is not None
     answer = line.robot.answer
-    line.robot.answer = lambda parts: damage(answer(parts))
+    monkeypatch.setattr(line.robot, "answer", lambda parts: damage(answer(parts)))
     assert line.step() == [Notice(f"{told}; waiting for one at tcp://robot:1667")]
     assert line.step() == []
 
@@ -253,7 +255,7 @@ def test_a_bad_reply_is_told(damage: Callable[[list[bytes]], list[bytes]], told:
         ("t", b"\0" * 10, "expected 9 bytes for each transition, found 10 in all"),
     ],
 )
-def test_bad_content_is_told(kind: str, content: bytes, told: str) -> None:
+def test_bad_content_is_told(kind: str, content: bytes, told: str, monkeypatch: pytest.MonkeyPatch) -> None:
     line = Line(entries=("battery",))
     assert line.robot is not None
     answer = line.robot.answer
@@ -262,7 +264,7 @@ def test_bad_content_is_told(kind: str, content: bytes, told: str) -> None:
         found = answer(parts)
         return [found[0], content] if parts[0][1] == ord(kind) else found
 
-    line.robot.answer = damaged
+    monkeypatch.setattr(line.robot, "answer", damaged)
     events = [*line.step(), *line.step("1R 2R")]
     assert [each.text for each in events if isinstance(each, Notice)] == [
         f"{told}; waiting for one at tcp://robot:1667"
@@ -278,7 +280,7 @@ def test_bad_content_is_told(kind: str, content: bytes, told: str) -> None:
     ],
 )
 def test_a_blackboard_that_cannot_be_read_ends_only_the_samples(
-    reply_of: Callable[[bytes], list[bytes]], told: str
+    reply_of: Callable[[bytes], list[bytes]], told: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     line = Line(entries=("battery",))
     assert line.robot is not None
@@ -286,7 +288,11 @@ def test_a_blackboard_that_cannot_be_read_ends_only_the_samples(
     line.step()
     assert line.step() == [Sampled(START + 100_000, {"battery": 80.0})]
     answer = line.robot.answer
-    line.robot.answer = lambda parts: reply_of(answer(parts)[0]) if parts[0][1:2] == b"B" else answer(parts)
+
+    def damaged(parts: list[bytes]) -> list[bytes]:
+        return reply_of(answer(parts)[0]) if parts[0][1:2] == b"B" else answer(parts)
+
+    monkeypatch.setattr(line.robot, "answer", damaged)
     assert line.step() == [
         Notice(f"{told}; signals have no samples from now on"),
         Sampled(START + 150_000, {"battery": None}),
@@ -434,7 +440,16 @@ def test_a_time_that_is_over_is_told_while_the_node_runs(demand: str, broken: st
 )
 def test_a_sample_that_breaks_a_condition_is_told_while_the_node_runs(demand: str, broken: str, tmp_path: Path) -> None:
     mission = f"{BATTERY}QualityReq rq : safety\n    Move {demand}\n{MAIN}"
-    steps = [sets(battery=50), "1R 2R", sets(battery=30), sets(battery=15), "", sets(battery=5), END, ""]
+    steps: list[str | Callable[[Line], object]] = [
+        sets(battery=50),
+        "1R 2R",
+        sets(battery=30),
+        sets(battery=15),
+        "",
+        sets(battery=5),
+        END,
+        "",
+    ]
     judged = Judged(tmp_path, mission, steps)
     ((step, told),) = judged.violations
     assert step == 4

@@ -14,7 +14,7 @@ from groot2_robot import Publisher
 from seeds import seeds, share_of
 
 from btq_lang.evidence.readers.groot2.following import Began, Came, Following, Lost, Notice, Sampled
-from btq_lang.evidence.readers.groot2.messages import reply, request
+from btq_lang.evidence.readers.groot2.messages import Reply, reply, request
 from btq_lang.evidence.readers.groot2.sessions import sessions_of
 from btq_lang.evidence.runs import activations
 
@@ -104,14 +104,14 @@ def test_a_hostile_tree_does_no_harm(xml: str) -> None:
     assert isinstance(event, Notice)
 
 
-def asked_of(recorded: list[Exchange], damage: Callable[[list[bytes]], list[bytes]]) -> Callable[..., object]:
+def asked_of(recorded: list[Exchange], damage: Callable[[list[bytes]], list[bytes]]) -> Callable[..., Reply]:
     """Asks a publisher that replies as it was recorded, with what is damaged on the way."""
     whole = [each for each in recorded if each[1][0] != b"error"]
     # Of several replies, of the boards the last one, which has values, and of the others the first.
     by_kind = {asked[0][1:2].decode(): answer for asked, answer in reversed(whole)}
     by_kind["B"] = next(answer for asked, answer in reversed(whole) if asked[0][1:2] == b"B")
 
-    def ask(kind: str, argument: str | None = None) -> object:
+    def ask(kind: str, argument: str | None = None) -> Reply:
         parts = request(kind, 7, argument)
         head, *content = by_kind[kind]
         return reply(damage([parts[0] + head[6:], *content]), parts[0])

@@ -9,14 +9,14 @@ import sqlite3
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from evidence_bags import names_of, tree_log, write_bag
-from evidence_logs import MAIN, MAIN_XML, START, Verify, rows, write_db3
+from evidence_logs import MAIN, MAIN_XML, START, Verify, rows, sessions_of, write_db3
 
-from btq_lang.evidence.readers import read, sqlite
+from btq_lang.evidence.readers import sqlite
 from btq_lang.evidence.runs import activations
 
 TWO_RUNS = "0 1R 2R 5 2S 3S 1S 2I 3I 1I 20 1R 2R 30 2F 1F 2I 1I"
@@ -77,7 +77,7 @@ def kill_writer(log: Path, mode: str, end: str, change: str) -> None:
 
 def outcomes(log: Path) -> list[str]:
     """How the runs in a log ended."""
-    return [each.outcome for session in read(str(log)) for each in activations(session) if each.uid == 1]
+    return [each.outcome for session in sessions_of(log) for each in activations(session) if each.uid == 1]
 
 
 def contents(folder: Path) -> dict[str, tuple[bytes, int]]:
@@ -92,7 +92,7 @@ def test_what_was_committed_is_read(mode: str, end: str, temporary: Path) -> Non
     killed(log, mode, end)
     (temporary.parent / "run.db3-shm").unlink(missing_ok=True)  # who copies a log leaves it behind
     before = contents(temporary.parent)
-    found = [([row[2] for row in session.transitions], session.remarks) for session in read(str(log))]
+    found = [([row[2] for row in session.transitions], session.remarks) for session in sessions_of(log)]
     is_rolled_back = mode != "wal" and end == "in a transaction"
     assert found == [([status for *_, status in rows(TWO_RUNS)], [ROLLED_BACK] * is_rolled_back)]
     assert contents(temporary.parent) == before
@@ -174,7 +174,7 @@ def test_a_database_that_its_writer_locks_is_not_copied(
     robot = sqlite3.connect(judge.folder / "run.db3", isolation_level=None)
     robot.execute("BEGIN EXCLUSIVE")
     robot.execute("INSERT INTO Transitions VALUES (?, 1, 1, 0, 1, '')", (START + 10**6,))
-    connect = sqlite3.connect
+    connect: Callable[..., sqlite3.Connection] = sqlite3.connect
     monkeypatch.setattr(sqlite3, "connect", lambda *given, **named: connect(*given, **named, timeout=0.01))
     judge.text("run.db3")
     told = "btq verify: run.db3: the database cannot be read: database is locked\n"
@@ -186,7 +186,7 @@ def test_a_database_that_is_written_while_it_is_copied(
     judge: Verify, temporary: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     killed(judge.folder / "run.db3", "delete")
-    copy = sqlite.copyfile
+    copy = shutil.copyfile
 
     def restarted(source: str, target: str) -> None:
         copy(source, target)

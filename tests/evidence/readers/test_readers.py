@@ -8,12 +8,11 @@ import tracemalloc
 from pathlib import Path
 
 import pytest
-from evidence_logs import MAIN, MAIN_XML, START, Verify, btlog, rows, write_db3
+from evidence_logs import MAIN, MAIN_XML, START, Verify, btlog, rows, sessions_of, write_db3
 
 from btq_lang.commands.verdict_formats import FORMATS, write
 from btq_lang.evidence.identity import Candidate
 from btq_lang.evidence.judging import Means
-from btq_lang.evidence.readers import read
 from btq_lang.evidence.runs import activations
 from btq_lang.evidence.verifying import verify
 from btq_lang.workspace.workspace import Workspace
@@ -103,7 +102,7 @@ def test_xml_that_expands_is_not_expanded(tmp_path: Path) -> None:
     bomb = '<!DOCTYPE x [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]>'
     xml = bomb + MAIN_XML.replace('name="Move"', 'name="&b;"')
     (tmp_path / "a.btlog").write_bytes(btlog(xml, rows(TWO_RUNS)))
-    sessions = read(str(tmp_path / "a.btlog"))
+    sessions = sessions_of(tmp_path / "a.btlog")
     assert next(sessions).tree.nodes[2].path == "&b;"
 
 
@@ -114,7 +113,7 @@ def test_a_tree_in_itself_ends(tmp_path: Path) -> None:
         '<BehaviorTree ID="A" _fullpath="A"><SubTree ID="A" _fullpath="A/A" _uid="2"/></BehaviorTree></root>'
     )
     (tmp_path / "a.btlog").write_bytes(btlog(xml, []))
-    tree = next(read(str(tmp_path / "a.btlog"))).tree
+    tree = next(sessions_of(tmp_path / "a.btlog")).tree
     assert [(uid, node.path) for uid, node in tree.nodes.items()] == [(1, "A"), (2, "A/A")]
     assert (tree.parent, tree.last) == ({1: 0, 2: 1}, {1: 2, 2: 2})
 
@@ -126,7 +125,7 @@ def test_a_database_is_read_while_the_robot_writes_it(tmp_path: Path) -> None:
     robot.execute("PRAGMA journal_mode = WAL")
     robot.execute("BEGIN")
     robot.execute("INSERT INTO Transitions VALUES (?, 1, 1, 0, 1, '')", (START + 10**6,))
-    sessions = read(str(log))
+    sessions = sessions_of(log)
     assert [each.outcome for each in activations(next(sessions)) if each.uid == 1] == ["S", "F"]
     robot.commit()
     robot.close()
@@ -169,7 +168,7 @@ def test_a_log_is_never_in_memory_as_a_whole(form: str, tmp_path: Path) -> None:
         else:
             write_db3(log, MAIN_XML, [transitions])
         tracemalloc.start()
-        for session in read(str(log)):
+        for session in sessions_of(log):
             assert sum(each.uid == 1 for each in activations(session)) == runs
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()

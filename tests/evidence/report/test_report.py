@@ -108,7 +108,7 @@ def test_the_page_counts_as_sql_by_hand_does(robots: Path) -> None:
         import duckdb
 
         files = re.sub(r"FROM (\w+)", rf"FROM read_parquet('{robots}/evidence/*/\1.parquet')", question)
-        return [tuple(map(str, row)) for row in duckdb.sql(files).fetchall()]
+        return [tuple(map(str, row)) for row in duckdb.execute(files).fetchall()]
 
     tables = Page(page_of(robots)).tables
     ((runs, failed, retries),) = asked(
@@ -137,7 +137,7 @@ def test_what_is_drawn_of_a_measure_is_what_sql_by_hand_gives(robots: Path) -> N
         f"max(measured_si) FROM '{robots}/evidence/*/verdicts.parquet' WHERE requirement = 'quick' AND most_si IS NULL"
         " AND measured_si IS NOT NULL GROUP BY day ORDER BY day"
     )
-    days = duckdb.sql(asked).fetchall()
+    days = duckdb.execute(asked).fetchall()
     figure = page_of(robots).partition('<figure><svg class="chart measure"')[2].partition("</figure>")[0]
     assert re.findall("<title>([^<]*: worst [^<]*)</title>", figure) == [
         f"{day}: worst {w:.3g} s" for day, _, w in days

@@ -120,7 +120,7 @@ def judged_earlier(folder: Path) -> None:
 def test_sets_of_an_earlier_version_are_to_be_judged_again(command: tuple[str, ...], store: Path) -> None:
     """Its verdicts may say `satisfied` where nothing was measured."""
     folder = store.parent
-    log = duckdb.sql(f"SELECT DISTINCT log FROM '{store}/*/runs.parquet' WHERE source = '1.btlog'").fetchall()
+    log = duckdb.execute(f"SELECT DISTINCT log FROM '{store}/*/runs.parquet' WHERE source = '1.btlog'").fetchall()
     old = store / log[0][0]
     judged_earlier(old)
     said = "an earlier version of btq, with other rules, has judged 1.btlog"

@@ -57,7 +57,7 @@ NOTED = ("{} of 1 log also in others of the same label, and not counted again",)
 )
 @pytest.mark.parametrize("first", ["full.btlog", "other.db3"])
 def test_a_run_of_two_logs_counts_once(folder: Path, first: str, other: list[Row], left_out: str, polars: str) -> None:
-    logs = {"full.btlog": [(time + 7, *rest) for time, *rest in RUNS], "other.db3": other}
+    logs = {"full.btlog": [(time + 7, uid, status) for time, uid, status in RUNS], "other.db3": other}
     for name in sorted(logs, key=lambda each: each != first):
         keep(folder, name, logs[name])
     assert counts(folder) == (3, 3, tuple(each.format(left_out) for each in NOTED))
