@@ -25,6 +25,7 @@ from btq_lang.workspace.port_types import is_number
 from btq_lang.workspace.resolved import ResolvedNode
 
 _NUMBER = re.compile(r"-?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")
+_WHOLE = re.compile(r"(?:-?[0-9]+(?:\.0*)?\s*(?:;|$))+")  # integers that are written as reals, too
 _JSON = re.compile(r"[\"'\[\],]|:\s|^{")  # no name of an entry has any of that
 _INTEGERS = ("int", "unsigned int", "int64_t", "uint64_t")
 
@@ -103,7 +104,8 @@ def invalid_literal(view: View) -> Iterator[Diagnostic]:
         if target.converts and problem.kind != "refused":
             message = f"the engine reads `{text}` as {problem.reads} and silently drops the rest"
             fixes = _as_quantity(value, target, problem.reads, is_xml=view.is_xml)
-            yield Diagnostic("trailing-text-in-number", value.span, message, fixes=fixes)
+            severity = Severity.HINT if _WHOLE.fullmatch(text) else None
+            yield Diagnostic("trailing-text-in-number", value.span, message, fixes=fixes, severity=severity)
             continue
         message = f"expected {problem.expected} for `{target.port}`, found {problem.found or _shown(text)}"
         fixes, severity = (_accepted(target, value, version), None) if target.converts else ((), Severity.WARNING)

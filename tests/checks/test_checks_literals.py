@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from check_asserts import assert_clean, assert_fix, assert_problems
+from check_asserts import assert_clean, assert_fix, assert_problems, problems
 
 from btq_lang.checks import check
 from btq_lang.workspace.config import Project
@@ -67,6 +67,31 @@ def test_what_is_read_of_a_number_with_a_tail(value: str, reads: str, fixes: dic
     assert_problems(timeout(value), f"2:21 warning trailing-text-in-number «{value}» {message}")
     for title, fixed in fixes.items():
         assert_fix(timeout(value), title, timeout(fixed))  # none is safe: what was meant is not known
+
+
+@pytest.mark.parametrize(
+    ("value", "reads", "severity"),
+    [
+        ("1.0", "1", "hint"),
+        ("-1.", "-1", "hint"),
+        ("1.000", "1", "hint"),
+        ("1.05", "1", "warning"),
+        ("1.0.1", "1", "warning"),
+        ("1.0 s", "1", "warning"),
+        ("1e3", "1", "warning"),
+        ("1,0", "1", "warning"),
+    ],
+)
+def test_an_integer_that_is_written_as_a_real(value: str, reads: str, severity: str) -> None:
+    message = f"the engine reads `{value}` as {reads} and silently drops the rest"
+    text = f'BehaviorTree Main\n    Repeat (num_cycles = "{value}")\n        X\n'
+    assert_problems(text, f'2:26 {severity} trailing-text-in-number «"{value}"» {message}')
+
+
+@pytest.mark.parametrize(("queue", "severity"), [("1.0;2", "hint"), ("1;2.00;", "hint"), ("1.0;2.5", "warning")])
+def test_a_list_of_integers_that_are_written_as_reals(queue: str, severity: str) -> None:
+    text = f'BehaviorTree Main\n    LoopInt (queue = "{queue}" value = {{v}})\n        X\n'
+    assert [each.effective_severity.value for each in problems(text, "trailing-text-in-number")] == [severity]
 
 
 def test_a_list_keeps_its_quotes() -> None:
