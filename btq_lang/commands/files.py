@@ -277,6 +277,10 @@ class Files:
         whole = sources.declared_in(factory) if sources is not None else factory
         return self._load((), home, (whole,))[0].workspace.of_factory(whole)
 
+    def workspace_of_nodes(self, home: Found) -> Workspace:
+        """The workspace of what a project of the last request declares of nodes, without missions."""
+        return self._load((), home, ())[0].workspace
+
     def _with_pools(
         self, group: Group, pools: Mapping[str, tuple[str, ...]], project_of: Callable[[str], Found]
     ) -> Group:
