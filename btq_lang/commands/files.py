@@ -207,7 +207,9 @@ class Files:
             group = replace(group, given=tuple(path for path in group.given if path not in known))
         if group.given or not groups:
             has_xml = any(group.workspace.files[path].origin is not None for path in group.given)
-            groups.append(self._with_pools(group, pools, project_of) if pools and has_xml else group)
+            if pools and has_xml:
+                group = _with_created(self._with_pools(group, pools, project_of), pools)
+            groups.append(group)
         return groups, problems
 
     def _may_be_xml(self, path: str) -> bool:
@@ -379,6 +381,16 @@ def _with_cpp(group: Group, folders: Iterable[str]) -> Group:
     files = group.workspace.files
     cpp = tuple(path for path in files if files[path].is_cpp and path.startswith(tuple(folders)))
     return replace(group, cpp=cpp) if cpp else group
+
+
+def _with_created(group: Group, pools: Iterable[str]) -> Group:
+    """The group with the main trees that C++ of its pools creates."""
+    from btq_lang.commands.created_trees import created_trees  # many projects have no XML
+
+    created = created_trees(group.workspace, group.given, pools, group.project)
+    if not created:
+        return group
+    return replace(group, workspace=group.workspace.with_project(replace(group.project, created=created)))
 
 
 def lacking_names(workspace: Workspace, paths: Iterable[str]) -> frozenset[str]:
