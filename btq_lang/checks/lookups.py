@@ -200,6 +200,17 @@ def has_palette(workspace: Workspace, viewpoint: str) -> bool:
 
 
 @of_viewpoint
+def registers_all(workspace: Workspace, viewpoint: str) -> bool:
+    """Whether C++ that a factory names registers all of its nodes, and loads no libraries of others."""
+    factory = workspace.factory
+    if factory is None or factory.nav2 or factory.lost:
+        return False
+    texts = {path: workspace.files[path].source for path in factory.cpp_files if path in workspace.files}
+    own = {_package(path) for path, text in texts.items() if _REGISTERS(text) and not _OF_LIBRARY(text)}
+    return bool(own) and not any(_package(path) in own and _LOADS_LIBRARIES(text) for path, text in texts.items())
+
+
+@of_viewpoint
 def clashes(workspace: Workspace, viewpoint: str) -> tuple[tuple[Facts, Declaration, Declaration], ...]:
     """The names that an included file and one included before it both define: the include, the definition that counts
     and the other one.  The two files cannot see each other, so no check of theirs reports it, except in a factory."""
@@ -544,4 +555,16 @@ def _distribution(workspace: Workspace, viewpoint: str) -> str | None:
 
 distribution = of_viewpoint(_distribution)
 
+
+def _package(path: str) -> str:
+    """The folder of a package, in which a C++ source is below `src` or `include`."""
+    return _BELOW.split(path)[0] if _BELOW.search(path) else posixpath.dirname(path)
+
+
+_BELOW = re.compile(r"/(?:src|include)/(?!.*/(?:src|include)/)")
+_REGISTERS = re.compile(r"\bregister(?:NodeType|Builder|Simple\w+)\s*[<(]").search
+_OF_LIBRARY = re.compile(r"\bBT_REGISTER_(?:ROS_)?NODES\b").search
+_LOADS_LIBRARIES = re.compile(
+    r"\b(?:registerFrom\w*Plugins?|RegisterPlugins|RegisterRosNode|TreeExecutionServer)\b"
+).search
 _PALETTE = re.compile(r"\s*<\s*TreeNodesModel\b").match
