@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import posixpath
 import re
+from functools import lru_cache
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -168,6 +169,13 @@ def outside_entries(workspace: Workspace, viewpoint: str) -> tuple[OutsideEntry,
     from btq_lang.catalog.nav2.navigator import outside_entries as of  # only for Nav2
 
     return of(found)
+
+
+@of_viewpoint
+def set_in_cpp(workspace: Workspace, viewpoint: str) -> frozenset[str]:
+    """The entries that C++ with the nodes of a file sets on a blackboard, by a string."""
+    paths = workspace.scope(viewpoint).node_paths
+    return frozenset().union(*(_set_in(file.source) for path in paths if (file := workspace.files[path]).is_cpp))
 
 
 @of_viewpoint
@@ -556,11 +564,17 @@ def _distribution(workspace: Workspace, viewpoint: str) -> str | None:
 distribution = of_viewpoint(_distribution)
 
 
+@lru_cache(1_000)  # each file of trees asks for the same sources
+def _set_in(source: str) -> frozenset[str]:
+    return frozenset(_SETS(source))
+
+
 def _package(path: str) -> str:
     """The folder of a package, in which a C++ source is below `src` or `include`."""
     return _BELOW.split(path)[0] if _BELOW.search(path) else posixpath.dirname(path)
 
 
+_SETS = re.compile(r'(?:->|\.)\s*set\s*(?:<[^;(){}]*>)?\s*\(\s*"([A-Za-z_]\w*)"').findall
 _BELOW = re.compile(r"/(?:src|include)/(?!.*/(?:src|include)/)")
 _REGISTERS = re.compile(r"\bregister(?:NodeType|Builder|Simple\w+)\s*[<(]").search
 _OF_LIBRARY = re.compile(r"\bBT_REGISTER_(?:ROS_)?NODES\b").search

@@ -220,6 +220,49 @@ def test_a_node_that_a_program_does_not_register(robot: Path, program: str, is_a
         assert found == [f"trees/m.xml:1:{column}: error[unknown-node] unknown node `Navigat`"] * is_all
 
 
+SETS = """\
+struct Say : BT::SyncActionNode {
+  static BT::PortsList providedPorts() { return { BT::InputPort<double>("pct") }; }
+  BT::NodeStatus tick() override { return getInput<double>("pct").value() > 3 ? Status::SUCCESS : Status::FAILURE; }
+};
+int main() {
+  factory.registerNodeType<Say>("Say");
+  blackboard->set("battery_pct", 20.0);
+  blackboard.set<std::string>("mode", "slow");
+  tree.rootBlackboard()->set( "robot_name", name);
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("node", "entry", "meant"),
+    [
+        ('<Say pct="{batery_pct}"/>', "batery_pct", "battery_pct"),
+        ('<Say pct="{batteryPct}"/>', "batteryPct", "battery_pct"),
+        ('<Say pct="{robot_nam}"/>', "robot_nam", "robot_name"),
+        ('<Say pct="{@robot_nmae}"/>', "@robot_nmae", "@robot_name"),
+        ('<ScriptCondition code="mdoe == 2"/>', "mdoe", "mode"),
+        ('<AlwaysSuccess _skipIf="battery_ptc > 3"/>', "battery_ptc", "battery_pct"),
+    ],
+)
+def test_an_entry_is_misspelt_that_only_a_program_sets(robot: Path, node: str, entry: str, meant: str) -> None:
+    write(robot, "src/say.cpp", SETS)
+    xml = '<root BTCPP_format="4"><BehaviorTree ID="M"><Sequence>{}</Sequence></BehaviorTree></root>\n'
+    write(robot, "trees/m.xml", xml.format(node))
+    found = check(robot, "trees/m.xml", "--select", "misspelt-entry,unset-entry")
+    message = f"nothing writes `{entry}`, which is read here; did you mean `{meant}`?"
+    column = xml.index("{") + node.index(entry) + 1
+    assert found == [f"trees/m.xml:1:{column}: warning[misspelt-entry] {message}"]
+
+
+def test_what_a_program_sets_is_not_unset(robot: Path) -> None:
+    write(robot, "src/say.cpp", SETS)
+    xml = '<root BTCPP_format="4"><BehaviorTree ID="M"><Sequence>{}</Sequence></BehaviorTree></root>\n'
+    write(robot, "trees/m.xml", xml.format('<Say pct="{battery_pct}"/><Say pct="{level}"/>'))
+    hint = "hint[unset-entry] nothing here writes `level` before it is read"
+    assert check(robot, "trees/m.xml") == [f"trees/m.xml:1:92: {hint}"]
+
+
 def test_messages_name_other_files_from_the_folder_of_the_project(robot: Path) -> None:
     write(robot, "src/other.cpp", 'void add(F& f) { f.registerSimpleAction("Drive", drive); }\n')
     write(robot, "trees/m.btq", "BehaviorTree Main\n    IsOpen\n")
