@@ -213,9 +213,9 @@ def registers_all(workspace: Workspace, viewpoint: str) -> bool:
     factory = workspace.factory
     if factory is None or factory.nav2 or factory.lost:
         return False
-    texts = {path: workspace.files[path].source for path in factory.cpp_files if path in workspace.files}
-    own = {_package(path) for path, text in texts.items() if _REGISTERS(text) and not _OF_LIBRARY(text)}
-    return bool(own) and not any(_package(path) in own and _LOADS_LIBRARIES(text) for path, text in texts.items())
+    files = [workspace.files[path] for path in factory.cpp_files if path in workspace.files]
+    own = {_package(each.path) for each in files if each.names_of(Kind.MODEL) and not _OF_LIBRARY(each.source)}
+    return bool(own) and not any(_package(each.path) in own and _LOADS_LIBRARIES(each.source) for each in files)
 
 
 @of_viewpoint
@@ -576,7 +576,6 @@ def _package(path: str) -> str:
 
 _SETS = re.compile(r'(?:->|\.)\s*set\s*(?:<[^;(){}]*>)?\s*\(\s*"([A-Za-z_]\w*)"').findall
 _BELOW = re.compile(r"/(?:src|include)/(?!.*/(?:src|include)/)")
-_REGISTERS = re.compile(r"\bregister(?:NodeType|Builder|Simple\w+)\s*[<(]").search
 _OF_LIBRARY = re.compile(r"\bBT_REGISTER_(?:ROS_)?NODES\b").search
 _LOADS_LIBRARIES = re.compile(
     r"\b(?:registerFrom\w*Plugins?|RegisterPlugins|RegisterRosNode|TreeExecutionServer)\b"
