@@ -385,7 +385,9 @@ def _with_cpp(group: Group, folders: Iterable[str]) -> Group:
 
 def _with_created(group: Group, pools: Iterable[str]) -> Group:
     """The group with the main trees that C++ of its pools creates."""
-    from btq_lang.commands.created_trees import created_trees  # many projects have no XML
+    if all(len(group.workspace.files[path].names.by_kind[Kind.TREE]) < 2 for path in group.given):
+        return group
+    from btq_lang.commands.created_trees import created_trees  # most files have one tree
 
     created = created_trees(group.workspace, group.given, pools, group.project)
     if not created:
