@@ -360,7 +360,8 @@ def _aliased(view: View, seen: ResolvedNode, name: Word, message: str, meant: No
 
 def _unknown(view: View, seen: ResolvedNode, name: Word) -> Iterator[Diagnostic]:
     is_complete = view.ask(inputs.is_complete) and not view.project.hides_nodes
-    has_palette = is_complete and view.ask(lookups.has_palette)
+    are_in_cpp = is_complete and view.ask(lookups.registers_all)
+    has_palette = are_in_cpp or (is_complete and view.ask(lookups.has_palette))
     if not has_palette and seen.node.category is not None:
         return  # written as a declaration: `Action Foo` declares such a node
     likely = view.ask(near_names, Kind.MODEL, name.text)
@@ -382,6 +383,7 @@ def _unknown(view: View, seen: ResolvedNode, name: Word) -> Iterator[Diagnostic]
             shortest = f'`<{category} ID="{name.text}"/>` in <TreeNodesModel>'
         others = "the other nodes of this file" if has_palette else "most nodes of this file"
         why = "it has children and is not built in" if is_parent else f"{others} have models"
+        why = "no C++ of the factory registers it" if are_in_cpp else why
         notes = (f"{why}; to declare {'it' if is_parent else 'this one'}, write {shortest}",)
         if moved := dedented(view, seen, seen.node.children):
             notes, fixes = (*notes, TOO_FAR), fixes + moved

@@ -27,6 +27,7 @@ from btq_lang.workspace.port_types import is_number
 from btq_lang.workspace.resolved import ResolvedNode
 
 _NUMBER = re.compile(r"-?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")
+_WHOLE = re.compile(r"(?:-?[0-9]+(?:\.0*)?\s*(?:;|$))+")  # integers that are written as reals, too
 _JSON = re.compile(r"[\"'\[\],]|:\s|^{")  # no name of an entry has any of that
 _FRACTION = re.compile(r"[0-9]*\.[0-9]*[1-9][0-9]*")
 _ENDLESS = frozenset(
@@ -127,7 +128,10 @@ def invalid_literal(view: View) -> Iterator[Diagnostic]:
             message = f"the engine reads `{text}` as {problem.reads} and silently drops the rest"
             fixes = _as_quantity(value, target, problem.reads, is_xml=view.is_xml)
             in_unit = (f"`{target.port}` is in ms",) if _is_in_seconds(target, text) else ()
-            yield Diagnostic("trailing-text-in-number", value.span, message, notes=in_unit, fixes=fixes)
+            severity = Severity.HINT if _WHOLE.fullmatch(text) else None
+            yield Diagnostic(
+                "trailing-text-in-number", value.span, message, notes=in_unit, fixes=fixes, severity=severity
+            )
             continue
         message = f"expected {problem.expected} for `{target.port}`, found {problem.found or _shown(text)}"
         fixes, severity = (_accepted(target, value, version), None) if target.converts else ((), Severity.WARNING)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import posixpath
 import re
+from functools import lru_cache
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -171,6 +172,13 @@ def outside_entries(workspace: Workspace, viewpoint: str) -> tuple[OutsideEntry,
 
 
 @of_viewpoint
+def set_in_cpp(workspace: Workspace, viewpoint: str) -> frozenset[str]:
+    """The entries that C++ with the nodes of a file sets on a blackboard, by a string."""
+    paths = workspace.scope(viewpoint).node_paths
+    return frozenset().union(*(_set_in(file.source) for path in paths if (file := workspace.files[path]).is_cpp))
+
+
+@of_viewpoint
 def node_paths(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
     """The files whose models count for a file, and nothing else in them."""
     return workspace.scope(viewpoint).node_paths
@@ -197,6 +205,17 @@ def has_palette(workspace: Workspace, viewpoint: str) -> bool:
             if each != viewpoint and _is_of_node(entry.item):
                 return True
     return False
+
+
+@of_viewpoint
+def registers_all(workspace: Workspace, viewpoint: str) -> bool:
+    """Whether C++ that a factory names registers all of its nodes, and loads no libraries of others."""
+    factory = workspace.factory
+    if factory is None or factory.nav2 or factory.lost:
+        return False
+    files = [workspace.files[path] for path in factory.cpp_files if path in workspace.files]
+    own = {_package(each.path) for each in files if each.names_of(Kind.MODEL) and not _OF_LIBRARY(each.source)}
+    return bool(own) and not any(_package(each.path) in own and _LOADS_LIBRARIES(each.source) for each in files)
 
 
 @of_viewpoint
@@ -544,4 +563,21 @@ def _distribution(workspace: Workspace, viewpoint: str) -> str | None:
 
 distribution = of_viewpoint(_distribution)
 
+
+@lru_cache(1_000)  # each file of trees asks for the same sources
+def _set_in(source: str) -> frozenset[str]:
+    return frozenset(_SETS(source))
+
+
+def _package(path: str) -> str:
+    """The folder of a package, in which a C++ source is below `src` or `include`."""
+    return _BELOW.split(path)[0] if _BELOW.search(path) else posixpath.dirname(path)
+
+
+_SETS = re.compile(r'(?:->|\.)\s*set\s*(?:<[^;(){}]*>)?\s*\(\s*"([A-Za-z_]\w*)"').findall
+_BELOW = re.compile(r"/(?:src|include)/(?!.*/(?:src|include)/)")
+_OF_LIBRARY = re.compile(r"\bBT_REGISTER_(?:ROS_)?NODES\b").search
+_LOADS_LIBRARIES = re.compile(
+    r"\b(?:registerFrom\w*Plugins?|RegisterPlugins|RegisterRosNode|TreeExecutionServer)\b"
+).search
 _PALETTE = re.compile(r"\s*<\s*TreeNodesModel\b").match

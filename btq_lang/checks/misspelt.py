@@ -44,8 +44,11 @@ def misspelt_entry(view: View) -> Iterator[Diagnostic]:
     others = dict.fromkeys((*counts, *(port.name.text for port in tree.ports if port.name is not None)))
     if (outside := view.ask(lookups.outside_entries)) and not view.ask(callers, tree.name.text):
         others |= dict.fromkeys(name for name, _ in outside)
+    of_program = view.ask(lookups.set_in_cpp)
+    if of_program and not view.ask(callers, tree.name.text):
+        others |= dict.fromkeys(sorted(of_program))
     if any(mention.name[:1] == "@" for mention in mentions):
-        others |= dict.fromkeys(f"@{name}" for name in view.ask(_root_names))
+        others |= dict.fromkeys(f"@{name}" for name in sorted(view.ask(_root_names) | of_program))
     by_piece = _by_piece(others)
     reported: set[str] = set()
     for mention in mentions:
@@ -142,8 +145,12 @@ def _is_meant(store: Store[Workspace], viewpoint: str, tree: str, name: str, mea
         return False
     uses, others = boards.of(tree, name), boards.of(tree, meant)
     is_port = boards.is_port(tree, meant)
+    of_program = store.ask(lookups.set_in_cpp, viewpoint)
+    if name.removeprefix("@") in of_program:
+        return False
     if not any(each.writes for each in uses):  # read only
-        return is_port or any(each.writes for each in others)
+        root, entry = boards.place(tree, meant)
+        return is_port or any(each.writes for each in others) or (not root and entry in of_program)
     if _is_skeleton(name, meant):
         return False
     if not any(each.reads for each in uses):  # written only

@@ -18,6 +18,7 @@ from btq_lang.catalog.units import Unit, convert, dimension_name, parse_unit
 from btq_lang.catalog.versions import ID_IN_COMPACT_FORM, PORTS_OF_SUBTREE, UNDERSCORES, is_before_4
 from btq_lang.checks import lookups
 from btq_lang.checks.kinds import model_related, way_in
+from btq_lang.checks.own_nodes import OWN, WHY, may_be_own
 from btq_lang.checks.view import View, ports_beside
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix, write_fix
 from btq_lang.diagnostics.rules import Severity
@@ -69,12 +70,15 @@ def unknown_port(view: View) -> Iterator[Diagnostic]:
                 fixes = (replace_fix(f"Replace `{seen.node.head.text}` with `{node}`", seen.node.head.span, node),)
             elif assigned := _assigned(view, seen, ports, key, likely):
                 likely, fixes = assigned
-            message = f"{seen.shown_kind} has no port `{key.text}`{did_you_mean(likely) or stale}"
+            is_own = not harmless and may_be_own(view, seen, ports.names, bool(near(key.text, ports.names)))
+            what = OWN if is_own else ""
+            message = f"{seen.shown_kind} has no port `{key.text}`{what}{did_you_mean(likely) or stale}"
             related = _declared(view, seen)
             notes = (f"it has {names}" if known else "it has no ports", *_of_version_3(view, seen, key.text))
             if seen.kind is not None and not likely and (note := of_other_engines(seen.kind.flow, key.text)):
                 notes += (note,)
-            severity = Severity.WARNING if harmless else None
+            notes += WHY if is_own else ()
+            severity = Severity.WARNING if harmless or is_own else None
             yield Diagnostic("unknown-port", key.span, message, related, notes, fixes, severity=severity)
             if not known and seen.kind is None:
                 break  # all of the model's ports are missing
@@ -102,11 +106,13 @@ def missing_port(view: View) -> Iterator[Diagnostic]:
             continue
         names = " and ".join(f"`{port.name}`" for port in missing)
         as_value, to_port = _label_as_value(view, seen, missing)
+        is_own = may_be_own(view, seen, ports.names)
+        is_severe = not is_own and bool(seen.kind or seen.is_subtree or _throwing(seen))
         yield Diagnostic(
             "missing-port",
             seen.node.head.span,
             f"{seen.shown_kind} requires {'a value' if len(missing) == 1 else 'values'} for its "
-            f"port{'s' if len(missing) > 1 else ''} {names}",
+            f"port{'s' if len(missing) > 1 else ''} {names}{OWN if is_own else ''}",
             related=_declared(view, seen),
             notes=(
                 *(f"`{port.name}`: {port.doc}" for port in missing if port.doc),
@@ -116,10 +122,11 @@ def missing_port(view: View) -> Iterator[Diagnostic]:
                     if port.name[:1] == "_"
                 ),
                 *as_value,
+                *(WHY if is_own else ()),
             ),
             fixes=(*to_port, *_passing_on(view, seen, missing)),
             # Only the robot's program knows whether it requires an input, except for what is known of Nav2.
-            severity=None if seen.kind or seen.is_subtree or _throwing(seen) else Severity.WARNING,
+            severity=None if is_severe else Severity.WARNING,
         )
 
 

@@ -167,7 +167,9 @@ def unknown_main_tree(view: View) -> Iterator[Diagnostic]:
     way = '`main_tree_to_execute="…"` of <root>' if view.is_xml else "a line `Root <tree>`"
     message = f"ambiguous main tree: no other tree refers to {names}"
     notes: tuple[str, ...] = (f"name the main tree with {way}",)
-    created = [name for name in tops if view.ask(lookups.is_in_cpp, name)]
+    created = [name for name in tops if name in view.project.created or view.ask(lookups.is_in_cpp, name)]
+    if len(created) == 1:
+        return
     if created:
         notes = (*notes, f"C++ of the project has the name `{created[0]}`, and may create that tree")
     others = [view.declared_at(Kind.TREE, name, "another tree without a reference") for name in tops[1:_MOST_NAMES]]

@@ -119,7 +119,8 @@ def _unset(view: View, tree: str, named: Sequence[Mention], but: set[str]) -> It
                 outside.append(mention)
         elif not use & Use.STRANGE and view.ask(_needs, tree, name):
             yield _not_given(view, tree, mention)
-    outside = [each for each in outside if view.ask(_needs, tree, each.name)]
+    of_program = view.ask(lookups.set_in_cpp)
+    outside = [each for each in outside if each.name not in of_program and view.ask(_needs, tree, each.name)]
     if outside and _is_known_root(view, tree):
         yield from _never_set(view, outside)
 

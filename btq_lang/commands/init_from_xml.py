@@ -12,17 +12,16 @@ import shlex
 import sys
 from argparse import Namespace
 from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from functools import cache
-from importlib.util import find_spec
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.names import is_port_name
-from btq_lang.catalog.nav2 import DISTRIBUTIONS, ENGINES, ports_of
+from btq_lang.catalog.nav2 import ENGINES, PACKAGED
 from btq_lang.catalog.versions import VERSION_3, VERSIONS, is_before_4
 from btq_lang.checks import check_each
 from btq_lang.checks.engines import declared_engines
-from btq_lang.commands.explain_nav2 import models_of
+from btq_lang.commands.init_navigators import free_name, navigator_tables
+from btq_lang.commands.init_nodes import OF_NAV2, Nodes, nodes_for, nodes_lines
 from btq_lang.commands.output import show
 from btq_lang.commands.packages import Packages, packages_of
 from btq_lang.projects.files import Files
@@ -30,14 +29,12 @@ from btq_lang.projects.options import Refused
 from btq_lang.projects.xml_below import XmlBelow
 from btq_lang.syntax.tree import Tree
 from btq_lang.util.record import Record, replace
-from btq_lang.workspace.engine_version import written_for
 from btq_lang.workspace.file import GROOT_SUFFIX
 from btq_lang.workspace.loader import absolute, matching, shown, write_whole
 from btq_lang.workspace.workspace import Workspace
 
 _HEAD = "# What holds for all missions of this project\n"
 _ENGINES = f"engine = {json.dumps(VERSIONS)}  # the versions of BehaviorTree.CPP that must load them\n"
-_SOURCES = "# nodes = {}  # C++ that registers nodes: `btq nodes` shows what is seen of them\n"
 _WIDTH = 120
 _MANY_MORE = 10
 _EXCLUDED = """\
@@ -73,20 +70,45 @@ def run(options: Namespace) -> int:
     rest = _EXCLUDED.format(json.dumps(excluded, ensure_ascii=False)) if excluded else ""
     rest += "".join(f"\n{each.written(ending)}" for each in factories)
 
-    def holds(line: str) -> bool:
-        return _unknown_in(folder, line + rest) <= _unknown_in(folder, engine + rest)
+    def trouble(project: str, before: str) -> str:
+        """What is unknown with one project file and not with another."""
+        known = _unknown_in(folder, before)
+        return next((what for place, what in _unknown_in(folder, project).items() if place not in known), "")
 
-    nodes = nav2_line(workspace, packages, holds)
-    if nodes.startswith("nodes"):
-        engine = ""  # a distribution has a version of its own
-    nodes, sources = _with_sources(nodes, packages.sources, holds)
+    def with_engine(nodes: str) -> str:
+        """A distribution of Nav2 has a version of its own."""
+        return nodes if _names_distribution(nodes) else engine + nodes
+
+    named = nodes_for(workspace, packages, lambda nodes: trouble(with_engine(nodes) + rest, engine + rest))
+    nodes = nodes_lines(named)
+    text = with_engine(nodes) + rest
+    navigators = navigator_tables(
+        packages,
+        [each.name for each in factories],
+        [f"{each}{ending}" for each in _named_by_programs(workspace, packages, folder)],
+        lambda distribution: _names_distribution(nodes) or _fits(distribution, named, packages.engines),
+        lambda tables: trouble(text + tables, text),
+    )
     try:
-        write_whole(target, f"{_HEAD}{engine}{nodes}{sources}{rest}{''.join(_parameters(packages.parameters))}")
+        write_whole(target, f"{_HEAD}{text}{navigators}")
     except OSError as error:
         raise Refused(f"{shown(target)}: {error.strerror}") from error
-    count = f"{len(factories) or 'no'} factor{'y' if len(factories) == 1 else 'ies'}"
-    print(f"Wrote {shown(target)} with {count}. Next: btq check {shlex.quote(options.folder)}")
+    count = f"{text}{navigators}".count("\n[[factory]]")
+    how_many = f"{count or 'no'} factor{'y' if count == 1 else 'ies'}"
+    print(f"Wrote {shown(target)} with {how_many}. Next: btq check {shlex.quote(options.folder)}")
     return 0
+
+
+def _names_distribution(nodes: str) -> bool:
+    """Whether the lines for nodes name those of a distribution of Nav2."""
+    return any(f'"{name}"' in nodes for name in PACKAGED)
+
+
+def _fits(distribution: str | None, named: tuple[Nodes, ...], engines: tuple[str, ...]) -> bool:
+    """Whether a distribution is that of the engine, and no trees use nodes of another one."""
+    if distribution is None or any(OF_NAV2 in each.patterns for each in named):
+        return False
+    return not engines or is_before_4(ENGINES[distribution]) == is_before_4(engines[-1])
 
 
 class _Together(Record):
@@ -152,7 +174,7 @@ def _factories(workspace: Workspace, folder: str) -> Iterator[_Together]:
         paths += _beside(workspace, paths, [path for path in trees_in if path not in grouped])
         trees = [name for path in paths for name in workspace.files[path].names_of(Kind.TREE)]
         name = posixpath.basename(posixpath.commonpath([posixpath.dirname(path) for path in paths])) or "robot"
-        name = next(each for each in (name, *(f"{name}{number}" for number in range(2, 10_000))) if each not in names)
+        name = free_name(name, names)
         names.add(name)
         items = [facts for path in paths for facts in workspace.files[path].facts.values()]
         called = {other for facts in items if isinstance(facts.item, Tree) for other in facts.runs}
@@ -186,24 +208,25 @@ def _engine_line(workspace: Workspace, packages: Packages) -> str:
     return f"engine = {json.dumps(VERSION_3)}  # {why}\n" if is_old else _ENGINES
 
 
-def _parameters(paths: Iterable[str]) -> Iterator[str]:
-    """Factories that the project file may have, as comments."""
-    for path in paths:
-        yield f'\n# [[factory]]  # what bt_navigator loads\n# name = "navigator"\n# nav2 = {json.dumps(path)}\n'
+def _named_by_programs(workspace: Workspace, packages: Packages, folder: str) -> Iterator[str]:
+    """Patterns for the files with trees that Python or launch files name."""
+    trees, _ = _by_kind(workspace)
+    named = [path for path in trees if posixpath.basename(path) in packages.named]
+    yield from patterns(folder, named, [path for path in trees if path not in named])
 
 
-def _unknown_in(folder: str, project: str) -> set[tuple[str, int]]:
-    """Where a check finds nodes and ports that are not known, or cannot read something, if this is the project file."""
+def _unknown_in(folder: str, project: str) -> dict[tuple[str, int], str]:
+    """What nodes and ports a check does not know, or what it cannot read, if this is the project file, by place."""
     files = Files()
     files.overlay[f"{folder}/btq.toml"] = project
     groups, problems = files.groups([folder], with_xml=True, for_checks=True)
     return {
-        (path, each.span.start)
+        (path, each.span.start): f"with it btq finds in {shown(path)}: {each.message}"
         for group in groups
         for path, found in zip(group.given, check_each(group.workspace, group.given), strict=True)
         for each in found
         if each.rule in ("unknown-node", "unknown-port")
-    } | {(problem.message, 0) for problem in problems}
+    } | {(problem.message, 0): problem.message for problem in problems}
 
 
 def _by_kind(workspace: Workspace) -> tuple[list[str], list[str]]:
@@ -277,73 +300,3 @@ def _folders(path: str, top: str) -> Iterator[str]:
     yield top
     for number in range(1, len(names) + 1) if names != [""] else ():
         yield posixpath.join(top, *names[:number])
-
-
-def _with_sources(nodes: str, sources: tuple[str, ...], holds: Callable[[str], bool]) -> tuple[str, str]:
-    """The line that names nodes, with C++ sources in it, and a comment that proposes these if they are not: without the
-    grammar of C++, or if with them more in the trees is unknown."""
-    written = json.dumps(sources)
-    if not sources:
-        return nodes, ""
-    both = f"{nodes}nodes = {written}  # C++ that registers nodes\n"
-    if nodes.startswith("nodes"):
-        both = nodes.replace("]", f", {written[1:]}", 1)
-    if find_spec("tree_sitter_cpp") is not None and holds(both):
-        return both, ""
-    return nodes, _SOURCES.format(written)
-
-
-def nav2_line(workspace: Workspace, packages: Packages, holds: Callable[[str], bool]) -> str:
-    """The line of a project file that names Nav2's nodes, a comment if it is unknown which; empty if XML uses none.
-
-    Args:
-        packages: what they say of the engine, and which parameter files they have.
-        holds: whether a line may be written, as far as its effect on the project is concerned.
-    """
-    used = _used(workspace)
-    if not any(used.values()):
-        return ""  # a `Wait` alone may be anybody's
-    fitting = [each for each in _of_engine(workspace, packages.engines, used) if _has(each, used)]
-    named = [each for each in fitting if each in packages.distributions]
-    if len(fitting) == 1 or len(named) == 1:
-        why = "the only distribution of Nav2 with the nodes and ports of the trees"
-        if len(fitting) > 1:
-            fitting, why = named, "the distribution of Nav2 for which the parameters of bt_navigator are"
-        line = f'nodes = ["nav2-{fitting[0]}"]  # {why}\n'
-        if holds(line):
-            return line
-        fitting.clear()
-    fit = f"they fit {', '.join(fitting)}" if fitting else "no distribution has all of these nodes and ports"
-    return f'# nodes = ["nav2-DISTRIBUTION"]  # the trees use nodes of Nav2; name yours: {fit}\n'
-
-
-def _of_engine(workspace: Workspace, engines: tuple[str, ...], used: Mapping[str, set[str]]) -> Iterator[str]:
-    """The distributions with the engine that the files are for which use some nodes; Nav2's own trees declare a format
-    from version 4 on."""
-    project = replace(workspace.project, engines=engines or VERSIONS, names_all=engines == VERSIONS)
-    users = [file for file in workspace.files.values() if not file.said(Kind.MODEL).isdisjoint(used)]
-    signs = [file.origin.signs for file in users if file.origin is not None]
-    wanted = {is_before_4((written_for(project, None, each) or (VERSION_3,))[-1]) for each in signs}
-    for each in DISTRIBUTIONS:
-        if wanted <= {is_before_4(ENGINES[each])}:
-            yield each
-
-
-def _used(workspace: Workspace) -> Mapping[str, set[str]]:
-    """The nodes of Nav2 in XML, each with the ports that have values; one that has other ports is the project's own."""
-    used: dict[str, set[str]] = {}
-    for file in workspace.files.values():
-        for facts in file.facts.values():
-            for use in facts.summary.uses:
-                if use.kind is Kind.MODEL and use.node is not None and ports_of(use.name) is not None:
-                    given = (pair.key.text for pair in use.node.attributes)
-                    used.setdefault(use.name, set()).update(filter(is_port_name, given))
-    return {name: ports for name, ports in used.items() if ports <= (ports_of(name) or set())}
-
-
-def _has(distribution: str, used: Mapping[str, set[str]]) -> bool:
-    models = models_of(distribution)
-    return all(
-        name in models and ports <= {port.id.text for port in models[name].ports if port.id is not None}
-        for name, ports in used.items()
-    )

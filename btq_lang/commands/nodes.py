@@ -12,7 +12,7 @@ from btq_lang.btcpp import reader
 from btq_lang.btcpp.document import Element
 from btq_lang.catalog.cpp_classes import ENGINE
 from btq_lang.commands.output import write_output
-from btq_lang.cpp.findings import UNSEEN, findings
+from btq_lang.cpp.findings import UNSEEN, findings, nothing_registered
 from btq_lang.cpp.grammar import GrammarMissing
 from btq_lang.cpp.model import CppNodes
 from btq_lang.cpp.nodes import read_nodes
@@ -58,10 +58,13 @@ def run(options: Namespace) -> int:
             line, column = lines.position(each.span.start)
             what = f"{each.effective_severity.value}[{each.rule}] {each.message}"
             print(f"{path}:{line + 1}:{column + 1}: {what}", file=sys.stderr)
+    is_empty = bool(files) and not found.nodes and not remarks
+    if is_empty:
+        print(f"btq nodes: {nothing_registered(files)}", file=sys.stderr)
     ports = sum(len(node.ports) for node in found.nodes)
     counts = counted(len(found.nodes), "node"), counted(ports, "port"), counted(len(files), "file")
     print("{} with {} in {}".format(*counts), file=sys.stderr)
-    return int(bool(remarks))
+    return int(bool(remarks) or is_empty)
 
 
 def _texts(paths: list[str], project: Project) -> tuple[dict[str, str], dict[str, Exported], list[str]]:

@@ -10,6 +10,7 @@ import os.path
 import posixpath
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from types import MappingProxyType
 from typing import Final
 
 from btq_lang.catalog.versions import VERSION_3, VERSIONS
@@ -28,20 +29,21 @@ class Packages(Record):
         engines: the versions of the engine that they depend on; empty if none or several do.
         depends_on: the package of the engine that says so.
         sources: folders with C++ that registers nodes or declares their ports, as patterns.
-        parameters: files with the parameters of a bt_navigator.
-        distributions: of Nav2 for which these are, as far as they tell.
+        parameters: files with the parameters of a bt_navigator, each with the distribution of Nav2 that it is for, if
+            it tells.
+        named: the names of XML files in Python and in launch files.
     """
 
     engines: tuple[str, ...] = ()
     depends_on: str = ""
     sources: tuple[str, ...] = ()
-    parameters: tuple[str, ...] = ()
-    distributions: frozenset[str] = frozenset()
+    parameters: Mapping[str, str | None] = MappingProxyType({})
+    named: frozenset[str] = frozenset()
 
 
 def packages_of(folder: str) -> Packages:
     """What the packages below a folder say, or if they name no engine, the package that it is in."""
-    texts = _texts(folder, (*_MANIFESTS, *CPP_SUFFIXES, *YAML_SUFFIXES))
+    texts = _texts(folder, (*_MANIFESTS, *CPP_SUFFIXES, *YAML_SUFFIXES, *_PROGRAMS))
     depends_on = _engine_among(texts)
     if not depends_on and (above := pool_of(folder, folder)) != folder:
         depends_on = _engine_among(_texts(above, _MANIFESTS))
@@ -49,10 +51,11 @@ def packages_of(folder: str) -> Packages:
     cpp = {path: text for path, text in below.items() if path.endswith(CPP_SUFFIXES) and not _is_of_tests(path)}
     sources = [path for path, text in cpp.items() if _REGISTERS(text) or _PORTS(text)]
     sources = sources if any(_REGISTERS(cpp[path]) for path in sources) else []
-    parameters = [path for path, text in below.items() if path.endswith(YAML_SUFFIXES) and _NAVIGATOR(text)]
-    distributions = frozenset(filter(None, (_distribution(below[path]) for path in parameters)))
+    settings = {path: text for path, text in below.items() if path.endswith(YAML_SUFFIXES) and _NAVIGATOR(text)}
+    parameters = {path: _distribution(text) for path, text in settings.items()}
+    named = {name for path, text in below.items() if path.endswith(_PROGRAMS) for name in _XML(text)}
     engines = _ENGINES.get(depends_on, ())
-    return Packages(engines, depends_on, tuple(_patterns(sources)), tuple(parameters), distributions)
+    return Packages(engines, depends_on, tuple(_patterns(sources)), parameters, frozenset(named))
 
 
 def _distribution(text: str) -> str | None:
@@ -117,4 +120,6 @@ _REGISTERS: Final = re.compile(
     r"\b(?:registerNodeType|registerBuilder|registerSimple(?:Action|Condition|Decorator)|BT_REGISTER_(?:ROS_)?NODES)\b"
 ).search
 _PORTS: Final = re.compile(r"\bprovidedPorts\s*\(").search
+_PROGRAMS: Final = (".py", ".launch.xml", ".launch")
+_XML: Final = re.compile(r"[\w.-]+\.xml\b").findall
 _NAVIGATOR: Final = re.compile(r"^[ \t]*bt_navigator[ \t]*:", re.MULTILINE).search

@@ -10,9 +10,10 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Final
 
+from btq_lang.cpp.macros import uncalled
 from btq_lang.cpp.model import CppNodes, Place
 from btq_lang.diagnostics.model import Diagnostic, Tag
-from btq_lang.util.text import LineIndex
+from btq_lang.util.text import LineIndex, counted
 
 
 def findings(found: CppNodes, texts: Mapping[str, str]) -> dict[str, tuple[Diagnostic, ...]]:
@@ -25,6 +26,14 @@ def findings(found: CppNodes, texts: Mapping[str, str]) -> dict[str, tuple[Diagn
             tags = (Tag.UNNECESSARY,) if rule == UNUSED else ()
             of_path.setdefault(place.path, []).append(Diagnostic(rule, place.span_in(index), message, tags=tags))
     return {path: tuple(sorted(each, key=lambda one: (one.span, one.rule))) for path, each in of_path.items()}
+
+
+def nothing_registered(texts: Mapping[str, str]) -> str:
+    """The message for some files that register no node."""
+    where = "name the files with BT_REGISTER_NODES, registerNodeType or registerBuilder, too"
+    if (macro := next(uncalled(texts), None)) is not None:
+        where = f"`{macro.name}` of {macro.path} registers what it is given: name the files that use it, too"
+    return f"no node is registered in {counted(len(texts), 'C++ file')}; {where}"
 
 
 def _all(found: CppNodes) -> Iterator[tuple[str, Place, str]]:

@@ -68,6 +68,16 @@ def macros_in(path: str, text: str) -> tuple[Macro, ...]:
     return tuple(macros)
 
 
+def uncalled(texts: Mapping[str, str]) -> Iterator[Macro]:
+    """The macros of some files, texts by path, that register what they are given and that none of them calls."""
+    code = [_WITHOUT_DEFINITIONS.sub("", text) for text in texts.values()]
+    for path, text in texts.items():
+        for macro in macros_in(path, text):
+            is_called = any(re.search(rf"\b{macro.name}\b", each) for each in code)
+            if macro.parameters and _REGISTERS(macro.body) and not is_called:
+                yield macro
+
+
 class Macros:
     """All macros of some files."""
 
@@ -313,6 +323,8 @@ _DIRECTIVE: Final = re.compile(
     re.MULTILINE,
 )
 _WITH_BRACKETS: Final = re.compile(r"^[ \t]*#[ \t]*define[ \t]+\w+\((?:\\\r?\n|[^\n])*", re.MULTILINE)
+_WITHOUT_DEFINITIONS: Final = re.compile(r"^[ \t]*#[ \t]*(?:define|undef|ifn?def)\b(?:\\\r?\n|[^\n])*", re.MULTILINE)
+_REGISTERS: Final = re.compile(r"[rR]egister[A-Z]\w*\s*[<(]").search
 _SPLICED: Final = re.compile(r"\\\r?\n")
 _HASHES: Final = re.compile(r"\s*##\s*|#\s+")
 _WORD: Final = re.compile(r"[A-Za-z_]\w*").findall

@@ -87,6 +87,9 @@ def _places(found: Loaded) -> Iterator[Diagnostic]:
         what = "folder" if is_folder else "tree"
         message = f"cannot find the {what} `{place.named.text}`: {place.problem}"
         notes = ("a launch file may put another value here",) if not load.goals else ()
+        if not place.named.text:
+            holder = "item" if is_folder else "parameter"
+            message, notes = f"this {holder} is empty and names no {what}; a launch file may set it", ()
         if place.severity is Severity.ERROR and not load.goals:
             refused = "bt_navigator refuses to start"
             notes = ("without this folder bt_navigator loads no tree at all",) if is_folder else (refused,)

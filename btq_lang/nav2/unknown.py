@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator
 from typing import Final
 
 from btq_lang.catalog.nav2.navigator import NAVIGATORS, OTHER_PARAMETERS, OWN_PACKAGE, PARAMETERS
+from btq_lang.catalog.nav2.servers import SERVERS
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.nav2.parameters import Parameters
@@ -50,17 +51,35 @@ def unknown_parameters(parameters: Parameters, distribution: str, own: OwnCode) 
         likely = [each for each in near(wrong, candidates, 1) if distance(wrong, each) * _LETTERS_AN_EDIT <= len(wrong)]
         severity: Severity | None = None
         notes: tuple[str, ...] = ()
+        readers = _readers(section, distribution) if not is_below else []
         if rest in names:
             message = f"Nav2 does not read `{rest}` below `{section}`: write it one level up"
-        elif likely:
+        elif likely and not readers:
             message = f"Nav2 has no parameter `{name}`{did_you_mean([name.replace(wrong, likely[0])])}"
         elif name in parameters.shared or section in others or "$(" in name or own.has(rest or name):
             continue
         else:
             message = f"Nav2 has no parameter `{name}` in {distribution.capitalize()}"
             message += did_you_mean(sorted(_with_words_of(name, names, navigators)))
+            if readers:
+                message = f"bt_navigator does not read `{name}`: {_listed(readers)}"
             severity, notes = (Severity.HINT, (_OWN,)) if own.is_loaded else (None, (_SILENT,))
         yield Diagnostic("nav2-parameter", key.span, message, notes=notes, severity=severity)
+
+
+def _readers(name: str, distribution: str) -> list[str]:
+    """The other nodes of Nav2 that read a parameter of this name."""
+    return [
+        node
+        for node, rows in SERVERS.items()
+        if any(distribution[0] in of and name in text.split() for of, text in rows.items())
+    ]
+
+
+def _listed(nodes: list[str]) -> str:
+    """What reads a parameter, as a clause."""
+    *others, last = nodes
+    return f"{', '.join(others)} and {last} read it" if others else f"{last} reads it"
 
 
 def _with_words_of(name: str, names: Iterable[str], navigators: Iterable[str]) -> Iterator[str]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.nav2 import DISTRIBUTIONS, ENGINES, FILES, PACKAGED, PACKAGES
 from btq_lang.catalog.versions import is_before_4
-from btq_lang.cpp.findings import findings
+from btq_lang.cpp.findings import findings, nothing_registered
 from btq_lang.cpp.grammar import GrammarMissing
 from btq_lang.cpp.macros import Macro, Macros, macros_in
 from btq_lang.cpp.model import CppNode, CppNodes
@@ -25,11 +25,11 @@ from btq_lang.projects.node_writers import models_in_btq
 from btq_lang.syntax.tree import models_in
 from btq_lang.util.record import Record, replace
 from btq_lang.util.source_map import Places
-from btq_lang.util.text import LineIndex, Placed, Span, counted
+from btq_lang.util.text import LineIndex, Placed, Span
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.factories import Factory
 from btq_lang.workspace.file import CPP_SUFFIXES, File, Origin
-from btq_lang.workspace.loader import Found, LoadProblem, excluder, matching, read
+from btq_lang.workspace.loader import Found, LoadProblem, excluder, matching, read, shown
 from btq_lang.workspace.queries import Store, input_of
 from btq_lang.workspace.workspace import Workspace
 
@@ -84,8 +84,7 @@ class CppFiles:
             nodes, files = None, {}
             problems.append(_problem(home, project.cpp_patterns[0], MISSING))
         if nodes is not None and texts and not nodes.nodes and not any(each.hides_node for each in nodes.unseen):
-            where = "name the files with BT_REGISTER_NODES, registerNodeType or registerBuilder, too"
-            message = f"no node is registered in {counted(len(texts), 'C++ file')}; {where}"
+            message = nothing_registered({shown(path): text for path, text in texts.items()})
             problems.append(_problem(home, project.cpp_patterns[0], message))
         project = replace(
             project,

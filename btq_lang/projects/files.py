@@ -217,7 +217,9 @@ class Files:
             group = replace(group, given=tuple(path for path in group.given if path not in known))
         if group.given or not groups:
             has_xml = any(group.workspace.files[path].origin is not None for path in group.given)
-            groups.append(self._with_pools(group, pools, project_of) if pools and has_xml else group)
+            if pools and has_xml:
+                group = _with_created(self._with_pools(group, pools, project_of), pools)
+            groups.append(group)
         return groups, problems
 
     def _may_be_xml(self, path: str) -> bool:
@@ -286,6 +288,10 @@ class Files:
         sources = self._sources.get(home.path or "")
         whole = sources.declared_in(factory) if sources is not None else factory
         return self._load((), home, (whole,))[0].workspace.of_factory(whole)
+
+    def workspace_of_nodes(self, home: Found) -> Workspace:
+        """The workspace of what a project of the last request declares of nodes, without missions."""
+        return self._load((), home, ())[0].workspace
 
     def _with_pools(
         self, group: Group, pools: Mapping[str, tuple[str, ...]], project_of: Callable[[str], Found]
@@ -385,6 +391,18 @@ def _with_cpp(group: Group, folders: Iterable[str]) -> Group:
     files = group.workspace.files
     cpp = tuple(path for path in files if files[path].is_cpp and path.startswith(tuple(folders)))
     return replace(group, cpp=cpp) if cpp else group
+
+
+def _with_created(group: Group, pools: Iterable[str]) -> Group:
+    """The group with the main trees that C++ of its pools creates."""
+    if all(len(group.workspace.files[path].names.by_kind[Kind.TREE]) < 2 for path in group.given):
+        return group
+    from btq_lang.projects.created_trees import created_trees  # most files have one tree
+
+    created = created_trees(group.workspace, group.given, pools, group.project)
+    if not created:
+        return group
+    return replace(group, workspace=group.workspace.with_project(replace(group.project, created=created)))
 
 
 def lacking_names(workspace: Workspace, paths: Iterable[str]) -> frozenset[str]:

@@ -7,7 +7,7 @@ import os
 from btq_lang.projects.files import Files
 from btq_lang.projects.options import Refused
 from btq_lang.util.record import replace
-from btq_lang.workspace.loader import read, shown
+from btq_lang.workspace.loader import absolute, find_project, read, shown
 from btq_lang.workspace.workspace import Workspace
 
 
@@ -32,7 +32,8 @@ def open_workspace(*paths: str, factory: str | None = None) -> Workspace:
         OSError: a file or folder cannot be read, or is not UTF-8; the message names it.
         ValueError: there is no such factory, or it registers none of these files.
     """
-    groups, problems = Files().groups(paths or (".",), with_xml=True, for_checks=True)
+    opened = Files()
+    groups, problems = opened.groups(paths or (".",), with_xml=True, for_checks=True)
     for problem in problems:
         raise OSError(str(problem))
     requested = {path for group in groups for path in group.given}
@@ -44,6 +45,8 @@ def open_workspace(*paths: str, factory: str | None = None) -> Workspace:
         raise ValueError(f"no factory `{factory}` registers any of these files")
     if len(groups) == 1 and not groups[0].workspace.project.factories:
         return _shown_from_root(groups[0].workspace)
+    if not groups:
+        return _shown_from_root(opened.workspace_of_nodes(find_project(absolute(paths[0] if paths else "."))))
     wholes = [group.workspace for group in groups]
     files = {
         path: whole.files[path]

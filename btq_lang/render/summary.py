@@ -26,10 +26,10 @@ def summary(report: Report) -> str:
     """`Found 3 errors, 1 warning (2 fixable with --fix)`, or that nothing was found."""
     if not report.findings and not report.checked:
         return f"No files were checked: {report.why_empty}" if report.why_empty else "No files were checked"
+    serious = [each for each in report.troubles if not (is_project_file(each.path) and each.path in report.checked)]
+    incomplete = f"; incomplete because of {serious[0]}" if serious else ""
     if not report.findings and report.troubles:
-        if all(is_project_file(each.path) and each.path in report.checked for each in report.troubles):
-            return f"Found {counted(len(report.troubles), 'error')}"
-        return "Found nothing, but not every file could be read or written"
+        return f"Found {counted(len(report.troubles), 'error')}" if not serious else f"Found nothing{incomplete}"
     known = f", and {report.known} in the baseline" if report.known else ""
     if not report.findings:
         new = "new " if known else ""
@@ -39,6 +39,7 @@ def summary(report: Report) -> str:
         f"Found {counted_by_severity(report.findings)}"
         + (f" ({fixable} fixable with --fix)" if fixable else "")
         + known
+        + incomplete
     )
 
 

@@ -47,6 +47,7 @@ class Project(Record):
         overrides: of severities in some files; of several that name a rule the last one counts.
         folders: working folders: an editor's, or the current one.
         pools: folders in which an XML file finds the trees and models that it lacks; the loader finds them.
+        created: the trees of XML that C++ in the pools names, and probably creates.
         evidence: its table about logs, if it has one.
         factories: what each of its programs registers.
         node_files: files whose models count in all files: files of btq, and C++ sources that were read.
@@ -73,6 +74,7 @@ class Project(Record):
     overrides: tuple[Override, ...] = ()
     folders: tuple[str, ...] = ()
     pools: tuple[str, ...] = ()
+    created: frozenset[str] = frozenset()
     evidence: Evidence | None = None
     factories: tuple[Factory, ...] = ()
     node_files: tuple[str, ...] = ()

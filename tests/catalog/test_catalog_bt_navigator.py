@@ -9,8 +9,9 @@ from subprocess import run
 import pytest
 from nav2_clone import clone
 from nav2_libraries import table_file
+from nav2_servers import table_file as servers_file
 
-from btq_lang.catalog.nav2 import DISTRIBUTIONS, libraries
+from btq_lang.catalog.nav2 import DISTRIBUTIONS, libraries, servers
 from btq_lang.catalog.nav2.libraries import LIBRARIES
 from btq_lang.catalog.nav2.navigator import ENTRIES, ERROR_CODES, PARAMETERS, outside_entries
 from btq_lang.commands.explain_nav2 import models_of
@@ -42,6 +43,10 @@ def test_error_codes_are_prefixes_since_kilted() -> None:
 
 def test_the_libraries_are_what_the_tool_writes() -> None:
     assert Path(libraries.__file__).read_text(encoding="utf-8") == table_file(clone())
+
+
+def test_the_parameters_of_other_nodes_are_what_the_tool_writes() -> None:
+    assert Path(servers.__file__).read_text(encoding="utf-8") == servers_file(clone())
 
 
 @pytest.mark.parametrize("branch", DISTRIBUTIONS)

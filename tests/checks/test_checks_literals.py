@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from check_asserts import apply, assert_clean, assert_fix, assert_problems, workspace_of
+from check_asserts import apply, assert_clean, assert_fix, assert_problems, problems, workspace_of
 
 from btq_lang.checks import check
 from btq_lang.workspace.config import Project
@@ -92,6 +92,31 @@ def test_endless(word: str, node: str, port: str) -> None:
     found = f"expected an integer for `{port}`, found `{word.strip(chr(34))}`; endless is `-1`"
     assert_problems(text, f"2:{len(node) + len(port) + 10} error invalid-literal «{word}» {found}")
     assert_fix(text, "Write `-1` for endless", text.replace(word, "-1"))
+
+
+@pytest.mark.parametrize(
+    ("value", "reads", "severity"),
+    [
+        ("1.0", "1", "hint"),
+        ("-1.", "-1", "hint"),
+        ("1.000", "1", "hint"),
+        ("1.05", "1", "warning"),
+        ("1.0.1", "1", "warning"),
+        ("1.0 s", "1", "warning"),
+        ("1e3", "1", "warning"),
+        ("1,0", "1", "warning"),
+    ],
+)
+def test_an_integer_that_is_written_as_a_real(value: str, reads: str, severity: str) -> None:
+    message = f"the engine reads `{value}` as {reads} and silently drops the rest"
+    text = f'BehaviorTree Main\n    Repeat (num_cycles = "{value}")\n        X\n'
+    assert_problems(text, f'2:26 {severity} trailing-text-in-number «"{value}"» {message}')
+
+
+@pytest.mark.parametrize(("queue", "severity"), [("1.0;2", "hint"), ("1;2.00;", "hint"), ("1.0;2.5", "warning")])
+def test_a_list_of_integers_that_are_written_as_reals(queue: str, severity: str) -> None:
+    text = f'BehaviorTree Main\n    LoopInt (queue = "{queue}" value = {{v}})\n        X\n'
+    assert [each.effective_severity.value for each in problems(text, "trailing-text-in-number")] == [severity]
 
 
 def test_a_list_keeps_its_quotes() -> None:

@@ -29,6 +29,74 @@ def tree(*lines: str) -> str:
     return "BehaviorTree Main\n" + "".join(f"    {line}\n" for line in lines)
 
 
+# ---- nodes of a team's own ----
+
+OWN = "; this may be a node of your own"
+HAS_NO = "`IsBatteryLow` has no port"
+REQUIRES = "`PersistentSequence` requires a value for its port"
+
+
+@pytest.mark.parametrize(
+    ("node", "expected"),
+    [
+        (
+            "IsBatteryLow (threshold = 20 voltage = 23.5)",
+            [
+                "3:9 warning missing-port «IsBatteryLow» `IsBatteryLow` requires a value for its port `min_battery`"
+                + OWN,
+                f"3:23 warning unknown-port «threshold» {HAS_NO} `threshold`{OWN}",
+                f"3:38 warning unknown-port «voltage» {HAS_NO} `voltage`{OWN}",
+            ],
+        ),
+        (
+            "IsBatteryLow (threshold = 20)",
+            [f"3:23 warning unknown-port «threshold» {HAS_NO} `threshold`{OWN}; did you mean `min_battery`?"],
+        ),
+        (
+            "IsBatteryLow",
+            [
+                "3:9 warning missing-port «IsBatteryLow» `IsBatteryLow` requires a value for its port `min_battery`"
+                + OWN
+            ],
+        ),
+        (
+            "IsBatteryLow (min_battery = 0.2 cells = 4)",
+            [f"3:41 warning unknown-port «cells» {HAS_NO} `cells`{OWN}"],
+        ),
+        (
+            "IsBatteryLow (min_battery = 0.2 is_voltag = true)",
+            [f"3:41 error unknown-port «is_voltag» {HAS_NO} `is_voltag`; did you mean `is_voltage`?"],
+        ),
+        (
+            "IsBatteryLow (is_voltage = true)",
+            ["3:9 warning missing-port «IsBatteryLow» `IsBatteryLow` requires a value for its port `min_battery`"],
+        ),
+        (
+            "PersistentSequence (start = 2)\n            AlwaysSuccess\n            AlwaysSuccess",
+            [
+                "3:29 warning unknown-port «start» `PersistentSequence` has no port `start`"
+                f"{OWN}; did you mean `current_child_idx`?"
+            ],
+        ),
+        (
+            "PersistentSequence\n            AlwaysSuccess\n            AlwaysSuccess",
+            [f"3:9 warning missing-port «PersistentSequence» {REQUIRES} `current_child_idx`{OWN}"],
+        ),
+    ],
+)
+def test_a_node_of_ones_own_with_the_name_of_one_of_nav2(node: str, expected: list[str]) -> None:
+    """Where only Nav2's nodes are named, and others of the file are unknown; else it is Nav2's."""
+    of_file = found(tree("->", f"    {node}", "    StopMoving"), "lyrical")
+    assert [each for each in of_file if "StopMoving" not in each] == expected
+    of_known = found(tree("->", f"    {node}", "    AlwaysSuccess"), "lyrical")
+    assert of_known == [each.replace("warning", _severity(node, each)).replace(OWN, "") for each in expected]
+
+
+def _severity(node: str, finding: str) -> str:
+    """Without an input, most nodes of Nav2 do not throw."""
+    return "warning" if "missing-port" in finding and not node.startswith("Persistent") else "error"
+
+
 # ---- children and results ----
 
 

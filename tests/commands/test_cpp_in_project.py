@@ -196,6 +196,73 @@ def test_tests_and_excluded_sources_register_nothing(robot: Path, line: str) -> 
     assert known('["**/*.cpp"]', 'exclude = ["src/mocks/"]\n') == []
 
 
+@pytest.mark.parametrize(
+    ("program", "is_all"),
+    [
+        (
+            'int main() { BT::BehaviorTreeFactory f; f.registerNodeType<robot::Drive>("Drive"); f.createTree("M"); }',
+            True,
+        ),
+        ('void add(F& f) { f.registerNodeType<robot::Drive>("Drive"); }', True),
+        ('int main() { f.registerNodeType<robot::Drive>("Drive"); f.registerFromPlugin("libmore.so"); }', False),
+        ('BT_REGISTER_NODES(f) { f.registerNodeType<robot::Drive>("Drive"); }', False),
+    ],
+)
+def test_a_node_that_a_program_does_not_register(robot: Path, program: str, is_all: bool) -> None:
+    """Not of a library, nor of a program that loads libraries."""
+    factory = '[[factory]]\nname = "r"\nload = ["trees/*.xml"]\nmain = "M"\nnodes = ["src/*.cpp", "include/*.hpp"]\n'
+    write(robot, "btq.toml", factory)
+    write(robot, "src/drive.cpp", f'#include "drive.hpp"\n{program}\n')
+    xml = '<root BTCPP_format="4"><BehaviorTree ID="M"><Sequence>{}<Drive/></Sequence></BehaviorTree></root>\n'
+    for node, column in (("<Navigat/>", 56), ('<Action ID="Navigat"/>', 67)):
+        write(robot, "trees/m.xml", xml.format(node))
+        found = check(robot, "trees", "--select", "unknown-node")
+        assert found == [f"trees/m.xml:1:{column}: error[unknown-node] unknown node `Navigat`"] * is_all
+
+
+SETS = """\
+struct Say : BT::SyncActionNode {
+  static BT::PortsList providedPorts() { return { BT::InputPort<double>("pct") }; }
+  BT::NodeStatus tick() override { return getInput<double>("pct").value() > 3 ? Status::SUCCESS : Status::FAILURE; }
+};
+int main() {
+  factory.registerNodeType<Say>("Say");
+  blackboard->set("battery_pct", 20.0);
+  blackboard.set<std::string>("mode", "slow");
+  tree.rootBlackboard()->set( "robot_name", name);
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("node", "entry", "meant"),
+    [
+        ('<Say pct="{batery_pct}"/>', "batery_pct", "battery_pct"),
+        ('<Say pct="{batteryPct}"/>', "batteryPct", "battery_pct"),
+        ('<Say pct="{robot_nam}"/>', "robot_nam", "robot_name"),
+        ('<Say pct="{@robot_nmae}"/>', "@robot_nmae", "@robot_name"),
+        ('<ScriptCondition code="mdoe == 2"/>', "mdoe", "mode"),
+        ('<AlwaysSuccess _skipIf="battery_ptc > 3"/>', "battery_ptc", "battery_pct"),
+    ],
+)
+def test_an_entry_is_misspelt_that_only_a_program_sets(robot: Path, node: str, entry: str, meant: str) -> None:
+    write(robot, "src/say.cpp", SETS)
+    xml = '<root BTCPP_format="4"><BehaviorTree ID="M"><Sequence>{}</Sequence></BehaviorTree></root>\n'
+    write(robot, "trees/m.xml", xml.format(node))
+    found = check(robot, "trees/m.xml", "--select", "misspelt-entry,unset-entry")
+    message = f"nothing writes `{entry}`, which is read here; did you mean `{meant}`?"
+    column = xml.index("{") + node.index(entry) + 1
+    assert found == [f"trees/m.xml:1:{column}: warning[misspelt-entry] {message}"]
+
+
+def test_what_a_program_sets_is_not_unset(robot: Path) -> None:
+    write(robot, "src/say.cpp", SETS)
+    xml = '<root BTCPP_format="4"><BehaviorTree ID="M"><Sequence>{}</Sequence></BehaviorTree></root>\n'
+    write(robot, "trees/m.xml", xml.format('<Say pct="{battery_pct}"/><Say pct="{level}"/>'))
+    hint = "hint[unset-entry] nothing here writes `level` before it is read"
+    assert check(robot, "trees/m.xml") == [f"trees/m.xml:1:92: {hint}"]
+
+
 def test_messages_name_other_files_from_the_folder_of_the_project(robot: Path) -> None:
     write(robot, "src/other.cpp", 'void add(F& f) { f.registerSimpleAction("Drive", drive); }\n')
     write(robot, "trees/m.btq", "BehaviorTree Main\n    IsOpen\n")
@@ -216,7 +283,8 @@ def test_a_factory_has_the_nodes_that_its_own_sources_register(robot: Path, orde
     assert check(robot) == [
         UNUSED,
         UNDECLARED,
-        "trees/m.btq:4:9: warning[unknown-node] unknown node `Gripp`; did you mean `Grip`?",
+        "trees/m.btq:3:9: error[unknown-node] unknown node `IsOpen`",
+        "trees/m.btq:4:9: error[unknown-node] unknown node `Gripp`; did you mean `Grip`?",
         "trees/m.btq:5:15: warning[unknown-port] `Grip` has no port `a`",
     ]
 

@@ -232,13 +232,81 @@ def test_init_proposes_sources_and_parameters(tmp_path: Path) -> None:
     (tmp_path / "config" / "nav.yaml").write_text("bt_navigator:\n  ros__parameters:\n    use_sim_time: true\n")
     (tmp_path / "config" / "other.yaml").write_text("controller_server: {}\n")
     (tmp_path / "t.xml").write_text('<root BTCPP_format="4"><BehaviorTree ID="Main"><Dock/></BehaviorTree></root>\n')
-    assert lines_of_init(tmp_path) == ['nodes = ["src/*.cpp"]  # C++ that registers nodes', *NAVIGATOR]
+    heading = "# [[factory]]  # what bt_navigator loads; name its distribution in `nodes` first"
+    navigator = ["", heading, '# name = "navigator"', '# nav2 = "config/nav.yaml"']
+    assert lines_of_init(tmp_path) == ['nodes = ["src/*.cpp"]  # C++ that registers nodes', *navigator]
     (tmp_path / "src" / "nodes.cpp").write_text("// registerNodeType is called elsewhere\n")
-    proposed = '# nodes = ["src/*.cpp"]  # C++ that registers nodes: `btq nodes` shows what is seen of them'
-    assert lines_of_init(tmp_path) == [proposed, *NAVIGATOR]
+    where = "name the files with BT_REGISTER_NODES, registerNodeType or registerBuilder, too"
+    why = f"no node is registered in 2 C++ files; {where}"
+    proposed = f'# nodes = ["src/*.cpp"]  # C++ that registers nodes; {why}'
+    assert lines_of_init(tmp_path) == [proposed, *navigator]
 
 
-NAVIGATOR = ("", "# [[factory]]  # what bt_navigator loads", '# name = "navigator"', '# nav2 = "config/nav.yaml"')
+def test_init_says_what_is_unknown_with_sources(tmp_path: Path) -> None:
+    pytest.importorskip("tree_sitter_cpp", reason="the C++ grammar is not installed: pip install -e '.[cpp]'")
+    (tmp_path / "n.cpp").write_text(
+        'void f(F& x) { x.registerSimpleAction("Dock", d); x.registerSimpleAction("Undock", d); }\n'
+    )
+    xml = '<root BTCPP_format="4"><BehaviorTree ID="Main"><Sequence><Dock/>{}</Sequence></BehaviorTree></root>\n'
+    (tmp_path / "t.xml").write_text(xml.format("<Dokc/><Undock/>"))
+    unknown = "with it btq finds in t.xml: unknown node `Dokc`; did you mean `Dock`?"
+    assert lines_of_init(tmp_path) == [f'# nodes = ["*.cpp"]  # C++ that registers nodes; {unknown}']
+
+
+def test_init_proposes_all_nodes_in_one_line(tmp_path: Path) -> None:
+    """Without the distribution, Nav2's nodes are unknown beside those of C++."""
+    pytest.importorskip("tree_sitter_cpp", reason="the C++ grammar is not installed: pip install -e '.[cpp]'")
+    (tmp_path / "n.cpp").write_text(
+        'void f(F& x) { x.registerSimpleAction("Dock", d); x.registerSimpleAction("Undock", d); }\n'
+    )
+    nodes = "<Sequence><Dock/><Undock/><FollowPath path='{p}' goal_checker_id='a'/></Sequence>"
+    (tmp_path / "t.xml").write_text(f'<root BTCPP_format="4"><BehaviorTree ID="M">{nodes}</BehaviorTree></root>\n')
+    assert lines_of_init(tmp_path) == [
+        '# nodes = ["nav2-DISTRIBUTION", "*.cpp"]',
+        "#     the trees use nodes of Nav2; name yours: they fit jazzy, kilted, lyrical",
+        "#     C++ that registers nodes; name the distribution first",
+    ]
+    (tmp_path / "p.yaml").write_text(
+        "bt_navigator:\n  ros__parameters:\n    filter_duration: 0.2\n    introspection_mode: x\n"
+    )
+    why = "the distribution of Nav2 for which the parameters of bt_navigator are"
+    assert lines_of_init(tmp_path)[0] == f'nodes = ["nav2-lyrical", "*.cpp"]  # {why}'
+    (tmp_path / "n.cpp").write_text("// registerNodeType is called elsewhere\n")
+    unknown = "nav2-lyrical does not fit, with it btq finds in t.xml: unknown node `Dock`"
+    assert lines_of_init(tmp_path)[:3] == [
+        '# nodes = ["nav2-DISTRIBUTION", "*.cpp"]',
+        f"#     the trees use nodes of Nav2; name yours: {unknown}",
+        "#     C++ that registers nodes; name the distribution first",
+    ]
+    (tmp_path / "t.xml").write_text((tmp_path / "t.xml").read_text().replace("<Dock/><Undock/>", ""))
+    lines = lines_of_init(tmp_path)
+    assert lines[0] == f'nodes = ["nav2-lyrical"]  # {why}'
+    assert lines[1].startswith('# "*.cpp" may be added: C++ that registers nodes; no node is registered in 1 C++ file;')
+
+
+PARAMETERS = "bt_navigator:\n  ros__parameters:\n    introspection_mode: x\n    bt_log_idle_transitions: true\n"
+
+
+def test_init_writes_a_factory_for_each_parameter_file(tmp_path: Path) -> None:
+    """For Lyrical, as they tell; programs name trees, perhaps for goals."""
+    pytest.importorskip("yaml", reason="PyYAML is not installed: pip install -e '.[nav2]'")
+    (tmp_path / "t.xml").write_text('<root BTCPP_format="4"><BehaviorTree ID="M"><Wait/></BehaviorTree></root>\n')
+    (tmp_path / "u.xml").write_text('<root BTCPP_format="4"><BehaviorTree ID="N"><Wait/></BehaviorTree></root>\n')
+    (tmp_path / "a.yaml").write_text(PARAMETERS)
+    (tmp_path / "b.yaml").write_text(PARAMETERS)
+    (tmp_path / "go.py").write_text("goal.behavior_tree = share + '/u.xml'\n")
+    load = '# load = ["u.xml"]  # Python or a launch file names them: keep what is for goals'
+    table = "", "[[factory]]  # what bt_navigator loads"
+    assert lines_of_init(tmp_path) == [
+        *(*table, 'name = "navigator"', 'nav2 = "a.yaml"', load),
+        *(*table, 'name = "navigator2"', 'nav2 = "b.yaml"', load),
+    ]
+    assert run_btq("check", cwd=tmp_path)[0] < 2
+    text = (tmp_path / "btq.toml").read_text()
+    (tmp_path / "btq.toml").write_text(text.replace("# load", "load"))
+    assert run_btq("check", cwd=tmp_path)[0] < 2
+    (tmp_path / "package.xml").write_text(PACKAGE.format("<depend>behaviortree_cpp_v3</depend>"))
+    assert lines_of_init(tmp_path)[1] == f"# {table[1]}; name its distribution in `nodes` first"
 
 
 def lines_of_init(folder: Path) -> list[str]:
@@ -260,4 +328,7 @@ def test_init_names_sources_beside_the_distribution_of_the_parameters(tmp_path: 
     nodes = '<FollowPath path="{p}"/>'
     (tmp_path / "t.xml").write_text(f'<root BTCPP_format="4"><BehaviorTree ID="M">{nodes}</BehaviorTree></root>\n')
     why = "the distribution of Nav2 for which the parameters of bt_navigator are"
-    assert lines_of_init(tmp_path) == [f'nodes = ["nav2-lyrical", "src/**/*.cpp"]  # {why}', *NAVIGATOR]
+    assert lines_of_init(tmp_path) == [
+        f'nodes = ["nav2-lyrical", "src/**/*.cpp"]  # {why}',
+        *("", "[[factory]]  # what bt_navigator loads", 'name = "navigator"', 'nav2 = "config/nav.yaml"'),
+    ]

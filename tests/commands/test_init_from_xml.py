@@ -155,7 +155,8 @@ def test_a_distribution_that_lacks_a_port_is_not_proposed(tmp_path: Path) -> Non
     model = "<Decorator ID='SpeedController'><input_port name='filter_duration'/></Decorator>"
     models.write_text(f"<root><TreeNodesModel>{model}</TreeNodesModel></root>\n")
     assert run_btq("init", "--from-xml", cwd=tmp_path)[0] == 0
-    said = "name yours: no distribution has all of these nodes and ports\n"
+    unfit = "with it btq finds in nav.xml: `SpeedController` has no port `filter_duration`"
+    said = f"name yours: nav2-iron does not fit, {unfit}\n"
     assert (tmp_path / "btq.toml").read_text().startswith(HEAD)
     assert (tmp_path / "btq.toml").read_text().endswith(said)
     assert run_btq("check", cwd=tmp_path)[:2] == (0, "No problems found in 2 files\n")

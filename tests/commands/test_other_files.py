@@ -47,7 +47,16 @@ def test_other_files_are_refused_and_the_rest_is_checked(file: str, reason: str,
     told = f"btq: {file}: {reason}\n"
     assert run_btq("check", file, cwd=tmp_path) == (2, "No files were checked\n", told)
     several = run_btq("check", "main.btq", file, cwd=tmp_path)
-    assert several == (2, "Found nothing, but not every file could be read or written\n", told)
+    assert several == (2, f"Found nothing; incomplete because of {told.removeprefix('btq: ')}", told)
+
+
+def test_the_last_line_says_why_the_code_is_2(tmp_path: Path) -> None:
+    factory = '[[factory]]\nname = "robot"\nload = ["*.btq"]\n'
+    (tmp_path / "btq.toml").write_text(factory * 2)
+    (tmp_path / "main.btq").write_text(f"{MISSION}BehaviorTree Main\n    Dock\n")
+    code, out, err = run_btq("check", cwd=tmp_path)
+    why = "btq.toml:5:8: duplicate factory `robot`"
+    assert (code, out.splitlines()[-1], err) == (2, f"Found 1 error; incomplete because of {why}", f"btq: {why}\n")
 
 
 def test_of_two_project_files_one_counts(tmp_path: Path) -> None:

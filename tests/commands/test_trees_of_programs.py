@@ -32,12 +32,40 @@ def found(folder: Path, xml: str, settings: str = 'nodes = ["*.cpp"]\n', cpp: st
     return out.splitlines()[:-1]
 
 
-def test_a_main_tree_that_a_program_names(tmp_path: Path) -> None:
-    trees = '>\n<BehaviorTree ID="Patrol"><Say/></BehaviorTree>\n<BehaviorTree ID="Dock"><Say/></BehaviorTree>\n'
-    message = "ambiguous main tree: no other tree refers to `Patrol` or `Dock`"
-    assert found(tmp_path, trees) == [f"t.xml:2:19: hint[unknown-main-tree] {message}"]
-    other = CPP.replace("Patrol", "Charge")
-    assert found(tmp_path, trees, cpp=other) == [f"t.xml:2:19: warning[unknown-main-tree] {message}"]
+TREES = '>\n<BehaviorTree ID="Patrol"><Say/></BehaviorTree>\n<BehaviorTree ID="Dock"><Say/></BehaviorTree>\n'
+AMBIGUOUS = "ambiguous main tree: no other tree refers to `Patrol` or `Dock`"
+
+
+@pytest.mark.parametrize("settings", ['nodes = ["*.cpp"]\n', ""], ids=["named", "unnamed"])
+@pytest.mark.parametrize(
+    ("create", "severity"),
+    [
+        ('factory.createTree("Patrol")', ""),
+        ('factory.createTree(name, blackboard); } void f(std::string name = "Patrol") {', ""),
+        ('factory.createTree(name_); declare_parameter<std::string>("tree", "Patrol")', ""),
+        ('factory.createTree("Charge")', "warning"),
+        ('factory.createTree(is_late ? "Dock" : "Patrol")', "hint"),
+    ],
+)
+def test_a_main_tree_that_a_program_names(tmp_path: Path, settings: str, create: str, severity: str) -> None:
+    program = CPP.replace('factory.createTree("Patrol")', create)
+    expected = [f"t.xml:2:19: {severity}[unknown-main-tree] {AMBIGUOUS}"] if severity else []
+    assert found(tmp_path, TREES, settings, program) == expected
+
+
+def test_a_name_in_a_program_that_creates_no_tree_by_name(tmp_path: Path) -> None:
+    program = CPP.replace('factory.createTree("Patrol")', 'print("Patrol")')
+    assert found(tmp_path, TREES, "", program) == [f"t.xml:2:19: warning[unknown-main-tree] {AMBIGUOUS}"]
+
+
+def test_a_main_tree_that_another_file_of_the_package_names(tmp_path: Path) -> None:
+    """The folder that is checked has only the trees."""
+    (tmp_path / "package.xml").write_text("<package/>\n")
+    (tmp_path / "src").mkdir()
+    (tmp_path / "src" / "robot.cpp").write_text(CPP)
+    (tmp_path / "trees").mkdir()
+    (tmp_path / "trees" / "t.xml").write_text(f'<root BTCPP_format="4"{TREES}</root>\n')
+    assert run_btq("check", "trees", cwd=tmp_path)[:2] == (0, "No problems found in 1 file\n")
 
 
 @pytest.mark.parametrize(

@@ -42,6 +42,31 @@ def test_btq_nodes_of_the_shared_file(shared: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("macros", "where"),
+    [
+        (
+            "#define REG(t) f.registerNodeType<t>(#t)",
+            "`REG` of n.hpp registers what it is given: name the files that use it, too",
+        ),
+        (
+            "#ifndef REG\n#define REG(t) \\\n  f.registerBuilder<t>(#t)\n#endif\n#undef REG\n#define ALSO(t) REG(t)",
+            "`REG` of n.hpp registers what it is given: name the files that use it, too",
+        ),
+        ("#define TWICE(x) x x", "name the files with BT_REGISTER_NODES, registerNodeType or registerBuilder, too"),
+    ],
+)
+def test_a_macro_that_nothing_uses(tmp_path: Path, macros: str, where: str) -> None:
+    (tmp_path / "n.hpp").write_text(f"{macros}\n{CLASSES}")
+    message = f"no node is registered in 1 C++ file; {where}"
+    code, _, err = run_btq("nodes", ".", cwd=tmp_path)
+    assert (code, err) == (1, f"btq nodes: {message}\n0 nodes with 0 ports in 1 file\n")
+    (tmp_path / "btq.toml").write_text('nodes = ["*.hpp"]\n')
+    (tmp_path / "m.btq").write_text("BehaviorTree Main\n    Dock\n")
+    code, _, err = run_btq("check", cwd=tmp_path)
+    assert (code, err) == (2, f"btq: btq.toml:1:10: {message}\n")
+
+
+@pytest.mark.parametrize(
     ("macro", "use"),
     [
         (r"#define REG(name) factory.registerNodeType<robot::name>(#name)", "void f() { REG(Dock); REG(IsDocked); }"),

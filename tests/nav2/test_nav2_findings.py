@@ -132,8 +132,10 @@ def test_a_package_of_the_workspace_lacks_a_file(robot: Path, distribution: str)
 
 def test_an_empty_value(robot: Path) -> None:
     text = f"{HEAD}    default_nav_to_pose_bt_xml: ''\n"
-    message = "3:33 hint missing-nav2-tree cannot find the tree ``: it is empty"
+    message = "3:33 hint missing-nav2-tree this parameter is empty and names no tree; a launch file may set it"
     assert shown(robot, text, "jazzy") == shown(robot, text, "lyrical") == [message]
+    folders = shown(robot, f"{HEAD}    bt_search_directories: ['']\n", "lyrical")
+    assert folders == ["3:29 hint missing-nav2-tree this item is empty and names no folder; a launch file may set it"]
 
 
 def test_what_nobody_can_know(robot: Path) -> None:

@@ -70,6 +70,33 @@ def test_a_name_that_nothing_reads(robot: Path, name: str, distribution: str, me
         assert shown(robot, text, distribution) == []
 
 
+@pytest.mark.parametrize(
+    ("name", "distribution", "readers"),
+    [
+        ("bond_timeout", "humble", "lifecycle_manager reads it"),
+        ("autostart", "lyrical", "lifecycle_manager reads it"),
+        ("controller_frequency", "humble", "controller_server reads it"),
+        ("controller_frequency", "jazzy", "controller_server and docking_server read it"),
+        (
+            "enable_stamped_cmd_vel",
+            "jazzy",
+            "behavior_server, collision_monitor, controller_server, docking_server and velocity_smoother read it",
+        ),
+        ("controller.k_phi", "kilted", "docking_server reads it"),
+    ],
+)
+def test_a_name_that_another_node_of_nav2_reads(robot: Path, name: str, distribution: str, readers: str) -> None:
+    message = f"bt_navigator does not read `{name}`: {readers}"
+    assert found(robot, f"{name}: x", distribution=distribution) == [f"1:5 warning {message}"]
+    own = (f"{name}: x", "plugin_lib_names: [my_nodes]")
+    assert found(robot, *own, distribution=distribution) == [f"1:5 hint {message}"]
+
+
+def test_a_name_that_other_nodes_read_in_another_distribution(robot: Path) -> None:
+    message = "Nav2 has no parameter `enable_stamped_cmd_vel` in Humble"
+    assert found(robot, "enable_stamped_cmd_vel: true", distribution="humble") == [f"1:5 warning {message}"]
+
+
 @pytest.mark.parametrize("distribution", DISTRIBUTIONS)
 def test_what_all_nodes_and_some_of_a_tree_read(robot: Path, distribution: str) -> None:
     lines = (

@@ -375,7 +375,7 @@ def test_junit_of_a_file_that_could_not_be_read() -> None:
 
 def test_where_not_all_could_be_read_nothing_is_called_clean() -> None:
     report = Report((), {}, ("latin.btq",), TROUBLED.troubles)
-    assert rendered("concise", report) == "Found nothing, but not every file could be read or written\n"
+    assert rendered("concise", report) == "Found nothing; incomplete because of latin.btq:2:18: this is no UTF-8\n"
     assert rendered("full", Report((), {}, (), TROUBLED.troubles)) == "No files were checked\n"
 
 

@@ -173,6 +173,18 @@ def test_xml_is_built_already(tmp_path: Path) -> None:
 # ---- the other calls ----
 
 
+def test_a_folder_without_files(tmp_path: Path) -> None:
+    assert btq.open_workspace(str(tmp_path)).files == {}
+
+
+def test_a_folder_of_cpp(tmp_path: Path) -> None:
+    pytest.importorskip("tree_sitter_cpp", reason="the C++ grammar is not installed: pip install -e '.[cpp]'")
+    (tmp_path / "btq.toml").write_text('nodes = ["*.cpp"]\n')
+    (tmp_path / "n.cpp").write_text('void add(F& f) { f.registerSimpleAction("Dock", dock); }\n')
+    workspace = btq.open_workspace(str(tmp_path))
+    assert [file.text.splitlines()[-1] for file in workspace.files.values()] == ["    Action Dock"]
+
+
 def test_an_import_and_what_it_changed() -> None:
     tree = '<BehaviorTree ID="Main"><SequenceStar><Dock/></SequenceStar></BehaviorTree>'
     done = btq.import_xml(f'<root main_tree_to_execute="Main">{tree}</root>')
