@@ -25,7 +25,7 @@ from report import Goal, as_data, machine, options, shown
 from robot_log import Robot, battery, fetching, tiny
 
 from btq_lang.evidence.judging import Means
-from btq_lang.evidence.model import NamedLog, Series
+from btq_lang.evidence.model import NamedLog, SampleSeries
 from btq_lang.evidence.readers import read
 from btq_lang.evidence.verifying import verify
 
@@ -39,7 +39,7 @@ Task = Callable[[], object]
 AT_MOST = {"tiny": 60, "fetching": 25}
 
 
-def judged(robot: Robot, path: Path, samples: Mapping[str, Series]) -> None:
+def judged(robot: Robot, path: Path, samples: Mapping[str, SampleSeries]) -> None:
     report = verify([str(path)], Means([robot.mission], samples))
     assert report.problems == ()
     assert report.missions[0].runs > 0

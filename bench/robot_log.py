@@ -18,7 +18,7 @@ from random_runs import START, LoggedRun
 from btq_lang.btcpp.document import write as xml_of
 from btq_lang.btcpp.export import export
 from btq_lang.evidence.identity import Candidate
-from btq_lang.evidence.model import Series
+from btq_lang.evidence.model import SampleSeries
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
@@ -162,13 +162,13 @@ def fetching() -> Robot:
     return Robot(mission, logged_xml(mission), [_run(mission, random.Random(seed)) for seed in range(RUNS)])
 
 
-def battery(until: int) -> dict[str, Series]:
+def battery(until: int) -> dict[str, SampleSeries]:
     """Samples of the battery, one a second.
 
     Args:
         until: µs since the start of the log.
     """
-    series = Series()
+    series = SampleSeries()
     for second in range(until // 1_000_000 + 1):
         series.add(START + second * 1_000_000, 90.0 - second % 80)
     return {"battery": series}

@@ -19,7 +19,7 @@ from btq_lang.grammar.items import ItemParser
 from btq_lang.lexer import Lexer, State, tokens
 from btq_lang.syntax.scan import Maps, line_end, path_end
 from btq_lang.syntax.tokens import CATEGORIES, DIRECTIONS, NAME, NEWLINE, NODE_CLAUSES, OPEN, STRING, SYMBOL, Token
-from btq_lang.syntax.tree import Entry, Item, Root, Skipped, Tree, moved_by, quote, unquote
+from btq_lang.syntax.tree import Entry, Item, Root, SkippedLines, Tree, moved_by, quote, unquote
 from btq_lang.util.garbage import NotCollecting
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span, changed
@@ -167,7 +167,7 @@ class Parser(ItemParser):
         if self.problems or self.lexer.problems:  # after the last item, or in a file without any
             self.base = 0
             self.begun.append(None)
-            self.entry(Skipped(len(self.text), len(self.text)), False)
+            self.entry(SkippedLines(len(self.text), len(self.text)), False)
         return tuple(self.entries)
 
     def state(self) -> Start | None:
@@ -294,7 +294,7 @@ class Parser(ItemParser):
         self.complain(self.here(), message, fix, notes=("attributes go in brackets: `(key = value)`",))
         self.go_to(value)
 
-    def skipped(self, level: int) -> Skipped:
+    def skipped(self, level: int) -> SkippedLines:
         """Skip lines that do not begin an item, with their blocks; report the first."""
         start = self.start()
         notes: tuple[str, ...] = ()
@@ -335,7 +335,7 @@ class Parser(ItemParser):
             del self.lexer.problems[known:]
             self.go_to(len(self.kinds) - 1)
             end = self.end_line()
-        return Skipped(start, end)
+        return SkippedLines(start, end)
 
     def other_item(self, meant: str) -> Fix:
         """The fix for an item in the syntax of another language: `import stations`, `def main():`."""

@@ -14,7 +14,7 @@ import sys
 from collections.abc import Sequence
 
 from btq_lang.lsp import register
-from btq_lang.lsp.editor import NOT_JSON, Refused, Server, Traced
+from btq_lang.lsp.editor import NOT_JSON, RequestRefused, Server, Traced
 from btq_lang.projects.options import add_server_options
 from btq_lang.util.version import __version__
 
@@ -75,7 +75,7 @@ def _is_worth_a_line(record: logging.LogRecord) -> bool:
     """Whether to log a record: the user sees refusals, and messages that are not JSON have their own line."""
     error = record.exc_info[1] if record.exc_info else None
     is_not_json = isinstance(error, NOT_JSON) and record.name.startswith("pygls.")
-    return not (is_not_json or isinstance(error, Refused))
+    return not (is_not_json or isinstance(error, RequestRefused))
 
 
 if __name__ == "__main__":

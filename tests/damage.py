@@ -34,7 +34,7 @@ from btq_lang.btcpp.enforcement import enforced  # noqa: E402
 from btq_lang.btcpp.export import export  # noqa: E402
 from btq_lang.btcpp.importing import import_xml  # noqa: E402
 from btq_lang.btcpp.restoring import restored  # noqa: E402
-from btq_lang.btcpp.side_file import Built, side_file  # noqa: E402
+from btq_lang.btcpp.side_file import BuiltFile, side_file  # noqa: E402
 from btq_lang.checks import check  # noqa: E402
 from btq_lang.diagnostics.rules import Severity  # noqa: E402
 from btq_lang.diff import compare  # noqa: E402
@@ -247,7 +247,7 @@ def _build_and_import(workspace: Workspace) -> None:
             return
         made = enforced(workspace, MAIN, done, write_out is bundle)
         xml = write(made.export.document)
-        built = Built(MAIN, "main.xml", xml, (made.export.document,), made.export.elements, made.clauses)
+        built = BuiltFile(MAIN, "main.xml", xml, (made.export.document,), made.export.elements, made.clauses)
         side = side_file(workspace, built)
         imported = import_xml(xml)
         assert imported.is_complete

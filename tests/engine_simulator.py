@@ -9,7 +9,7 @@ from __future__ import annotations
 import random
 from collections.abc import Callable
 
-from btq_lang.requirements.model import Value
+from btq_lang.requirements.model import Quantity
 from btq_lang.requirements.resolve import Requirements
 from btq_lang.workspace.resolved import ResolvedNode
 
@@ -43,8 +43,8 @@ class Run:
         (applied,) = [each for each in self.found.applied if each.node is leaf]
         limit = applied.requirement.claims[0].limit
         assert limit is not None
-        assert isinstance(limit.value, Value)
-        assert isinstance(limit.upper, Value)
+        assert isinstance(limit.value, Quantity)
+        assert isinstance(limit.upper, Quantity)
         low, high = limit.value.si, limit.upper.si
         return self.chance.choice([low, high, self.chance.randint(int(low * 4), int(high * 4)) / 4])
 

@@ -20,7 +20,7 @@ from xml.etree import ElementTree
 import pytest
 
 from btq_lang.cli import main
-from btq_lang.evidence.model import Session
+from btq_lang.evidence.model import LogSession
 from btq_lang.evidence.readers import read
 
 START = 1_795_209_740_000_000  # µs since the epoch: 2026-11-20 21:22:20 UTC
@@ -93,10 +93,10 @@ def write_db3(
     database.close()
 
 
-def sessions_of(log: Path) -> Iterator[Session]:
+def sessions_of(log: Path) -> Iterator[LogSession]:
     """The sessions of a log that has the tree of each."""
     for session in read(str(log)):
-        assert isinstance(session, Session)
+        assert isinstance(session, LogSession)
         yield session
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from btq_lang.checks import findings, keep
-from btq_lang.workspace.findings import Findings
+from btq_lang.workspace.findings import FileFindings
 from btq_lang.workspace.inputs import advance
 from btq_lang.workspace.workspace import Workspace
 
@@ -14,7 +14,7 @@ class Kept:
     def __init__(self) -> None:
         self.workspace: Workspace | None = None
 
-    def check(self, workspace: Workspace, path: str) -> Findings:
+    def check(self, workspace: Workspace, path: str) -> FileFindings:
         """What is found in a file of the workspace after some edits."""
         before = self.workspace
         self.workspace = Workspace(

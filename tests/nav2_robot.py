@@ -8,11 +8,11 @@ from pathlib import Path
 from btq_lang.catalog.nav2 import PACKAGED
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.projects.files import Files
-from btq_lang.projects.nav2_factory import Sources, findings_of, parameter_file
+from btq_lang.projects.nav2_factory import ParameterSources, findings_of, parameter_file
 from btq_lang.util.text import LineIndex
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.factories import Factory
-from btq_lang.workspace.loader import Found
+from btq_lang.workspace.loader import FoundProject
 
 NAVIGATE = '<ComputePathToPose goal="{goal}" path="{path}"/><FollowPath path="{path}"/>'
 TREES = {
@@ -53,7 +53,9 @@ def findings_in(folder: Path, text: str, distribution: str | None = None) -> lis
     project = Project(str(folder), node_files=(PACKAGED[nodes],) if nodes else ())
     path = str(folder / "nav2_params.yaml")
     files = Files()
-    sources = Sources({path: text}.get, lambda _: None, lambda each: files.workspace_of(each, Found(project, None)))
+    sources = ParameterSources(
+        {path: text}.get, lambda _: None, lambda each: files.workspace_of(each, FoundProject(project, None))
+    )
     file, problem = parameter_file(Factory("robot", nav2="nav2_params.yaml"), project, None, sources)
     assert file is not None, problem
     return list(findings_of(file, sources.workspace_of))

@@ -17,7 +17,7 @@ from btq_lang.evidence.json_document import render
 from btq_lang.evidence.judging import Means
 from btq_lang.evidence.verifying import verify
 from btq_lang.evidence.written_verdicts import read_verdicts
-from btq_lang.ide.verdicts import Evidence, verdict_findings
+from btq_lang.ide.verdicts import ProjectVerdicts, verdict_findings
 from btq_lang.util.text import LineIndex
 from btq_lang.workspace.workspace import Workspace
 
@@ -36,7 +36,7 @@ def assert_marked_by_log(page: str, text: str, folder: Path) -> None:
     logs = [str(folder / "run.btlog")]
     report = verify(logs, Means([mission], with_measures=True))
     (found,) = read_verdicts(render(report))
-    seen = verdict_findings(workspace, "main.btq", Evidence(str(folder), {"main.btq": found}))
+    seen = verdict_findings(workspace, "main.btq", ProjectVerdicts(str(folder), {"main.btq": found}))
     shown: Announced = Counter(
         ("main.btq", LineIndex(text).position(each.span.start).line, each.effective_severity.value, each.rule)
         for each in findings(workspace.store, "main.btq", seen).diagnostics

@@ -10,15 +10,15 @@ from btq_lang.syntax.script.tree import (
     RANK,
     TERNARY,
     Assign,
-    Binary,
     Bool,
-    Comparison,
     Expression,
     Name,
     Number,
     Script,
+    ScriptBinary,
+    ScriptComparison,
+    ScriptText,
     Ternary,
-    Text,
     Unary,
     ungrouped,
 )
@@ -55,16 +55,16 @@ def _write(node: Expression, least: int, full: bool) -> str:
         return node.name
     if isinstance(node, Bool):
         return "true" if node.value else "false"
-    if isinstance(node, Text):
+    if isinstance(node, ScriptText):
         # There are no escapes: the newest engine cannot express text with a single quote, but older ones read this.
         return f"'{node.value}'" if "'" not in node.value else f'"{node.value}"'
 
     if isinstance(node, Unary):
         rank, text = UNARY, f"{node.operator}{inside(node.operand, UNARY)}"
-    elif isinstance(node, Binary):
+    elif isinstance(node, ScriptBinary):
         rank = RANK[node.operator]
         text = f"{inside(node.left, rank)} {node.operator} {inside(node.right, rank + 1)}"
-    elif isinstance(node, Comparison):
+    elif isinstance(node, ScriptComparison):
         rank = COMPARISON
         text = inside(node.operands[0], rank + 1)
         for operator, operand in zip(node.operators, node.operands[1:], strict=True):

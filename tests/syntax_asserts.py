@@ -53,17 +53,17 @@ from btq_lang.syntax.tree import (
     Path,
     Port,
     Qualities,
-    Quality,
     QualityDecl,
     QualityPath,
     ReqRef,
     Requirement,
     Root,
+    SatisficedQuality,
     Satisfies,
-    Scope,
+    ScopeClause,
     Selector,
     Signal,
-    Skipped,
+    SkippedLines,
     Subject,
     Sum,
     Table,
@@ -258,7 +258,7 @@ def dump(parsed: Parsed) -> str:
 
 def shown(entry: Entry) -> bool:
     """The empty item after the last one only carries diagnostics."""
-    return not (isinstance(entry.item, Skipped) and entry.item.start == entry.item.end)
+    return not (isinstance(entry.item, SkippedLines) and entry.item.start == entry.item.end)
 
 
 def words(*parts: object) -> str:
@@ -390,7 +390,7 @@ def _(item: Node) -> str:
 
 
 @show_item.register
-def _(item: Skipped) -> str:
+def _(item: SkippedLines) -> str:
     return "skipped"
 
 
@@ -418,7 +418,7 @@ def show_node_clause(clause: NodeClause) -> str:
     return words("satisfices", ", ".join(map(show_concern, clause.qualities)) or MISSING)
 
 
-def show_concern(quality: Quality) -> str:
+def show_concern(quality: SatisficedQuality) -> str:
     inner = " ".join(f"[{show_use(requirement)}]" for requirement in quality.requirements)
     return words(show_quality(quality.path), inner)
 
@@ -472,7 +472,7 @@ def _(clause: Claim) -> str:
 
 
 @show_clause.register
-def _(clause: Scope) -> str:
+def _(clause: ScopeClause) -> str:
     return words(show(clause.word), show_condition(clause.condition))
 
 

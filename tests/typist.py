@@ -12,7 +12,7 @@ from btq_lang.formatter import format_text
 from btq_lang.ide.actions import code_actions
 from btq_lang.ide.completion import complete
 from btq_lang.ide.on_type import on_type
-from btq_lang.ide.rename import Refusal, rename
+from btq_lang.ide.rename import RenameRefusal, rename
 from btq_lang.lsp.session import Session
 from btq_lang.util.text import Edit, Span, apply_edits
 from btq_lang.workspace.workspace import Workspace
@@ -122,7 +122,7 @@ class Typist:
 
     def step_rename(self, name: str) -> Iterator[None]:
         made = rename(*self._here, name)
-        assert not isinstance(made, Refusal), made.reason
+        assert not isinstance(made, RenameRefusal), made.reason
         self._apply(made.edits)
         yield
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btq_lang.btcpp.document import Attribute, Comment, Content, Document, Element
+from btq_lang.btcpp.document import Attribute, Content, Document, Element, XmlComment
 from btq_lang.util.text import LINE_END
 
 
@@ -15,7 +15,7 @@ def elements(document: Document) -> list[object]:
         if isinstance(content, Element):
             found.append((content.tag, [(each.name, normal(each)) for each in content.attributes]))
             stack += reversed(content.children)
-        elif isinstance(content, Comment):
+        elif isinstance(content, XmlComment):
             found.append(content.text)
         elif content.text.strip():
             found.append(("text", content.text))

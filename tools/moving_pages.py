@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
 
-from btq_lang.catalog.changes import ANY, Change
+from btq_lang.catalog.changes import ANY, BehaviorChange
 from btq_lang.catalog.engine_changes import ENGINE_CHANGES
 from btq_lang.catalog.nav2 import DISTRIBUTIONS, ENGINES
 from btq_lang.catalog.nav2.changes import CHANGES, INSTEAD, RENAMED, RENAMED_PORTS
@@ -92,7 +92,7 @@ def _gone(before: dict[str, set[str]], after: dict[str, set[str]], new: str) -> 
             yield f"`{node}` has no port `{port}`" + (f": write `{called}`" if called else "")
 
 
-def _said(change: Change) -> str:
+def _said(change: BehaviorChange) -> str:
     nodes = "any node" if change.nodes == (ANY,) else ", ".join(f"`{node}`" for node in change.nodes)
     keeps = f"`{change.port} = {change.keeps}` keeps the old meaning" if change.keeps else ""
     return "; ".join(filter(None, (f"{nodes}: {change.what}", change.instead, keeps)))

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
             """A file with all that it includes; the known texts replace those of the source."""
 
 
-class Built(Record):
+class BuiltMission(Record):
     """The mission of an XML file.
 
     Attributes:
@@ -53,7 +53,7 @@ class Built(Record):
     manual_edits: tuple[tuple[str, ManualEdit], ...]
 
 
-def as_built(path: str, source: Source, called: Callable[[str], str] = shown) -> Built | None:
+def as_built(path: str, source: Source, called: Callable[[str], str] = shown) -> BuiltMission | None:
     """The mission of an XML file; None if it has no side file, or one that belongs to another file; `called` gives the
     name under which a file of the source is shown."""
     side = side_path(path)
@@ -81,7 +81,7 @@ def as_built(path: str, source: Source, called: Callable[[str], str] = shown) ->
     if workspace is None:
         return None
     changed = {xml: File(xml, source.text(xml) or "") for xml, _ in manual_edits}
-    return Built(
+    return BuiltMission(
         Workspace({**changed, **workspace.files}, workspace.project),
         target,
         lambda each: f"{called(sources[each])}:{shown(each)}" if each in sources else called(each),

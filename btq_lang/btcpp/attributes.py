@@ -6,7 +6,7 @@ One invariant: no element gets two attributes of one name, or one whose name XML
 from __future__ import annotations
 
 from btq_lang.btcpp.document import Attribute
-from btq_lang.btcpp.source import Source
+from btq_lang.btcpp.source import ExportSource
 from btq_lang.btcpp.spelling import in_unit, spelt
 from btq_lang.catalog.kinds import NodeKind
 from btq_lang.catalog.names import is_xml_name
@@ -15,7 +15,11 @@ from btq_lang.syntax.tree import Entry, Pair, Root, Word
 
 
 def attributes_of(
-    source: Source, entry: Entry, pairs: tuple[Pair, ...], builtin: NodeKind | None = None, label: Word | None = None
+    source: ExportSource,
+    entry: Entry,
+    pairs: tuple[Pair, ...],
+    builtin: NodeKind | None = None,
+    label: Word | None = None,
 ) -> list[Attribute]:
     """The attributes for the pairs in brackets, after a label, which is the `name`; `builtin`: has the units
     of ports."""
@@ -41,7 +45,7 @@ def only_first(attributes: list[Attribute]) -> list[Attribute]:
     return attributes if len(first) == len(attributes) else list(first.values())
 
 
-def _is_attribute_name(source: Source, key: str) -> bool:
+def _is_attribute_name(source: ExportSource, key: str) -> bool:
     """Whether XML allows the name; for `xsi:type`, whether `xsi` is declared (Namespaces in XML 1.0, section 5)."""
     prefix, colon, local = key.partition(":")
     if not colon:
@@ -52,7 +56,7 @@ def _is_attribute_name(source: Source, key: str) -> bool:
     return is_known and is_xml_name(prefix) and is_xml_name(local)
 
 
-def _quantity(source: Source, entry: Entry, key: str, value: Word, builtin: NodeKind | None) -> str:
+def _quantity(source: ExportSource, entry: Entry, key: str, value: Word, builtin: NodeKind | None) -> str:
     """A quantity as a number in the port's unit; as it is written if that unit is not known."""
     port = builtin.port(key) if builtin is not None else None
     number = in_unit(value, port.unit if port is not None else None)

@@ -21,25 +21,25 @@ from btq_lang.requirements.model import (
     Any,
     Arithmetic,
     Bounded,
+    ClassicScript,
     Compare,
     Condition,
     Flag,
     InContext,
     Minus,
-    Not,
+    Negation,
     Number,
-    Read,
+    Quantity,
+    ResolvedScope,
+    ResolvedSignal,
+    ResolvedTable,
     Running,
-    Scope,
-    Script,
-    Signal,
-    Table,
-    Text,
-    Value,
+    SignalRead,
+    TextValue,
 )
 
 # The variable that holds the value of a table, read when the node starts, in this unit (None: SI).
-Stored: TypeAlias = Callable[[Table, "Unit | None"], str]
+Stored: TypeAlias = Callable[[ResolvedTable, "Unit | None"], str]
 
 
 class NoScript(Exception):
@@ -59,24 +59,24 @@ def condition_script(condition: Condition, stored: Stored) -> str:
             script = f"({script} {operator} {condition_script(each, stored)})"
             no_longer_than_allowed(script)  # nested contexts make scripts grow without bounds
         return script
-    if isinstance(condition, Not):
+    if isinstance(condition, Negation):
         return f"(!{condition_script(condition.condition, stored)})"
-    if isinstance(condition, InContext | Scope):
+    if isinstance(condition, InContext | ResolvedScope):
         return condition_script(condition.condition, stored)
     if isinstance(condition, Compare):
         return _comparison(condition, stored)
-    if isinstance(condition, Read):
+    if isinstance(condition, SignalRead):
         return f"({signal_script(condition.signal)} == true)"
     if isinstance(condition, Flag):
         return f"(true == {condition.text})"
-    if isinstance(condition, Script):
+    if isinstance(condition, ClassicScript):
         return _own_script(condition)
     if isinstance(condition, Running):
         raise NoScript("a script cannot check whether a node runs")
     raise NoScript(f"`{condition.name}` has no value")
 
 
-def table_script(table: Table, spelt: Callable[[Bounded], str], stored: Stored) -> str:
+def table_script(table: ResolvedTable, spelt: Callable[[Bounded], str], stored: Stored) -> str:
     """The script that gives the value of the first case that holds.
 
     Raises:
@@ -94,7 +94,7 @@ def all_of(scripts: Iterable[str]) -> str:
     return reduce("({} && {})".format, scripts)
 
 
-def signal_script(signal: Signal) -> str:
+def signal_script(signal: ResolvedSignal) -> str:
     """The entry that a signal is read from: always one of the root blackboard.
 
     Raises:
@@ -108,7 +108,7 @@ def signal_script(signal: Signal) -> str:
     return f"@{key}"
 
 
-def first_value_script(signal: Signal) -> str:
+def first_value_script(signal: ResolvedSignal) -> str:
     """The value of a signal before its first sample.
 
     Raises:
@@ -144,9 +144,11 @@ def real(value: float) -> str:
 
 def _comparison(compare: Compare, stored: Stored) -> str:
     """`a < b`, `a < b < c`: in the signals' unit if they share one and nothing is calculated, else in SI."""
-    signals = [operand.signal for operand in compare.operands if isinstance(operand, Read)]
+    signals = [operand.signal for operand in compare.operands if isinstance(operand, SignalRead)]
     units = {signal.unit for signal in signals}
-    plain = all(isinstance(operand, Read | Value | Table | Flag | Text) for operand in compare.operands)
+    plain = all(
+        isinstance(operand, SignalRead | Quantity | ResolvedTable | Flag | TextValue) for operand in compare.operands
+    )
     unit = signals[0].unit if plain and len(units) == 1 else None
     written = [number_script(operand, unit, stored) for operand in compare.operands]
     pairs = zip(compare.operators, written, written[1:], strict=False)
@@ -159,27 +161,27 @@ def number_script(number: Number, unit: Unit | None, stored: Stored) -> str:
     Raises:
         NoScript: with the reason.
     """
-    if isinstance(number, Value):
+    if isinstance(number, Quantity):
         return real(from_si(number.si, unit) if unit is not None else number.si)
     if isinstance(number, Flag):
         return number.text
-    if isinstance(number, Text):
+    if isinstance(number, TextValue):
         return _text(number.value)
-    if isinstance(number, Read):
+    if isinstance(number, SignalRead):
         return _read(number.signal, unit)
     if isinstance(number, Minus):
         return f"(-{number_script(number.operand, unit, stored)})"
     if isinstance(number, Arithmetic):
         left, right = (number_script(part, unit, stored) for part in (number.left, number.right))
         return f"({left} {number.operator} {right})"
-    if isinstance(number, Table):
+    if isinstance(number, ResolvedTable):
         return stored(number, unit)
     if isinstance(number, Aggregate):
         raise NoScript(f"a script cannot read the samples of `{number.function}({number.signal.name})`")
     raise NoScript(f"`{number.name}` has no value")
 
 
-def _read(signal: Signal, unit: Unit | None) -> str:
+def _read(signal: ResolvedSignal, unit: Unit | None) -> str:
     key = signal_script(signal)
     own = signal.unit
     if signal.sort != "number" or own is None or own == unit:
@@ -201,7 +203,7 @@ def _text(text: str) -> str:
     return f"'{text}'"
 
 
-def _own_script(script: Script) -> str:
+def _own_script(script: ClassicScript) -> str:
     """The script in a classic description: one expression without assignments that means the same in every version."""
     from btq_lang.syntax.script.check import check_script  # few missions have one
     from btq_lang.syntax.script.parser import parse_script
@@ -215,7 +217,7 @@ def _own_script(script: Script) -> str:
     return f"({script.code.strip().rstrip(';').strip()})"
 
 
-def _none_stored(_table: Table, _unit: Unit | None) -> str:
+def _none_stored(_table: ResolvedTable, _unit: Unit | None) -> str:
     raise NoScript("an initial value cannot depend on a condition")
 
 

@@ -11,7 +11,7 @@ from typing import Final
 
 from btq_lang.btcpp.document import escape
 from btq_lang.btcpp.marks import marked_description
-from btq_lang.btcpp.source import Source
+from btq_lang.btcpp.source import ExportSource
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.lexer import tokens
 from btq_lang.syntax.tokens import COMMENT
@@ -30,7 +30,7 @@ from btq_lang.workspace.symbols import names_subject
 
 
 def description(
-    source: Source, entry: Entry, clauses: tuple[NodeClause, ...], own: str | None, others: tuple[str, ...] = ()
+    source: ExportSource, entry: Entry, clauses: tuple[NodeClause, ...], own: str | None, others: tuple[str, ...] = ()
 ) -> str | None:
     """The value of a `_description`, escaped; None if the node has no qualities or requirements.
 
@@ -42,7 +42,7 @@ def description(
     return marked_description(own, map(escape, lines)) if lines else None
 
 
-def said_elsewhere(source: Source) -> Mapping[int, tuple[str, ...]]:
+def said_elsewhere(source: ExportSource) -> Mapping[int, tuple[str, ...]]:
     """The lines that `apply` and claims with a subject of their own add to nodes, by `id(node)`."""
     files = [source.workspace.files[path] for path in source.scope.paths]
     if not any(_speaks_of_nodes(entry.item) for file in files for entry in file.parsed.entries):
@@ -80,7 +80,7 @@ def requirement_line(
     return _on_one_line(f"{head}: {'; '.join(said)}" if said else head)
 
 
-def _lines(source: Source, entry: Entry, clause: NodeClause) -> Iterator[str]:
+def _lines(source: ExportSource, entry: Entry, clause: NodeClause) -> Iterator[str]:
     if isinstance(clause, Satisfices):
         for quality in clause.qualities:
             yield f"satisfices {quality.path.text}"
@@ -91,7 +91,7 @@ def _lines(source: Source, entry: Entry, clause: NodeClause) -> Iterator[str]:
             yield _reference(source, entry, use) if isinstance(use, ReqRef) else _requirement(source, entry, use, None)
 
 
-def _reference(source: Source, entry: Entry, reference: ReqRef) -> str:
+def _reference(source: ExportSource, entry: Entry, reference: ReqRef) -> str:
     if not reference.arguments:
         return _defined(source, reference.name.text)
     start = entry.start + reference.name.end
@@ -99,14 +99,14 @@ def _reference(source: Source, entry: Entry, reference: ReqRef) -> str:
     return _defined(source, reference.name.text, _source_text(source.file, start, max(start, end)))
 
 
-def _requirement(source: Source, entry: Entry, requirement: Requirement, quality: QualityPath | None) -> str:
+def _requirement(source: ExportSource, entry: Entry, requirement: Requirement, quality: QualityPath | None) -> str:
     """A requirement written at a node: its definition, or a classic reference to one."""
     if requirement.is_reference and requirement.name is not None:
         return _defined(source, requirement.name.text)
     return requirement_line(source.file, entry, requirement, quality)
 
 
-def _defined(source: Source, name: str, arguments: str = "") -> str:
+def _defined(source: ExportSource, name: str, arguments: str = "") -> str:
     definition = source.scope.find(Kind.REQUIREMENT, name)
     target = definition.symbol.target if definition is not None else None
     if definition is None or not isinstance(target, Requirement):

@@ -100,7 +100,7 @@ class Element:
         return self._places.get(attribute.name, _NOWHERE)
 
 
-class Comment(Record):
+class XmlComment(Record):
     """`<!--text-->`.
 
     Attributes:
@@ -112,7 +112,7 @@ class Comment(Record):
     start: int = -1
 
 
-class Text(Record):
+class XmlText(Record):
     """Character data that is not blank: the text of a port or a description, unescaped."""
 
     text: str
@@ -125,7 +125,7 @@ class Raw(Record):
     text: str
 
 
-Content: TypeAlias = "Element | Comment | Text | Raw"
+Content: TypeAlias = "Element | XmlComment | XmlText | Raw"
 
 
 class Document:
@@ -167,7 +167,7 @@ def write(document: Document) -> str:
                     stack.append((iter(content.children), f"{blanks}</{content.tag}>"))
                     blanks += _STEP
                     break
-            elif isinstance(content, Comment) and content.beside:
+            elif isinstance(content, XmlComment) and content.beside:
                 lines[-1] += f" {_inline(content)}"
             else:
                 lines.append(f"{blanks}{_inline(content)}")
@@ -185,14 +185,14 @@ def _has_text(element: Element) -> bool:
     for child in element.children:
         if isinstance(child, Element):
             return False
-        found = found or isinstance(child, Text)
+        found = found or isinstance(child, XmlText)
     return found
 
 
 def _inline(content: Content) -> str:
-    if isinstance(content, Text):
+    if isinstance(content, XmlText):
         return escape_text(content.text)
-    if isinstance(content, Comment):
+    if isinstance(content, XmlComment):
         return f"<!--{content.text}-->"
     return content.text if isinstance(content, Raw) else f"<{_start_tag(content)}/>"
 

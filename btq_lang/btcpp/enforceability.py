@@ -14,7 +14,15 @@ from btq_lang.btcpp.conditions import NoScript, first_value_script, signal_scrip
 from btq_lang.btcpp.guards import Guarded, NotEnforced
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements.budgets import Budgets
-from btq_lang.requirements.model import Applied, Claim, Mission, Requirement, Signal, Span, Target
+from btq_lang.requirements.model import (
+    Applied,
+    Interval,
+    MissionRun,
+    NodeTarget,
+    ResolvedClaim,
+    ResolvedRequirement,
+    ResolvedSignal,
+)
 from btq_lang.requirements.spans import node_of
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode
@@ -24,7 +32,7 @@ from btq_lang.workspace.workspace import Workspace
 Way: TypeAlias = Literal["enforced", "monitored", "reviewed"]
 
 
-def unasked(requirement: Requirement) -> tuple[Way, str] | None:
+def unasked(requirement: ResolvedRequirement) -> tuple[Way, str] | None:
     """How the clauses of a requirement are checked that the engine need not enforce, and why; None if it is to enforce
     them."""
     if requirement.is_verified_by_people:
@@ -70,7 +78,7 @@ class Judge:
         self._files: Final = files
         self._is_shared: Final = is_shared
 
-    def why_not(self, applied: Applied, claim: Claim) -> str | None:
+    def why_not(self, applied: Applied, claim: ResolvedClaim) -> str | None:
         """Why the engine does not enforce a clause that it should; None if it does, or if the mission's root is
         unknown, which is reported of the mission."""
         if (known := unasked(applied.requirement)) is not None:
@@ -83,7 +91,7 @@ class Judge:
             return str(reason)
         return None
 
-    def node(self, applied: Applied, claim: Claim) -> ResolvedNode:
+    def node(self, applied: Applied, claim: ResolvedClaim) -> ResolvedNode:
         """The node for which the engine enforces a clause.
 
         Raises:
@@ -94,22 +102,22 @@ class Judge:
             raise NotEnforced("a probability is evaluated in the logs of many runs")
         if requirement.window is not None:
             raise NotEnforced("a window is evaluated in the logs of many runs")
-        if isinstance(subject, Target) and subject.through:
+        if isinstance(subject, NodeTarget) and subject.through:
             raise NotEnforced("its path names only some instances of a node")
         if (
-            isinstance(subject, Span)
+            isinstance(subject, Interval)
             and VERBS[claim.verb].limits == "completion"
             and (node := node_of(subject, self._budgets)) is not None
         ):
             return node
-        if not isinstance(subject, Target | Mission):
+        if not isinstance(subject, NodeTarget | MissionRun):
             raise NotEnforced("it limits the time between nodes, and no node encloses that time")
         if subject.node is None:
             raise UnknownMission("the main tree is unknown; name it with a line `Root <tree>`")
         return subject.node
 
     def needs(
-        self, requirement: Requirement, claim: Claim, node: ResolvedNode, name: str, stop: str
+        self, requirement: ResolvedRequirement, claim: ResolvedClaim, node: ResolvedNode, name: str, stop: str
     ) -> tuple[Guarded, dict[str, str]]:
         """What enforces a clause, and the first values of the signals that its scripts read.
 
@@ -178,7 +186,7 @@ def _can_stand_around(node: ResolvedNode) -> None:
         )
 
 
-def _first_value(signal: Signal) -> dict[str, str]:
+def _first_value(signal: ResolvedSignal) -> dict[str, str]:
     if signal.initially is None:
         return {}
     try:

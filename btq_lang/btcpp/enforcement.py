@@ -19,7 +19,7 @@ from typing import Final
 
 from btq_lang.btcpp.around import START, Wrapper, first_values, leaf
 from btq_lang.btcpp.conditions import all_of
-from btq_lang.btcpp.document import Comment, Document, Element
+from btq_lang.btcpp.document import Document, Element, XmlComment
 from btq_lang.btcpp.enforceability import Elsewhere, Judge, Way, unasked, where_else
 from btq_lang.btcpp.export import Export, is_mission
 from btq_lang.btcpp.guards import NotEnforced
@@ -28,7 +28,7 @@ from btq_lang.btcpp.marks import GUARDS_NOTE
 from btq_lang.btcpp.wrappers import wrapped
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Place
-from btq_lang.requirements.model import Applied, Claim, Requirement
+from btq_lang.requirements.model import Applied, ResolvedClaim, ResolvedRequirement
 from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.resolved import ResolvedNode
@@ -69,7 +69,7 @@ class Enforcement(Record):
 
     export: Export
     clauses: tuple[tuple[ClauseEnforcement, ...], ...]
-    loose: tuple[tuple[Requirement, Claim], ...] = ()
+    loose: tuple[tuple[ResolvedRequirement, ResolvedClaim], ...] = ()
 
 
 def enforced(workspace: Workspace, path: str, export: Export, bundled: bool = False) -> Enforcement:
@@ -86,7 +86,7 @@ def enforced(workspace: Workspace, path: str, export: Export, bundled: bool = Fa
     document = export.document
     if wrappers:
         _put(document, {id(export.elements[key]): each for key, each in wrappers.items()})
-        document = Document([Comment(GUARDS_NOTE), *document.contents])
+        document = Document([XmlComment(GUARDS_NOTE), *document.contents])
     return Enforcement(replace(export, document=document), plan.clauses, found.about_no_node())
 
 
@@ -172,7 +172,7 @@ class _Plan:
         )
         return self
 
-    def enforce(self, applied: Applied, claim: Claim) -> ClauseEnforcement:
+    def enforce(self, applied: Applied, claim: ResolvedClaim) -> ClauseEnforcement:
         """How a clause is enforced; records the wrappers it needs."""
         requirement = applied.requirement
         known_way = unasked(requirement)
@@ -213,7 +213,7 @@ class _Plan:
         files = _written(self._workspace, self._path, True)
         return _Plan(self._workspace, self._found, self._path, files, ())
 
-    def _guard(self, requirement: Requirement, claim: Claim, node: ResolvedNode) -> str:
+    def _guard(self, requirement: ResolvedRequirement, claim: ResolvedClaim, node: ResolvedNode) -> str:
         """Record what a clause needs, and return the note on it.
 
         Raises:

@@ -12,8 +12,8 @@ from typing import Final, TypeAlias
 
 from btq_lang.btcpp.attributes import attributes_of, only_first
 from btq_lang.btcpp.document import Attribute, Content, Document, Element, escape
-from btq_lang.btcpp.models import Models, model_element, suggested_model, undeclared
-from btq_lang.btcpp.source import Remark, Source
+from btq_lang.btcpp.models import ModelCollector, model_element, suggested_model, undeclared
+from btq_lang.btcpp.source import ExportSource, Remark
 from btq_lang.btcpp.spelling import spelt
 from btq_lang.btcpp.trees import Trees
 from btq_lang.catalog.name_kinds import Kind
@@ -67,7 +67,7 @@ def export(
         KeyError: there is no such file.
     """
     with NotCollecting():
-        source = Source(workspace, path, target or workspace.project.target, verbatim, is_bundled)
+        source = ExportSource(workspace, path, target or workspace.project.target, verbatim, is_bundled)
         trees = Trees(source)
         guessed: dict[str, str] = {}
         name = included_as or (lambda target: xml_path(workspace, path, target))
@@ -92,14 +92,14 @@ def xml_name(path: str) -> str:
     return posixpath.splitext(path)[0] + ".xml"
 
 
-def _document(source: Source, trees: Trees, included_as: IncludedAs, guessed: dict[str, str]) -> Document:
+def _document(source: ExportSource, trees: Trees, included_as: IncludedAs, guessed: dict[str, str]) -> Document:
     entries = source.file.parsed.entries
     before: list[Content] = []
     behind: list[Content] = []
     root = Element("root")
     contents = root.children
     end_of_block: list[Content] = []  # comments at the end of the Root's block
-    models = Models()
+    models = ModelCollector()
     head: Entry | None = None
     for entry in entries:
         item = entry.item
@@ -138,7 +138,9 @@ def _document(source: Source, trees: Trees, included_as: IncludedAs, guessed: di
     return Document([*before, root, *behind])
 
 
-def _models(source: Source, entry: Entry, item: ModelsItem, contents: list[Content], models: Models) -> None:
+def _models(
+    source: ExportSource, entry: Entry, item: ModelsItem, contents: list[Content], models: ModelCollector
+) -> None:
     """Merge all models into one `TreeNodesModel`, for the engine accepts only one."""
     around = source.around(entry, item)
     if models.palettes and not source.verbatim:
@@ -157,7 +159,7 @@ def _models(source: Source, entry: Entry, item: ModelsItem, contents: list[Conte
     element.children.extend(source.written(around.last))
 
 
-def _include(source: Source, entry: Entry, include: Include, included_as: IncludedAs) -> Element:
+def _include(source: ExportSource, entry: Entry, include: Include, included_as: IncludedAs) -> Element:
     attributes = []
     if include.path is not None:
         target = source.workspace.included_by(source.path, include)
@@ -170,7 +172,7 @@ def _include(source: Source, entry: Entry, include: Include, included_as: Includ
     return Element("include", only_first(attributes + attributes_of(source, entry, include.attributes)))
 
 
-def _root_attributes(source: Source, head: Entry | None) -> list[Attribute]:
+def _root_attributes(source: ExportSource, head: Entry | None) -> list[Attribute]:
     """BTCPP_format and main_tree_to_execute: as written, and added where they are missing."""
     item = head.item if head is not None else None
     root = item if isinstance(item, Root) else None
@@ -194,7 +196,7 @@ def _root_attributes(source: Source, head: Entry | None) -> list[Attribute]:
     return attributes
 
 
-def _main_tree(source: Source) -> Definition | None:
+def _main_tree(source: ExportSource) -> Definition | None:
     """The tree that runs when the engine loads the document; None if it is in a file that is registered beside it."""
     workspace = source.workspace
     own = workspace.closure(source.path)

@@ -6,9 +6,9 @@ marks a file as generated is removed without a report.
 
 from __future__ import annotations
 
-from btq_lang.btcpp.document import Attribute, Comment, Content, Document, Element
+from btq_lang.btcpp.document import Attribute, Content, Document, Element, XmlComment
 from btq_lang.btcpp.marks import DESCRIPTION_MARK, MARK, is_generated_mark, own_description
-from btq_lang.btcpp.version3 import Change
+from btq_lang.btcpp.version3 import VersionNote
 from btq_lang.btcpp.wrappers import MOVED, holding_nodes, unwrapped
 from btq_lang.util.text import Span, counted
 
@@ -18,10 +18,10 @@ def may_be_generated(text: str) -> bool:
     return "btq" in text and (DESCRIPTION_MARK in text or "by btq" in text or f"{MARK}=" in text)
 
 
-def without_generated(document: Document, changes: list[Change]) -> int:
+def without_generated(document: Document, changes: list[VersionNote]) -> int:
     """Remove the marks, in place; return the number of elements that a build had described."""
     document.contents[:] = [
-        each for each in document.contents if not (isinstance(each, Comment) and is_generated_mark(each.text))
+        each for each in document.contents if not (isinstance(each, XmlComment) and is_generated_mark(each.text))
     ]
     enforcing: list[Span] = []
     described: list[Span] = []
@@ -42,7 +42,7 @@ def without_generated(document: Document, changes: list[Change]) -> int:
         parts.append(counted(len(described), "description"))
     if parts:
         first = min((*enforcing, *described))
-        changes.append(Change(first, f"removed what `btq build` added: {', '.join(parts)}"))
+        changes.append(VersionNote(first, f"removed what `btq build` added: {', '.join(parts)}"))
     return len(described)
 
 

@@ -27,16 +27,16 @@ from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements.classic import entries_in
 from btq_lang.requirements.model import (
     Bounded,
-    Claim,
     Condition,
+    Interval,
     Limit,
-    Mission,
-    Requirement,
-    Signal,
-    Span,
-    Table,
-    Target,
-    Value,
+    MissionRun,
+    NodeTarget,
+    Quantity,
+    ResolvedClaim,
+    ResolvedRequirement,
+    ResolvedSignal,
+    ResolvedTable,
     signals_in,
 )
 from btq_lang.util.record import replace
@@ -60,7 +60,13 @@ class Guarded:
     """
 
     def __init__(
-        self, requirement: Requirement, claim: Claim, node: ResolvedNode, name: str, stop: str, shared: bool
+        self,
+        requirement: ResolvedRequirement,
+        claim: ResolvedClaim,
+        node: ResolvedNode,
+        name: str,
+        stop: str,
+        shared: bool,
     ) -> None:
         """
         Args:
@@ -73,7 +79,7 @@ class Guarded:
         """
         self.wrappers: list[tuple[ResolvedNode, Wrapper]] = []
         self.cells: Final[dict[str, str]] = {}
-        self.signals: tuple[Signal, ...] = ()
+        self.signals: tuple[ResolvedSignal, ...] = ()
         self.entries: tuple[str, ...] = ()
         self.stop: Final = stop if requirement.action == "halt" else None
         self.notes: Final[list[str]] = []
@@ -138,7 +144,7 @@ class Guarded:
         self._values.append(f"{key} := {script}")
         return key
 
-    def stored(self, table: Table, unit: Unit | None) -> str:
+    def stored(self, table: ResolvedTable, unit: Unit | None) -> str:
         return self.at_start(
             "value", table_script(table, lambda value: number_script(value, unit, self.stored), self.stored)
         )
@@ -183,7 +189,7 @@ def _takes(draft: Guarded) -> None:
     """`<Timeout msec="30000">X</Timeout>`: halts X at the deadline and returns FAILURE."""
     when = draft.when()
     _limit(draft, _upper(draft), when)
-    if isinstance(draft.claim.subject, Span):
+    if isinstance(draft.claim.subject, Interval):
         draft.notes.append(f"as a limit on {draft.node.shown}, which restarts whenever {draft.node.shown} starts")
 
 
@@ -204,9 +210,11 @@ def _succeeds(draft: Guarded) -> None:
 def _limit(draft: Guarded, bound: Limit, when: str | None) -> None:
     value = bound.value
     milliseconds = (
-        _milliseconds(value) if not isinstance(value, Table) else table_script(value, _milliseconds, draft.stored)
+        _milliseconds(value)
+        if not isinstance(value, ResolvedTable)
+        else table_script(value, _milliseconds, draft.stored)
     )
-    if isinstance(value, Table) or when is not None:
+    if isinstance(value, ResolvedTable) or when is not None:
         chosen = milliseconds if when is None else f"({when} ? {milliseconds} : 0)"  # 0 means no limit for the engine
         milliseconds = f"{{{draft.at_start('ms', chosen)}}}"
     attributes: tuple[tuple[str, str], ...] = (("msec", milliseconds),)
@@ -221,7 +229,7 @@ def _limit(draft: Guarded, bound: Limit, when: str | None) -> None:
 
 
 def _milliseconds(value: Bounded) -> str:
-    if not isinstance(value, Value):
+    if not isinstance(value, Quantity):
         raise NotEnforced("a Timeout takes a whole number of milliseconds, not the value of a signal")
     whole = int(value.si * 1000 + 1e-6)
     if not 0 < whole < 2**32:
@@ -277,8 +285,8 @@ def _tries(draft: Guarded) -> None:
     draft.unscoped()
     bound = _upper(draft)
     per = draft.claim.per
-    holder = per.node if isinstance(per, Target) else None
-    if isinstance(per, Target) and per.through:
+    holder = per.node if isinstance(per, NodeTarget) else None
+    if isinstance(per, NodeTarget) and per.through:
         raise NotEnforced("its `per` names only some instances of a node")
     count = draft.cell("count", "0.0", holder)
     most = number_script(bound.value, None, draft.stored)
@@ -297,16 +305,16 @@ def _follows(draft: Guarded) -> None:
     event = draft.claim.event
     assert event is not None, "the clause names one"
     subject = event.subject
-    is_start = isinstance(subject, Mission) and event.happening == "starts"
-    if not is_start and (not isinstance(subject, Target) or event.happening not in _SEEN):
+    is_start = isinstance(subject, MissionRun) and event.happening == "starts"
+    if not is_start and (not isinstance(subject, NodeTarget) or event.happening not in _SEEN):
         raise NotEnforced("the engine runs no script at this event")
-    if isinstance(subject, Target) and subject.through:
+    if isinstance(subject, NodeTarget) and subject.through:
         raise NotEnforced("its event names only some instances of a node")
     seen = draft.cell("seen", "true" if is_start else "false")
     draft.around(CONDITION, "Sequence", "follows", before=(draft.condition("check", f"({seen} == true)"),))
     taken = draft.leaf("Script", "taken", f"{seen} := false")
     draft.around(INSIDE, "Sequence", "started", before=(taken,))
-    if not isinstance(subject, Target):
+    if not isinstance(subject, NodeTarget):
         return
     attribute = _SEEN[event.happening]
     note = f"{seen} := true"

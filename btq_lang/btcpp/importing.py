@@ -12,11 +12,11 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from typing import Final, TypeAlias
 
-from btq_lang.btcpp.document import Attribute, Comment, Content, Document, Element, Text
+from btq_lang.btcpp.document import Attribute, Content, Document, Element, XmlComment, XmlText
 from btq_lang.btcpp.generated import may_be_generated, without_generated
 from btq_lang.btcpp.reader import read
 from btq_lang.btcpp.signs import signs
-from btq_lang.btcpp.version3 import Change, translated
+from btq_lang.btcpp.version3 import VersionNote, translated
 from btq_lang.btcpp.wording import comment, is_kept, kind, name, pair, spelt_parts, string, string_of, type_, value
 from btq_lang.catalog.nodes import PLACEHOLDERS
 from btq_lang.catalog.versions import is_before_4
@@ -26,7 +26,7 @@ from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.syntax.tree import is_name
 from btq_lang.util.garbage import NotCollecting
 from btq_lang.util.record import Record
-from btq_lang.util.source_map import Places
+from btq_lang.util.source_map import OriginMap
 from btq_lang.util.text import Span
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.engine_version import written_for
@@ -58,9 +58,9 @@ class Imported(Record):
     """
 
     text: str
-    changes: tuple[Change, ...]
+    changes: tuple[VersionNote, ...]
     diagnostics: tuple[Diagnostic, ...]
-    places: Places
+    places: OriginMap
     described: int = 0
     defines: frozenset[str] = frozenset()
     signs: Signs = Signs()
@@ -101,7 +101,7 @@ def import_xml(
     with NotCollecting():
         done = read(text)
         if done.document is None:
-            return Imported("", (), done.problems, Places())
+            return Imported("", (), done.problems, OriginMap())
         root = done.document.root
         if root.tag != "root":
             note = 'put the tree into <root BTCPP_format="4"><BehaviorTree ID="…"> … </BehaviorTree></root>'
@@ -109,7 +109,7 @@ def import_xml(
                 note = "the engine distinguishes capital letters: write <root> and </root>"
             message = f"the document element is <{root.tag}>, not <root>"
             problem = Diagnostic("xml-root", root.tag_span, message, notes=(note,))
-            return Imported("", (), (*done.problems, problem), Places())
+            return Imported("", (), (*done.problems, problem), OriginMap())
         writer = _Writer(text, for_people, included_as or (lambda path: path))
         described = without_generated(done.document, writer.changes) if may_be_generated(text) else 0
         of_root = signs(root)
@@ -119,7 +119,7 @@ def import_xml(
         writer.document(done.document)
         changes = tuple(sorted(writer.changes, key=lambda change: change.span))
         problems = (*done.problems, *writer.ignored)
-        places = Places() if writer.marks is None else Places(writer.marks, writer.out, located)
+        places = OriginMap() if writer.marks is None else OriginMap(writer.marks, writer.out, located)
         return Imported("".join(writer.out), changes, problems, places, described, frozenset(_defined(root)), of_root)
 
 
@@ -143,7 +143,7 @@ class _Writer:
         self.out: Final[list[str]] = []
         self.marks: Final[list[Mark] | None] = None if for_people else []
         self.has_returns: Final = _RETURN.search(source) is not None
-        self.changes: Final[list[Change]] = []
+        self.changes: Final[list[VersionNote]] = []
         self.ignored: Final[list[Diagnostic]] = []
 
     def document(self, document: Document) -> None:
@@ -173,9 +173,9 @@ class _Writer:
             self.line(0, root, head, attributes)
         above = ""  # the kind of the previous line
         for child in root.children:
-            if isinstance(child, Text):
+            if isinstance(child, XmlText):
                 self.lost_text(child)
-            elif isinstance(child, Comment):
+            elif isinstance(child, XmlComment):
                 if above != "comment" and (above != "" or level == 0):
                     self.out.append("\n")
                 self.comment_line(child, level)
@@ -206,7 +206,7 @@ class _Writer:
             if named != path.value:
                 start = element.place(path)[1]
                 span = Span(start, start + len(path.raw))
-                self.changes.append(Change(span, f"includes `{named}`"))
+                self.changes.append(VersionNote(span, f"includes `{named}`"))
             said = string_of(named) if named != path.value else string(path.raw)
             self.line(level, element, [tag, (said, path)], others)
         elif element.tag == "TreeNodesModel" and first is None:
@@ -232,7 +232,7 @@ class _Writer:
                     start = element.place(attribute)[0]
                     span = Span(start, start + len(key))
                     self.changes.append(
-                        Change(span, f"`{key}` is moved before the other attributes of <{element.tag}>")
+                        VersionNote(span, f"`{key}` is moved before the other attributes of <{element.tag}>")
                     )
                 return attribute
         return None
@@ -265,13 +265,13 @@ class _Writer:
                         stack.append(iter(child.children))
                         level += 1
                         break
-                elif isinstance(child, Comment):
+                elif isinstance(child, XmlComment):
                     if child.beside and above is not None and "\n" not in child.text and _may_stand_behind(above):
                         self.comment_behind(child)
                     else:
                         self.comment_line(child, level)
                     above = None
-                elif isinstance(child, Text):
+                elif isinstance(child, XmlText):
                     self.lost_text(child)
             else:
                 stack.pop()
@@ -310,9 +310,9 @@ class _Writer:
     def models(self, element: Element, level: int) -> None:
         """Write the models of a TreeNodesModel, with the comments between them."""
         for child in element.children:
-            if isinstance(child, Text):
+            if isinstance(child, XmlText):
                 self.lost_text(child)
-            elif isinstance(child, Comment):
+            elif isinstance(child, XmlComment):
                 self.comment_line(child, level)
             elif isinstance(child, Element):
                 identity = self.first(child, "ID") if child.tag in CATEGORIES else None
@@ -330,13 +330,13 @@ class _Writer:
         self.line(level, element, head, others, text)
         was_metadata = False
         for child in children[text is not None :]:
-            if isinstance(child, Text):
+            if isinstance(child, XmlText):
                 self.lost_text(child)
-            elif isinstance(child, Comment):
+            elif isinstance(child, XmlComment):
                 self.comment_line(child, level + 1)
             if not isinstance(child, Element):
                 continue
-            if child.tag in _DIRECTIONS and all(isinstance(part, Text) for part in child.children):
+            if child.tag in _DIRECTIONS and all(isinstance(part, XmlText) for part in child.children):
                 self.port(child, level + 1)
             elif child.tag == "MetadataFields" and not was_metadata and _is_metadata(child):
                 for part in child.elements:
@@ -356,7 +356,7 @@ class _Writer:
                 head += [(sign, None)] if sign else []
                 head.append((spelt(each.raw), each))
                 index += 1
-        text = "".join(part.text for part in element.children if isinstance(part, Text)) or None
+        text = "".join(part.text for part in element.children if isinstance(part, XmlText)) or None
         self.line(level, element, head, attributes[index:], text)
 
     # ---- lines ----
@@ -412,18 +412,18 @@ class _Writer:
 
     def comment_line(self, content: Content, level: int) -> None:
         """Write a comment on a line of its own."""
-        if isinstance(content, Comment):
+        if isinstance(content, XmlComment):
             said = comment(content.text)
             self.place_comment(content, said, len(self.out), len(_INDENT) * level)
             self.out.append(f"{_INDENT * level}{said}\n")
 
-    def comment_behind(self, content: Comment) -> None:
+    def comment_behind(self, content: XmlComment) -> None:
         """Write a comment at the end of the previous line."""
         above, said = self.out[-1][:-1], comment(content.text)
         self.place_comment(content, said, len(self.out) - 1, len(above) + 2)
         self.out[-1] = f"{above}  {said}\n"
 
-    def place_comment(self, content: Comment, said: str, line: int, column: int) -> None:
+    def place_comment(self, content: XmlComment, said: str, line: int, column: int) -> None:
         if self.marks is None and "*/" not in content.text:
             return
         end = content.start + len(content.text) + len("<!---->")
@@ -431,11 +431,11 @@ class _Writer:
             self.marks.append((line, column, None, [(said, (content.start, end))], (), None, ""))
         if "*/" in content.text and not is_kept(content.text):
             message = "a `*/` in this comment is written `* /`, or the comment loses its last space"
-            self.changes.append(Change(Span(content.start, end), message))
+            self.changes.append(VersionNote(Span(content.start, end), message))
 
     # ---- what cannot be kept ----
 
-    def lost_text(self, text: Text) -> None:
+    def lost_text(self, text: XmlText) -> None:
         said = text.text.strip()
         begin = text.start + len(text.text) - len(text.text.lstrip())
         shown = said if len(said) <= 20 else f"{said[:20]}…"
@@ -445,21 +445,21 @@ class _Writer:
                 self.ignored.append(
                     Diagnostic("xml-ignored", span, "the engine ignores this text and everything after it")
                 )
-                self.changes.append(Change(span, "text that the engine ignores is left out from here on"))
+                self.changes.append(VersionNote(span, "text that the engine ignores is left out from here on"))
             return
         message = f"the engine ignores this text: `{shown}`"
         note = "remove it, or put <!-- … --> around it; a node is written <Name/>"
         if ":=" in said:
             note = f'a script goes in a port: <Script code="{shown}"/>'
         self.ignored.append(Diagnostic("xml-ignored", span, message, notes=(note,)))
-        self.changes.append(Change(span, f"text that the engine ignores is left out: {shown}"))
+        self.changes.append(VersionNote(span, f"text that the engine ignores is left out: {shown}"))
 
     def lost_returns(self, element: Element, attributes: Sequence[Attribute]) -> None:
         for each in attributes:
             if "\r" in each.value.replace("\r\n", "") and "\r" not in each.raw:
                 start = element.place(each)[1]
                 span = Span(start, start + len(each.raw))
-                self.changes.append(Change(span, f"a carriage return in `{each.name}` is written as a line end"))
+                self.changes.append(VersionNote(span, f"a carriage return in `{each.name}` is written as a line end"))
 
 
 def located(marks: Sequence[Mark], starts: Sequence[int]) -> list[tuple[int, int, int, int]]:
@@ -531,7 +531,7 @@ def _described(content: Content) -> str | None:
     """The text of a <description> that contains nothing else; None for anything else, or without a text."""
     if not isinstance(content, Element) or content.tag != "description" or content.attributes:
         return None
-    texts = [child.text for child in content.children if isinstance(child, Text)]
+    texts = [child.text for child in content.children if isinstance(child, XmlText)]
     return "".join(texts) or None if len(texts) == len(content.children) else None
 
 

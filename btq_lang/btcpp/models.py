@@ -12,8 +12,8 @@ from typing import Final
 
 from btq_lang.btcpp.attributes import attributes_of, only_first
 from btq_lang.btcpp.constants import fitting
-from btq_lang.btcpp.document import Attribute, Content, Element, Text, escape
-from btq_lang.btcpp.source import Source
+from btq_lang.btcpp.document import Attribute, Content, Element, XmlText, escape
+from btq_lang.btcpp.source import ExportSource
 from btq_lang.btcpp.spelling import spelt
 from btq_lang.catalog.kinds import CATEGORIES
 from btq_lang.syntax.tree import Entry, Meta, Model, Port, Tree, Verbatim, Word, models_in
@@ -23,7 +23,7 @@ from btq_lang.workspace.file import File
 from btq_lang.workspace.workspace import Workspace
 
 
-def model_element(source: Source, entry: Entry, model: Model) -> Element:
+def model_element(source: ExportSource, entry: Entry, model: Model) -> Element:
     """`Action MoveBase` with its ports."""
     attributes = []
     if model.name is not None:
@@ -35,7 +35,7 @@ def model_element(source: Source, entry: Entry, model: Model) -> Element:
     contents = element.children
     contents += source.written(own.first, beside=True)
     if model.text is not None:
-        contents.append(Element("description", (), [Text(model.text.text)] if model.text.text else []))
+        contents.append(Element("description", (), [XmlText(model.text.text)] if model.text.text else []))
     fields: Element | None = None
     for part in model.body:
         around = source.around(entry, part)
@@ -60,7 +60,7 @@ def model_element(source: Source, entry: Entry, model: Model) -> Element:
     return element
 
 
-def port_element(source: Source, entry: Entry, port: Port, tree: Word | None = None) -> Element:
+def port_element(source: ExportSource, entry: Entry, port: Port, tree: Word | None = None) -> Element:
     """`input station : string = "charger" "where to go"`; tree: that has the port, if it is a tree's."""
     said = (("name", port.name), ("type", port.type), ("default", port.default))
     attributes = [Attribute(name, spelt(word)) for name, word in said if word is not None]
@@ -75,12 +75,12 @@ def port_element(source: Source, entry: Entry, port: Port, tree: Word | None = N
     own = source.around(entry, port)
     element.children.extend(source.written(own.first, beside=True))
     if port.text is not None and port.text.text:
-        element.children.append(Text(port.text.text))
+        element.children.append(XmlText(port.text.text))
     element.children.extend(source.written(own.last))
     return element
 
 
-class Models:
+class ModelCollector:
     """The models of a file, as they are found.
 
     Attributes:
@@ -94,7 +94,7 @@ class Models:
         self.loose: Final[list[Content]] = []
         self.trees: Final[list[tuple[Entry, Tree]]] = []
 
-    def rest(self, source: Source, others: Iterable[Element]) -> list[Content]:
+    def rest(self, source: ExportSource, others: Iterable[Element]) -> list[Content]:
         """The contents to write last, with models that the file does not have itself, in a TreeNodesModel of the file
         or else in a new one."""
         for entry, tree in self.trees:
@@ -105,7 +105,7 @@ class Models:
             return []
         return [Element("TreeNodesModel", (), self.loose)] if self.loose else []
 
-    def _add_ports(self, source: Source, entry: Entry, tree: Tree) -> None:
+    def _add_ports(self, source: ExportSource, entry: Entry, tree: Tree) -> None:
         """Add the ports that a tree declares in its block: the engine requires them at each SubTree."""
         if not tree.ports or tree.name is None:
             return

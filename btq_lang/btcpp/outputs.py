@@ -10,18 +10,18 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 
 from btq_lang.btcpp.bundle import bundle
-from btq_lang.btcpp.document import Comment, Document, write
+from btq_lang.btcpp.document import Document, XmlComment, write
 from btq_lang.btcpp.enforcement import Enforcement, enforced
 from btq_lang.btcpp.export import Export, IncludedAs, export, is_mission, xml_name
 from btq_lang.btcpp.marks import generated_mark
-from btq_lang.btcpp.side_file import Built, side_file
+from btq_lang.btcpp.side_file import BuiltFile, side_file
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.syntax.tree import Tree
 from btq_lang.util.record import Record
 from btq_lang.workspace.workspace import Workspace
 
 
-class Output(Record):
+class MissionOutput(Record):
     """A mission as it is written.
 
     Attributes:
@@ -39,7 +39,7 @@ class Output(Record):
     side: str | None
 
 
-class Places:
+class OutputPlaces:
     """Where the XML of each file is written: beside it, or below a folder, at the path of the file below the folder
     common to all."""
 
@@ -63,12 +63,12 @@ class Places:
 def outputs(
     workspace: Workspace,
     given: Sequence[str],
-    places: Places,
+    places: OutputPlaces,
     *,
     bundled: bool = False,
     verbatim: bool = False,
     enforce: bool = True,
-) -> tuple[Output, ...]:
+) -> tuple[MissionOutput, ...]:
     """What a build writes: an output for each given file and each file they include, or one for each mission with all
     that is registered with it.
 
@@ -84,12 +84,12 @@ def outputs(
         for path in (missions(workspace, given) if bundled else sources(workspace, given))
     }
     if any(done.export.problems for done in exports.values()):
-        return tuple(Output(path, places.of(path), done, "", None) for path, done in exports.items())
+        return tuple(MissionOutput(path, places.of(path), done, "", None) for path, done in exports.items())
     found = []
     for path, done in exports.items():
         place, text = places.of(path), _text(path, done.export.document, verbatim)
         side = None if verbatim else _side_text(workspace, path, place, text, exports, bundled)
-        found.append(Output(path, place, done, text, side))
+        found.append(MissionOutput(path, place, done, text, side))
     return tuple(found)
 
 
@@ -144,7 +144,7 @@ def without_tree(workspace: Workspace, given: Sequence[str]) -> Iterator[str]:
 def _text(path: str, document: Document, verbatim: bool) -> str:
     if verbatim:
         return write(document)
-    return write(Document([Comment(generated_mark(posixpath.basename(path))), *document.contents]))
+    return write(Document([XmlComment(generated_mark(posixpath.basename(path))), *document.contents]))
 
 
 def _side_text(
@@ -158,4 +158,4 @@ def _side_text(
         )
     elements = {key: element for part in parts for key, element in part.elements.items()}
     documents = tuple(part.document for part in parts)
-    return side_file(workspace, Built(path, place, text, documents, elements, exports[path].clauses))
+    return side_file(workspace, BuiltFile(path, place, text, documents, elements, exports[path].clauses))

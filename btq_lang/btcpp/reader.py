@@ -22,11 +22,11 @@ from btq_lang.btcpp.document import (
     SPACE,
     WORD,
     Attribute,
-    Comment,
     Content,
     Document,
     Element,
-    Text,
+    XmlComment,
+    XmlText,
     attribute_matches,
     unescape,
 )
@@ -45,7 +45,7 @@ Tag: TypeAlias = tuple[str, tuple[Attribute, ...] | None, bool, int, bool]
 MAX_DEPTH: Final = 498  # open elements; the engine refuses the next one
 
 
-class Read(Record):
+class XmlRead(Record):
     """What was read from a file.
 
     Attributes:
@@ -57,28 +57,28 @@ class Read(Record):
     problems: tuple[Diagnostic, ...] = ()
 
 
-def read(text: str, with_prefixes: bool = True) -> Read:
+def read(text: str, with_prefixes: bool = True) -> XmlRead:
     """Read an XML file, any string at all; `with_prefixes`: report prefixes of names that other tools refuse, too."""
     nul = text.find("\0")
     if 0 <= nul < text.rfind(">"):
         message = "unexpected NUL character: the engine stops reading here"
-        return Read(None, (Diagnostic(RULE, Span(nul, nul + 1), message, notes=("remove it",)),))
+        return XmlRead(None, (Diagnostic(RULE, Span(nul, nul + 1), message, notes=("remove it",)),))
     is_strict = is_well_formed(text)
     reader = _Reader(text, is_strict)
     try:
         with NotCollecting():
             contents = reader.contents()
     except _Broken as broken:
-        return Read(None, (broken.diagnostic,))
+        return XmlRead(None, (broken.diagnostic,))
     roots = [content for content in contents if isinstance(content, Element)]
     if not roots:
         end = len(text.rstrip())
         message = "this file contains no element" if end else "this file is empty"
         note = 'a mission begins with <root BTCPP_format="4">'
-        return Read(None, (Diagnostic(RULE, Span(0, min(end, 1)), message, notes=(note,)),))
-    read_by_all = (content for content in contents if isinstance(content, Comment) or content is roots[0])
+        return XmlRead(None, (Diagnostic(RULE, Span(0, min(end, 1)), message, notes=(note,)),))
+    read_by_all = (content for content in contents if isinstance(content, XmlComment) or content is roots[0])
     has_prefixes = with_prefixes and reader.has_prefixes
-    return Read(Document(read_by_all), tuple(_refused(text, roots[0], is_strict, has_prefixes)))
+    return XmlRead(Document(read_by_all), tuple(_refused(text, roots[0], is_strict, has_prefixes)))
 
 
 def _refused(text: str, root: Element, is_strict: bool, has_prefixes: bool) -> Iterator[Diagnostic]:
@@ -213,7 +213,7 @@ class _Reader:
             begin = start + between.index(said)
             self.broken(Span(begin, begin + len(said)), "unexpected text after the document element", "remove it")
         if not is_last:
-            contents.append(Text(unescape(_line_ends(between)), start))
+            contents.append(XmlText(unescape(_line_ends(between)), start))
 
     def mismatched(self, element: Element, span: Span, closing: str) -> NoReturn:
         """Refuse `</b>` where another element is open."""
@@ -234,7 +234,7 @@ class _Reader:
         end = self.closing("-->", start + 4, start, "missing --> for this comment")
         between = text[last_end:start]
         beside = last_end > 0 and "\n" not in between and "\r" not in between
-        contents.append(Comment(_line_ends(text[start + 4 : end]), beside, start))
+        contents.append(XmlComment(_line_ends(text[start + 4 : end]), beside, start))
         return end + 3
 
     def marked(self, start: int, contents: list[Content]) -> int:
@@ -244,7 +244,7 @@ class _Reader:
         if text.startswith("<![CDATA[", start):
             end = self.closing("]]>", start + 9, start, "missing ]]> for this CDATA section")
             if start + 9 < end:
-                contents.append(Text(_line_ends(text[start + 9 : end]), start))
+                contents.append(XmlText(_line_ends(text[start + 9 : end]), start))
             return end + 3
         self.has_prefixes = True  # a DOCTYPE may declare anything
         return self.closing(">", start + 2, start, "missing > for this declaration") + 1

@@ -57,12 +57,12 @@ class Restored(Record):
     text: str
     is_whole: bool
     file: str
-    lost: tuple[Lost, ...] = ()
+    lost: tuple[LostClauses, ...] = ()
     manual_edits: tuple[ManualEdit, ...] = ()
     others: tuple[tuple[str, str], ...] = ()
 
 
-class Lost(Record):
+class LostClauses(Record):
     """Clauses of one node.
 
     Attributes:
@@ -112,7 +112,7 @@ def _is_text(value: object) -> bool:
 def _merged(now: Parsed, sources: Sequence[tuple[str | None, Parsed]], place: str) -> Restored:
     """The XML as it is now, with what the mission and the files of its bundle said beyond it."""
     edits: list[Edit] = []
-    lost: list[Lost] = []
+    lost: list[LostClauses] = []
     known = {name: (entry, _parts(entry)) for entry, name in _trees(now)}
     for file, then in sources:
         items = [_lines(then, entry) for entry in then.entries if isinstance(entry.item, _WITHOUT_ELEMENT)]
@@ -129,7 +129,7 @@ def _merged(now: Parsed, sources: Sequence[tuple[str | None, Parsed]], place: st
                     edits += [edit] if edit is not None else []
                     if edit is None:
                         line = lines.position(entry.start + part.clauses[0].start).line + 1
-                        lost.append(Lost(text, file, line))
+                        lost.append(LostClauses(text, file, line))
     return Restored(apply_edits(now.text, edits), False, place, tuple(lost))
 
 

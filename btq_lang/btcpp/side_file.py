@@ -19,7 +19,7 @@ from btq_lang.btcpp.manual_edits import node_guards
 from btq_lang.btcpp.marks import MARK
 from btq_lang.catalog.units import Unit
 from btq_lang.diagnostics.model import Place
-from btq_lang.requirements.model import Applied, InContext, Requirement, Signal, Target
+from btq_lang.requirements.model import Applied, InContext, NodeTarget, ResolvedRequirement, ResolvedSignal
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.tree import Apply, Context, Entry, Qualities, QualityDecl, Satisfices, Tree
@@ -38,7 +38,7 @@ VERSION: Final = 2  # 1: each condition had its contexts in it
 VERSIONS: Final = (1, 2)  # that are read
 
 
-class Built(Record):
+class BuiltFile(Record):
     """An XML file that was built.
 
     Attributes:
@@ -73,7 +73,7 @@ def is_side_file(text: str) -> bool:
     return text.startswith(f'{{\n"format": "{FORMAT}",\n')
 
 
-def side_file(workspace: Workspace, built: Built) -> str | None:
+def side_file(workspace: Workspace, built: BuiltFile) -> str | None:
     """The text of the side file; None if the mission says nothing beyond its XML."""
     paths = workspace.registered_with(built.path)
     if not any(_says_more(entry) for path in paths for entry in workspace.files[path].parsed.entries):
@@ -111,7 +111,7 @@ def side_file(workspace: Workspace, built: Built) -> str | None:
                 for index, each in enumerate(found.applied)
             ],
             "traces": [
-                {"requirement": each.requirement, "nodes": running.uids(Target(each.node))} for each in found.traces
+                {"requirement": each.requirement, "nodes": running.uids(NodeTarget(each.node))} for each in found.traces
             ],
             **_guards(built.documents[-1].root),
             "concerns": list(_concerns(found.nodes, running)),
@@ -160,7 +160,7 @@ class RunningTree:
         all: each with the written node; None if that is not a node of a mission.
     """
 
-    def __init__(self, built: Built, nodes: Nodes, main: str | None) -> None:
+    def __init__(self, built: BuiltFile, nodes: Nodes, main: str | None) -> None:
         written = {id(built.elements[id(node.node)]): node for node in nodes.all if id(node.node) in built.elements}
         self._written = written
         self._of: dict[int, list[Instance]] = {}
@@ -172,11 +172,11 @@ class RunningTree:
             if node is not None:
                 self._of.setdefault(id(node), []).append(instance)
 
-    def uids(self, target: Target) -> list[Json]:
+    def uids(self, target: NodeTarget) -> list[Json]:
         """The numbers of a node's instances that the path leads through."""
         return [each.uid for each in self.instances(target)]
 
-    def instances(self, target: Target) -> list[Instance]:
+    def instances(self, target: NodeTarget) -> list[Instance]:
         """A node's instances that the path leads through."""
         return [each for each in self._of.get(id(target.node), ()) if self._leads_to(each, target.through)]
 
@@ -205,7 +205,7 @@ def _node(instance: Instance, node: ResolvedNode | None, place: _Places) -> Json
     return {**found, **place.of(node.place)} if node is not None else found
 
 
-def _requirement(requirement: Requirement, loose: list[Json] | None, place: _Places) -> Json:
+def _requirement(requirement: ResolvedRequirement, loose: list[Json] | None, place: _Places) -> Json:
     plain = _plain(requirement, place)
     assert isinstance(plain, dict), "a requirement has fields"
     return {**plain, "clauses_without_nodes": loose} if loose else plain
@@ -217,12 +217,12 @@ def _applied(applied: Applied, clauses: tuple[ClauseEnforcement, ...], running: 
     if applied.arguments:
         found["arguments"] = {each.name: _plain(each.value, place) for each in applied.arguments}
         found["claims"] = [_plain(each, place) for each in applied.requirement.claims]
-    if isinstance(subject, Target):
+    if isinstance(subject, NodeTarget):
         found["nodes"] = running.uids(subject)
     else:
         found["subject"] = _plain(subject, place)
         if applied.node is not None:
-            found["nodes"] = running.uids(Target(applied.node))
+            found["nodes"] = running.uids(NodeTarget(applied.node))
     if clauses:
         found["clauses"] = [
             {"clause": each.clause, "held": each.way, **({"why": each.why} if each.why else {})} for each in clauses
@@ -242,7 +242,7 @@ def _concerns(nodes: Nodes, running: RunningTree) -> Iterator[Json]:
                 for quality in clause.qualities
             ]
             if node is not None and qualities:
-                yield {"qualities": qualities, "nodes": running.uids(Target(node))}
+                yield {"qualities": qualities, "nodes": running.uids(NodeTarget(node))}
 
 
 # ---- values ----
@@ -279,15 +279,15 @@ def _plain(value: object, place: _Places) -> Json:
     if isinstance(value, InContext):
         return {"is": "incontext", "name": value.name}
     found: dict[str, Json] = {}
-    if not isinstance(value, Requirement | Signal):
+    if not isinstance(value, ResolvedRequirement | ResolvedSignal):
         found["is"] = type(value).__name__.lower()
     for field in fields_of(value):
         part = getattr(value, field)
         if part is None or part == () or field in _LEFT_OUT or (field == "every" and not part):
             continue
-        key = _RENAMED.get(field, field) if isinstance(value, Requirement) else field
-        found[key] = part.name if isinstance(part, Signal) else _plain(part, place)
-    if isinstance(value, Requirement | Signal):
+        key = _RENAMED.get(field, field) if isinstance(value, ResolvedRequirement) else field
+        found[key] = part.name if isinstance(part, ResolvedSignal) else _plain(part, place)
+    if isinstance(value, ResolvedRequirement | ResolvedSignal):
         found |= place.of(value.place)
     return found
 

@@ -10,7 +10,7 @@ from functools import cache, partial
 from typing import Final
 
 from btq_lang.btcpp.constants import types_below
-from btq_lang.btcpp.document import Comment, Content, Raw, escape
+from btq_lang.btcpp.document import Content, Raw, XmlComment, escape
 from btq_lang.btcpp.spelling import FORBIDDEN, as_comment, spelt
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_xml_name, legal_name, model_name_problem
@@ -31,7 +31,7 @@ class Remark(Record):
     message: str
 
 
-class Source:
+class ExportSource:
     """One file while it is exported.
 
     Attributes:
@@ -103,7 +103,7 @@ class Source:
         contents.append(element)
         contents += self.written(around.behind, beside=True)
 
-    def written(self, remarks: tuple[SourceComment, ...], beside: bool = False) -> list[Comment]:
+    def written(self, remarks: tuple[SourceComment, ...], beside: bool = False) -> list[XmlComment]:
         """Comments as XML has them."""
         made = []
         for remark in remarks:
@@ -112,7 +112,7 @@ class Source:
                 self._changed_comments.append(remark)
             if not remark.is_block and text[:1] in _BLANKS:
                 text += " "
-            made.append(Comment(text, beside))
+            made.append(XmlComment(text, beside))
         return made
 
     def finish(self) -> None:

@@ -13,7 +13,7 @@ from btq_lang.btcpp.attributes import attributes_of, only_first
 from btq_lang.btcpp.constants import fitting
 from btq_lang.btcpp.descriptions import description, said_elsewhere
 from btq_lang.btcpp.document import Attribute, Element, escape
-from btq_lang.btcpp.source import Source
+from btq_lang.btcpp.source import ExportSource
 from btq_lang.catalog.kinds import CATEGORIES
 from btq_lang.catalog.names import is_port_name, is_xml_name, legal_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS, PLACEHOLDERS, NodeKind, inspects_children, is_by_children
@@ -32,7 +32,7 @@ class Trees:
         elements: the element of each node, by `id(node)`.
     """
 
-    def __init__(self, source: Source) -> None:
+    def __init__(self, source: ExportSource) -> None:
         self.elements: Final[dict[int, Element]] = {}
         self._source: Final = source
         self._tags: Final[dict[str, tuple[str, NodeKind | None]]] = {}

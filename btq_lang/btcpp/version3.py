@@ -25,7 +25,7 @@ from btq_lang.util.text import Span
 Rewritten: TypeAlias = tuple[str, str, str]
 
 
-class Change(Record):
+class VersionNote(Record):
     """A difference from the XML.
 
     Attributes:
@@ -36,14 +36,14 @@ class Change(Record):
     message: str
 
 
-def translated(root: Element, changes: list[Change]) -> None:
+def translated(root: Element, changes: list[VersionNote]) -> None:
     """Translate it to version 4, in place."""
     span = Span(root.start + 1, root.end - 1)
     kept = [each for each in root.attributes if each.name != "BTCPP_format"]
     if len(kept) < len(root.attributes):
-        changes.append(Change(span, 'BTCPP_format="3" is now "4"'))
+        changes.append(VersionNote(span, 'BTCPP_format="3" is now "4"'))
     else:
-        changes.append(Change(span, 'BTCPP_format="4" is added'))
+        changes.append(VersionNote(span, 'BTCPP_format="4" is added'))
     root.attributes = (Attribute("BTCPP_format", "4"), *kept)
     outputs = dict(_outputs(root))
     for element in root.walk():
@@ -61,7 +61,7 @@ def _outputs(root: Element) -> Iterator[tuple[str | None, frozenset[str | None]]
             yield model.get("ID"), frozenset(each.get("name") for each in model.elements if each.tag == "output_port")
 
 
-def _translate(element: Element, changes: list[Change]) -> None:
+def _translate(element: Element, changes: list[VersionNote]) -> None:
     is_explicit = element.tag in ("Action", "Condition", "Control", "Decorator")
     identity = element.get("ID") if is_explicit else element.tag
     if identity in ("SubTree", "SubTreePlus"):
@@ -69,7 +69,7 @@ def _translate(element: Element, changes: list[Change]) -> None:
             _remove_ports(element, changes)
             return
         if identity == "SubTreePlus":
-            changes.append(Change(element.tag_span, "SubTreePlus is now SubTree"))
+            changes.append(VersionNote(element.tag_span, "SubTreePlus is now SubTree"))
             element.tag = "SubTree"
         _rewrite(element, changes, partial(_argument, is_plus=identity == "SubTreePlus"))
         return
@@ -78,14 +78,14 @@ def _translate(element: Element, changes: list[Change]) -> None:
     if new is not None and is_explicit:
         _rewrite(element, changes, lambda each: (f"{each.raw} is now {new}", "ID", new) if each.name == "ID" else None)
     elif new is not None:
-        changes.append(Change(element.tag_span, f"{element.tag} is now {new}"))
+        changes.append(VersionNote(element.tag_span, f"{element.tag} is now {new}"))
         element.tag = new
     elif known is not None and known.until == VERSION_3:
-        changes.append(Change(element.tag_span, f"{known.why}: kept unchanged"))
+        changes.append(VersionNote(element.tag_span, f"{known.why}: kept unchanged"))
     _rewrite(element, changes, partial(_port, tag=new or identity or ""))
 
 
-def _rewrite(element: Element, changes: list[Change], rewritten: Callable[[Attribute], Rewritten | None]) -> None:
+def _rewrite(element: Element, changes: list[VersionNote], rewritten: Callable[[Attribute], Rewritten | None]) -> None:
     """Rewrite the attributes of an element, and report each that changes."""
     kept: list[Attribute] = []
     for attribute in element.attributes:
@@ -95,7 +95,7 @@ def _rewrite(element: Element, changes: list[Change], rewritten: Callable[[Attri
             continue
         message, name, raw = found
         start, value_start = element.place(attribute)
-        changes.append(Change(Span(start, value_start + len(attribute.raw) + 1), message))
+        changes.append(VersionNote(Span(start, value_start + len(attribute.raw) + 1), message))
         if name:
             kept.append(Attribute(name, raw, (start, value_start)))
     element.attributes = tuple(kept)
@@ -135,12 +135,12 @@ def _argument(attribute: Attribute, is_plus: bool) -> Rewritten | None:
     return f'{key}="{raw}" of a SubTree names an entry: now "{{{raw}}}"', key, f"{{{raw}}}"
 
 
-def _remove_ports(model: Element, changes: list[Change]) -> None:
+def _remove_ports(model: Element, changes: list[VersionNote]) -> None:
     """Remove two ports from the model of a SubTree: version 4 would require them at each use."""
     for port in list(model.elements):
         if port.get("name") in ("__shared_blackboard", "__autoremap"):
             message = f"the port {port.get('name')} of a SubTree's model is left out: version 4 would require it"
-            changes.append(Change(Span(port.start, port.end), message))
+            changes.append(VersionNote(Span(port.start, port.end), message))
             model.children.remove(port)
 
 

@@ -11,7 +11,7 @@ from collections.abc import Container, Sequence
 from typing import Final
 
 from btq_lang.btcpp.around import Wrapper, marked, may_be_skipped
-from btq_lang.btcpp.document import Attribute, Comment, Content, Element
+from btq_lang.btcpp.document import Attribute, Content, Element, XmlComment
 from btq_lang.btcpp.marks import MARK
 from btq_lang.catalog.kinds import CATEGORIES
 
@@ -41,7 +41,7 @@ def unwrapped(element: Element, holding: Container[Element]) -> list[Content] | 
         return None
     if nodes:
         _give_back(element, _innermost(nodes[0], holding))
-    return [child for child in element.children if child in nodes or isinstance(child, Comment)]
+    return [child for child in element.children if child in nodes or isinstance(child, XmlComment)]
 
 
 def holding_nodes(root: Element) -> set[Element]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from itertools import repeat
 
-from btq_lang.btcpp.document import Attribute, Comment, Content, Document, Element, Text, escape, write
+from btq_lang.btcpp.document import Attribute, Content, Document, Element, XmlComment, XmlText, escape, write
 from btq_lang.btcpp.interfaces import Interface, PortInterface, interfaces, merged_ports, tree_names
 from btq_lang.btcpp.spelling import FORBIDDEN
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
@@ -34,7 +34,7 @@ def xsd(workspaces: Sequence[Workspace], version: str, unknown: Container[str]) 
         _tree_names(tree_names(workspaces)),
         *_types_of_models(),
     )
-    return write(Document((Comment(remark), schema)))
+    return write(Document((XmlComment(remark), schema)))
 
 
 def _root() -> Element:
@@ -173,7 +173,7 @@ def _type(*parts: Element) -> Element:
 
 
 def _doc(text: str) -> tuple[Element, ...]:
-    return (_x("annotation", {}, _x("documentation", {}, Text(FORBIDDEN.sub("\ufffd", text)))),) if text else ()
+    return (_x("annotation", {}, _x("documentation", {}, XmlText(FORBIDDEN.sub("\ufffd", text)))),) if text else ()
 
 
 def _x(tag: str, attributes: Mapping[str, str], *parts: Content) -> Element:

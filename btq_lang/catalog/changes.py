@@ -10,7 +10,7 @@ from btq_lang.util.record import Record
 ANY: Final = "*"  # every node
 
 
-class Change(Record):
+class BehaviorChange(Record):
     """A change in what a node does.
 
     Attributes:

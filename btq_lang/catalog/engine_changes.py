@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from btq_lang.catalog.changes import Change
+from btq_lang.catalog.changes import BehaviorChange
 
 _IN_TURN: Final = ("Sequence", "AsyncSequence", "SequenceWithMemory", "Fallback", "AsyncFallback")
 _LOOPS: Final = ("LoopInt", "LoopBool", "LoopDouble", "LoopString")
@@ -22,14 +22,14 @@ _WATCHES: Final = ("SkipUnlessUpdated", "WaitValueUpdate")
 _NUMBER: Final = r"-?\d+(\.\d*)?([eE][-+]?\d+)?"
 
 
-def _cases(since: str, what: str, value: str, after: str = "") -> tuple[Change, ...]:
+def _cases(since: str, what: str, value: str, after: str = "") -> tuple[BehaviorChange, ...]:
     instead = "write the cases and the variable in one form"
     ports = (f"case_{number}" for number in range(1, 7))
-    return tuple(Change(since, _SWITCHES, what, instead, port, value, after=after) for port in ports)
+    return tuple(BehaviorChange(since, _SWITCHES, what, instead, port, value, after=after) for port in ports)
 
 
 # Releases of the line 4.8, so that a file for that line meets it without moving on.
-NO_DELAY: Final = Change(
+NO_DELAY: Final = BehaviorChange(
     "4.8.3",
     ("Delay",),
     "does not wait: 4.8.3 and 4.8.4 do not read `delay_msec`",
@@ -38,7 +38,7 @@ NO_DELAY: Final = Change(
 )
 
 ENGINE_CHANGES: Final = (
-    Change(
+    BehaviorChange(
         "3.8.6",
         ("ReactiveSequence", "ReactiveFallback"),
         "resets the children before the one that runs too: they begin again, and halt it from 3.8.7 on; before, they "
@@ -46,7 +46,7 @@ ENGINE_CHANGES: Final = (
         "let only the last child take several ticks",
         when="restarts",
     ),
-    Change(
+    BehaviorChange(
         "4.0",
         ("Repeat", "RetryUntilSuccessful"),
         "returns RUNNING between two cycles; before, all cycles of a child that completes at once were one tick",
@@ -54,7 +54,7 @@ ENGINE_CHANGES: Final = (
         when="completes at once",
     ),
     *(
-        Change(
+        BehaviorChange(
             "4.1",
             (node,),
             f"is skipped if it has no cycle; before, it {then}",
@@ -66,7 +66,7 @@ ENGINE_CHANGES: Final = (
         for node, port, then, _ in _WITHOUT_CYCLE
     ),
     *(
-        Change(
+        BehaviorChange(
             "4.7",
             (node,),
             f"{now} if it has no cycle; before, it was skipped",
@@ -84,7 +84,7 @@ ENGINE_CHANGES: Final = (
         rf"(?!{_NUMBER}$)-?\d.*",
         after="4.5.1",
     ),
-    Change(
+    BehaviorChange(
         "4.7",
         _IN_TURN,
         "is skipped if all its children are skipped in the end, also where one has run before that; before, a Sequence "
@@ -92,14 +92,14 @@ ENGINE_CHANGES: Final = (
         "end it with a child that is never skipped: `AlwaysSuccess`, or `AlwaysFailure` in a Fallback",
         when="skipped in the end",
     ),
-    Change(
+    BehaviorChange(
         "4.7",
         ("Precondition",),
         "checks `if` only before its child starts; before, at every tick, and it halted the child",
         "put a ScriptCondition before the child, in a ReactiveSequence",
         when="runs on",
     ),
-    Change(
+    BehaviorChange(
         "4.7",
         _LOOPS,
         "goes through a list at each start; before, only at the first, for it then was empty",
@@ -107,7 +107,7 @@ ENGINE_CHANGES: Final = (
         "queue",
         r"[^{].*",
     ),
-    Change(
+    BehaviorChange(
         "4.9.1",
         _LOOPS,
         "goes through a list that a script has written at each start; before, only at the first, for it then was empty",
@@ -117,14 +117,14 @@ ENGINE_CHANGES: Final = (
         when="queue of a script",
     ),
     NO_DELAY,
-    Change(
+    BehaviorChange(
         "4.9",
         ("Delay",),
         "waits for `delay_msec`, which 4.8.3 and 4.8.4 do not read",
         "remove it where nothing should wait",
         after="4.8.3",
     ),
-    Change(
+    BehaviorChange(
         "4.9",
         _WATCHES,
         "halts its child when it is halted; before, the child stayed RUNNING, and went on from there",

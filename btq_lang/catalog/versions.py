@@ -23,7 +23,7 @@ VERSION_3: Final = "3.8"
 PRODUCTS: Final = {"moveit-pro": "4.6"}
 
 
-class Change(Record):
+class VersionChange(Record):
     """A behavior that one version introduces and all later ones keep.
 
     Attributes:
@@ -40,38 +40,42 @@ class Change(Record):
         return at_least(version, self.since)
 
 
-ENTRIES_OF_SUBTREE: Final = Change(
+ENTRIES_OF_SUBTREE: Final = VersionChange(
     "4.0", "takes `key` at a port of a SubTree for a text; before, for an entry's name", "differs"
 )
-LAST_TREE_COUNTS: Final = Change("4.0", "takes the last of several trees with one ID; before, the first", "differs")
-ID_IN_COMPACT_FORM: Final = Change("4.0", "refuses an `ID` in the compact form of a node")
-UNDERSCORES: Final = Change(
+LAST_TREE_COUNTS: Final = VersionChange(
+    "4.0", "takes the last of several trees with one ID; before, the first", "differs"
+)
+ID_IN_COMPACT_FORM: Final = VersionChange("4.0", "refuses an `ID` in the compact form of a node")
+UNDERSCORES: Final = VersionChange(
     "4.0",
     "ignores `__shared_blackboard` and `__autoremap` (write `_autoremap`), and takes no attribute that begins with `_` "
     "for a port",
     "differs",
 )
-ENTRY_WITHOUT_DOLLAR: Final = Change("4.3.4", "takes `${key}` for a text; before, for an entry", "differs")
-PORTS_OF_SUBTREE: Final = Change("4.4", "requires the ports without default that the model of a SubTree has")
-OUTPUT_IN_BRACES: Final = Change(
+ENTRY_WITHOUT_DOLLAR: Final = VersionChange("4.3.4", "takes `${key}` for a text; before, for an entry", "differs")
+PORTS_OF_SUBTREE: Final = VersionChange("4.4", "requires the ports without default that the model of a SubTree has")
+OUTPUT_IN_BRACES: Final = VersionChange(
     "4.4.2", "writes an output only to an entry in braces; before, `key` names one too", "differs"
 )
-ID_OF_EACH_TREE: Final = Change("4.6", "refuses a tree without an ID beside other trees")
-DEEP_TREES: Final = Change("4.7", "reads trees of any depth; before, no node may have 97 others above it", "new")
-ONE_ASYNC_SEQUENCE: Final = Change("4.7", "refuses a second AsyncSequence in a ReactiveSequence")
-NO_EXPLICIT_CHILD: Final = Change("4.7", "refuses the explicit form of a node directly in a ReactiveSequence")
-SCRIPT_RANKS: Final = Change("4.7", "ranks the operators of scripts otherwise than 4.6 does", "differs")
-BOOL_LISTS: Final = Change("4.7.3", "reads a list of bool from text", "new")
-NAME_RULES: Final = Change("4.8", "refuses names of trees, nodes and ports with characters that it forbids")
-UNIQUE_SUBTREES: Final = Change("4.8", "refuses two SubTrees of one name in one tree")
-NEW_SCRIPTS: Final = Change(
+ID_OF_EACH_TREE: Final = VersionChange("4.6", "refuses a tree without an ID beside other trees")
+DEEP_TREES: Final = VersionChange("4.7", "reads trees of any depth; before, no node may have 97 others above it", "new")
+ONE_ASYNC_SEQUENCE: Final = VersionChange("4.7", "refuses a second AsyncSequence in a ReactiveSequence")
+NO_EXPLICIT_CHILD: Final = VersionChange("4.7", "refuses the explicit form of a node directly in a ReactiveSequence")
+SCRIPT_RANKS: Final = VersionChange("4.7", "ranks the operators of scripts otherwise than 4.6 does", "differs")
+BOOL_LISTS: Final = VersionChange("4.7.3", "reads a list of bool from text", "new")
+NAME_RULES: Final = VersionChange("4.8", "refuses names of trees, nodes and ports with characters that it forbids")
+UNIQUE_SUBTREES: Final = VersionChange("4.8", "refuses two SubTrees of one name in one tree")
+NEW_SCRIPTS: Final = VersionChange(
     "4.9", 'reads scripts by a grammar of its own: every operator has a rank, and `"` no meaning', "differs"
 )
-STRICT_NUMBERS: Final = Change("4.9", "reads numbers as std::from_chars does: no blank, no `+`, no hexadecimal digits")
-JSON_LISTS: Final = Change("4.9", "reads a list from `json:[1, 2]`", "new")
-TYPED_CONSTANTS: Final = Change("4.9.1", "keeps a number that a SubTree gives to a port as a number", "differs")
+STRICT_NUMBERS: Final = VersionChange(
+    "4.9", "reads numbers as std::from_chars does: no blank, no `+`, no hexadecimal digits"
+)
+JSON_LISTS: Final = VersionChange("4.9", "reads a list from `json:[1, 2]`", "new")
+TYPED_CONSTANTS: Final = VersionChange("4.9.1", "keeps a number that a SubTree gives to a port as a number", "differs")
 
-CHANGES: Final = tuple([each for each in [*globals().values()] if isinstance(each, Change)])  # all of the above
+CHANGES: Final = tuple([each for each in [*globals().values()] if isinstance(each, VersionChange)])  # all of the above
 
 
 @cache

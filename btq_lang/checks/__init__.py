@@ -76,7 +76,7 @@ from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.scan import line_start
 from btq_lang.workspace import inputs
 from btq_lang.workspace.config import configured
-from btq_lang.workspace.findings import Findings, Reported
+from btq_lang.workspace.findings import FileFindings, Reported
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
@@ -279,7 +279,7 @@ def check_each(workspace: Workspace, paths: Iterable[str]) -> Iterator[tuple[Dia
     store.sweep(always=True)  # cached results refer to each other, and so to the workspace
 
 
-def findings(store: Store[Workspace], path: str, seen: Iterable[Reported] = ()) -> Findings:
+def findings(store: Store[Workspace], path: str, seen: Iterable[Reported] = ()) -> FileFindings:
     """The same for a file of the store's workspace, with the diagnostics of each item.
 
     Args:
@@ -292,9 +292,9 @@ def findings(store: Store[Workspace], path: str, seen: Iterable[Reported] = ()) 
     return findings_of(store.state, path, (*reported, *seen))
 
 
-def findings_of(workspace: Workspace, path: str, reported: Iterable[Reported]) -> Findings:
+def findings_of(workspace: Workspace, path: str, reported: Iterable[Reported]) -> FileFindings:
     """The diagnostics of a file's items, without those that comments silence; those of XML are placed in the XML."""
-    found = Findings([(each, each.starts(workspace)) for each in reported])
+    found = FileFindings([(each, each.starts(workspace)) for each in reported])
     file = workspace.files[path]
     if not file.has_directives and not workspace.origins:
         return found
@@ -308,7 +308,7 @@ def findings_of(workspace: Workspace, path: str, reported: Iterable[Reported]) -
         from btq_lang.checks.origins import shown_on_origins  # few workspaces have any
 
         diagnostics = shown_on_origins(workspace, path, diagnostics)
-    return Findings.placed(configured(workspace.project, path, diagnostics))
+    return FileFindings.placed(configured(workspace.project, path, diagnostics))
 
 
 def keep(workspace: Workspace, path: str) -> None:

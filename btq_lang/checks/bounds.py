@@ -14,7 +14,7 @@ from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks import lookups
 from btq_lang.checks.one_run import same_in_every_run
 from btq_lang.checks.view import View
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, write_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related, write_fix
 from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import NUMBER, QUANTITY
@@ -62,7 +62,8 @@ def uses_of_gauge(view: View) -> Iterator[Diagnostic]:
         words = ("level", "counter") if signal.unit.text == "%" else ("counter", "level")
         message = f"`{claim.resource.text}` is neither a counter nor a level, so its use is undefined"
         fixes = tuple(
-            Fix(f"Declare it as a {word}", (Change(place, word if signal.behaviour else f" {word}"),)) for word in words
+            Fix(f"Declare it as a {word}", (FixEdit(place, word if signal.behaviour else f" {word}"),))
+            for word in words
         )
         notes = ("the use of a counter is its final minus its initial value; the use of a level is the opposite",)
         related = (Related(declaration.place, "declared here"),)
@@ -91,7 +92,7 @@ def _count(
     requirement: syntax.Requirement, claim: syntax.Claim, amount: syntax.Amount, number: float, is_lower: bool
 ) -> Iterator[Diagnostic]:
     what = "attempts" if VERBS[claim.verb.raw].operand == "count" else "starts"
-    has_scope = any(isinstance(clause, syntax.Scope) for clause in requirement.clauses)
+    has_scope = any(isinstance(clause, syntax.ScopeClause) for clause in requirement.clauses)
     notes: tuple[str, ...] = ()
     if number < 0 or number != int(number):
         message = f"expected a whole number of {what}, found `{_shown(amount)}`"

@@ -11,8 +11,8 @@ from btq_lang.checks.demanded import Demanded, Found, found_at, seconds, summed
 from btq_lang.diagnostics.model import Related
 from btq_lang.requirements.budget_parts import Budget, port_seconds
 from btq_lang.requirements.budgets import Budgets
-from btq_lang.requirements.durations import Range, Term, together
-from btq_lang.requirements.model import Applied, Claim, Mission, Requirement
+from btq_lang.requirements.durations import DurationTerm, Range, together
+from btq_lang.requirements.model import Applied, MissionRun, ResolvedClaim, ResolvedRequirement
 from btq_lang.workspace.resolved import ResolvedNode
 
 
@@ -84,7 +84,7 @@ def odds_beyond_children(demanded: Demanded) -> Iterator[Found]:
         yield found_at(place, "odds-beyond-children", message, related=related, notes=notes)
 
 
-def window_too_small(requirement: Requirement) -> Iterator[Found]:
+def window_too_small(requirement: ResolvedRequirement) -> Iterator[Found]:
     """A window that is too small even without any failure.
 
     Of n experiments that all succeed, the probability is at least (1 - c)^(1/n) with confidence c (Clopper, Pearson,
@@ -105,17 +105,17 @@ def window_too_small(requirement: Requirement) -> Iterator[Found]:
     yield found_at(window.place, "window-too-small", message, related=related)
 
 
-def _held_against(claim: Claim, budget: Budget) -> Range | None:
+def _held_against(claim: ResolvedClaim, budget: Budget) -> Range | None:
     """The part of a budget that a claim is about."""
     return budget.success if VERBS[claim.verb].limits == "success" else budget.completes
 
 
-def _share(term: Term) -> str:
+def _share(term: DurationTerm) -> str:
     return f"up to {seconds(term.seconds)}" + (f", {term.times} times" if term.times > 1 else "")
 
 
 def _ensured(
-    budgets: Budgets, claim: Claim, node: ResolvedNode
+    budgets: Budgets, claim: ResolvedClaim, node: ResolvedNode
 ) -> tuple[float, list[tuple[ResolvedNode, float]], str] | None:
     """The probability that the demands below a node make a claim true, what each child may miss, and what that leaves
     out; None if it is unknown, or the duration is too long anyway."""
@@ -140,7 +140,7 @@ def _ensured(
 
 def _called(applied: Applied, node: ResolvedNode) -> str:
     """The name to show: the mission, or a tree if its root has no name of its own."""
-    if isinstance(applied.subject, Mission):
+    if isinstance(applied.subject, MissionRun):
         return "`mission`"
     is_unnamed_root = node.parent is None and node.node.name is None and node.tree is not None
     return f"`{node.tree}`" if is_unnamed_root else node.shown

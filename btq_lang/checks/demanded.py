@@ -11,8 +11,8 @@ from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements.attach import applied_in
 from btq_lang.requirements.budgets import Budgets
-from btq_lang.requirements.durations import Term
-from btq_lang.requirements.model import Applied, Claim, Signal, Span
+from btq_lang.requirements.durations import DurationTerm
+from btq_lang.requirements.model import Applied, Interval, ResolvedClaim, ResolvedSignal
 from btq_lang.requirements.nodes import mission
 from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from btq_lang.btcpp.enforceability import Judge
 
 Found: TypeAlias = tuple[Place, Diagnostic]
-Guard: TypeAlias = tuple[tuple[Signal, ...], tuple[str, ...], Place]
+Guard: TypeAlias = tuple[tuple[ResolvedSignal, ...], tuple[str, ...], Place]
 
 
 class Demanded:
@@ -42,8 +42,8 @@ class Demanded:
         self.view: Final = view
         self.tree: Final = view.ask(tree_nodes, path, facts)
         self.budgets: Final = Budgets(view.store, view.path)
-        self.claims: Final[list[tuple[Applied, Claim, ResolvedNode, Place]]] = []
-        self.hard: Final[list[tuple[Applied, Claim, ResolvedNode, Place | None, str | None]]] = []
+        self.claims: Final[list[tuple[Applied, ResolvedClaim, ResolvedNode, Place]]] = []
+        self.hard: Final[list[tuple[Applied, ResolvedClaim, ResolvedNode, Place | None, str | None]]] = []
         judge: Judge | None = None
         for applied in view.ask(applied_in, path, facts).applied:
             for claim in applied.requirement.claims:
@@ -64,16 +64,16 @@ def judge_of(view: View) -> Judge:
     return Judge(view.store, view.path, lambda: view.ask(mission), files=None, is_shared=view.ask(inputs.is_included))
 
 
-def _node(applied: Applied, claim: Claim, budgets: Budgets) -> ResolvedNode | None:
+def _node(applied: Applied, claim: ResolvedClaim, budgets: Budgets) -> ResolvedNode | None:
     """The node that a claim is about; for a span, the one with the same duration."""
-    if isinstance(applied.subject, Span) and VERBS[claim.verb].limits == "completion":
+    if isinstance(applied.subject, Interval) and VERBS[claim.verb].limits == "completion":
         from btq_lang.requirements.spans import node_of  # few claims are about a span
 
         return node_of(applied.subject, budgets)
     return applied.node
 
 
-def reported_at(view: View, applied: Applied, claim: Claim) -> Place | None:
+def reported_at(view: View, applied: Applied, claim: ResolvedClaim) -> Place | None:
     """The claim, or the reference that gave it its values or brought it into this file."""
     if claim.place.path == view.path and not (applied.arguments and applied.how != "subject"):
         return claim.place
@@ -104,7 +104,7 @@ def seconds(value: float) -> str:
     return f"{value:.4g} s"
 
 
-def summed(terms: tuple[Term, ...]) -> str:
+def summed(terms: tuple[DurationTerm, ...]) -> str:
     """The terms of a duration: `A` 20 s + 3 × `B` 5 s."""
     parts = (
         f"{f'{term.times} × ' if term.times > 1 else ''}{term.node.shown} {seconds(term.seconds)}" for term in terms

@@ -36,7 +36,7 @@ from btq_lang.workspace.workspace import Workspace
 Name: TypeAlias = tuple[str, str]
 
 
-class Mention(Record):
+class EntryMention(Record):
     """A place where a tree names an entry.
 
     Attributes:
@@ -57,7 +57,7 @@ class Mention(Record):
 
 
 @of_scope
-def mentions(store: Store[Workspace], viewpoint: str, path: str, tree: Facts) -> tuple[Mention, ...]:
+def mentions(store: Store[Workspace], viewpoint: str, path: str, tree: Facts) -> tuple[EntryMention, ...]:
     """Every name of an entry in a tree, in document order."""
     return tuple(_mentions(View(store, viewpoint), path, tree))
 
@@ -93,16 +93,16 @@ def handling(store: Store[Workspace], viewpoint: str, tree: str) -> Handling:
     )
 
 
-def _mentions(view: View, path: str, tree: Facts) -> Iterator[Mention]:
+def _mentions(view: View, path: str, tree: Facts) -> Iterator[EntryMention]:
     for seen, pair, value in view.seen_in(path, tree).values():
         if "{" in value.raw and (name := pointed_at(pair.key.text, value.text)) is not None:
             inner = value.span if name == pair.key.text else _inside(value, name)
-            yield Mention(name, inner, seen, *_use(view, seen, pair), False)
+            yield EntryMention(name, inner, seen, *_use(view, seen, pair), False)
         elif is_script(seen, pair):
             yield from _in_script(view, seen, value)
         elif seen.kind is not None and (port := seen.kind.port(pair.key.text)) and port.content == "key":
             creates = port.direction != "input"
-            yield Mention(value.text, value.span, seen, not creates, creates, creates, False)
+            yield EntryMention(value.text, value.span, seen, not creates, creates, creates, False)
 
 
 class Handling(Record):
@@ -121,12 +121,12 @@ class Handling(Record):
     ports: tuple[str, ...]
     touches: tuple[Touch, ...]
     named: frozenset[str]
-    calls: tuple[Call, ...]
+    calls: tuple[SubTreeCall, ...]
     is_open: bool
     has_strangers: bool
 
 
-class Call(Record):
+class SubTreeCall(Record):
     """A SubTree, as it passes entries.
 
     Attributes:
@@ -241,7 +241,7 @@ class Blackboards:
         return name
 
 
-def _call(view: View, seen: ResolvedNode) -> Call | None:
+def _call(view: View, seen: ResolvedNode) -> SubTreeCall | None:
     """How a node passes entries to the tree that it runs; None if it runs none."""
     is_plus = seen.node.kind is not None and seen.node.kind.raw == "SubTreePlus"
     named = seen.node.attribute("ID") if is_plus else seen.id if seen.is_subtree else None
@@ -264,7 +264,7 @@ def _call(view: View, seen: ResolvedNode) -> Call | None:
             values.append(port)
     is_one = not is_new and is_on(seen, "__shared_blackboard")
     shares = is_one or remaps_all(seen) or (is_plus and is_on(seen, "__autoremap"))
-    return Call(named.text, given, frozenset(values), shares, is_one)
+    return SubTreeCall(named.text, given, frozenset(values), shares, is_one)
 
 
 def _bare_values(nodes: Iterable[ResolvedNode]) -> Iterator[str]:
@@ -325,9 +325,9 @@ def _inside(value: Word, name: str) -> Span:
     return Span(start, start + len(name)) if at > 0 else value.span
 
 
-def _in_script(view: View, seen: ResolvedNode, value: Word) -> Iterator[Mention]:
+def _in_script(view: View, seen: ResolvedNode, value: Word) -> Iterator[EntryMention]:
     from btq_lang.syntax.script.tree import variables  # most files have no script, and it is large
 
     for variable in variables(view.script(value.text)):
         span = in_source(value, variable.span)
-        yield Mention(variable.name, span, seen, variable.reads, variable.writes, variable.creates, True)
+        yield EntryMention(variable.name, span, seen, variable.reads, variable.writes, variable.creates, True)

@@ -19,7 +19,7 @@ from typing import Final
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import callers, is_main
-from btq_lang.checks.entries import Call, Touch, handling, signal_entries
+from btq_lang.checks.entries import SubTreeCall, Touch, handling, signal_entries
 from btq_lang.checks.view import View, declared_ports
 from btq_lang.syntax.tree import port_named
 from btq_lang.util.record import Record
@@ -29,7 +29,7 @@ from btq_lang.workspace.queries import Store, on_circle
 from btq_lang.workspace.workspace import Workspace
 
 
-class Use(IntFlag):
+class EntryUse(IntFlag):
     """What may happen to an entry.
 
     READ, WRITTEN, CREATED: by nodes, scripts and values that SubTrees give.
@@ -56,35 +56,35 @@ class Below(Record):
         any: what may happen to each entry.
     """
 
-    uses: Mapping[str, Use]
-    any: Use
+    uses: Mapping[str, EntryUse]
+    any: EntryUse
 
-    def of(self, name: str) -> Use:
+    def of(self, name: str) -> EntryUse:
         """What may happen to an entry."""
-        return self.uses.get(name, Use(0)) | self.any
+        return self.uses.get(name, EntryUse(0)) | self.any
 
 
-_ANYTHING: Final = Use(127)
+_ANYTHING: Final = EntryUse(127)
 
 
 @of_scope
-def uses(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> Use:
+def uses(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> EntryUse:
     """What may happen to an entry of a tree, under whatever names it is passed up and down."""
     if name[:1] == "@":
         return store.ask(_of_root, viewpoint, name[1:])
     view = View(store, viewpoint)
     found = view.ask(below, tree).of(name)
     if port_named(declared_ports(view, tree), name) is not None:
-        found |= Use.GIVEN
+        found |= EntryUse.GIVEN
     running = view.ask(callers, tree)
     if not running or view.ask(is_main, tree):
-        found |= Use.OUTSIDE | view.ask(of_program, name)
+        found |= EntryUse.OUTSIDE | view.ask(of_program, name)
     for caller in running:
         for call in view.ask(handling, caller).calls:
             if call.tree == tree:
                 passed = call.passed(name)
                 if name in call.values:
-                    found |= Use.WRITTEN | Use.CREATED
+                    found |= EntryUse.WRITTEN | EntryUse.CREATED
                 if passed is not None:
                     found |= view.ask(_above, caller, passed)
     return found
@@ -95,14 +95,14 @@ def uses(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> Use:
 def below(store: Store[Workspace], viewpoint: str, tree: str) -> Below:
     """What happens to the entries of a tree in it and in the trees that it runs; anything, if it runs itself."""
     own = store.ask(handling, viewpoint, tree)
-    found: dict[str, Use] = {}
-    anything = Use.OPEN if own.is_open else Use(0)
+    found: dict[str, EntryUse] = {}
+    anything = EntryUse.OPEN if own.is_open else EntryUse(0)
     if own.has_strangers:
-        anything |= Use.STRANGE
+        anything |= EntryUse.STRANGE
     for touch in own.touches:
-        found[touch.name] = found.get(touch.name, Use(0)) | _use(touch)
+        found[touch.name] = found.get(touch.name, EntryUse(0)) | _use(touch)
     for name in own.named:
-        found[name] = found.get(name, Use(0)) | Use.OPEN
+        found[name] = found.get(name, EntryUse(0)) | EntryUse.OPEN
     for call in own.calls:
         called = store.ask(below, viewpoint, call.tree)
         if call.shares:
@@ -110,57 +110,57 @@ def below(store: Store[Workspace], viewpoint: str, tree: str) -> Below:
         for name, use in called.uses.items():
             passed = name if name[:1] == "@" else call.passed(name)
             if passed is not None:
-                found[passed] = found.get(passed, Use(0)) | use
+                found[passed] = found.get(passed, EntryUse(0)) | use
         for port, passed in call.given.items():
             if called.any and port not in called.uses:
-                found[passed] = found.get(passed, Use(0)) | called.any
+                found[passed] = found.get(passed, EntryUse(0)) | called.any
     return Below(found, anything)
 
 
 @on_circle(_ANYTHING)
 @of_scope
-def _above(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> Use:
+def _above(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> EntryUse:
     return uses(store, viewpoint, tree, name)
 
 
 @of_scope
-def _of_root(store: Store[Workspace], viewpoint: str, name: str) -> Use:
+def _of_root(store: Store[Workspace], viewpoint: str, name: str) -> EntryUse:
     """What may happen to an entry of the root blackboard that is named with its `@`."""
     view = View(store, viewpoint)
     trees = [(tree, view.ask(below, tree)) for tree in view.ask(inputs.names, Kind.TREE)]
-    found = [each.uses.get(f"@{name}", Use(0)) | each.any for _, each in trees]
+    found = [each.uses.get(f"@{name}", EntryUse(0)) | each.any for _, each in trees]
     found += [each.of(name) for tree, each in trees if not view.ask(callers, tree)]
-    return reduce(or_, found, Use.OUTSIDE | view.ask(of_program, name))
+    return reduce(or_, found, EntryUse.OUTSIDE | view.ask(of_program, name))
 
 
 @of_scope
-def of_program(store: Store[Workspace], viewpoint: str, name: str) -> Use:
+def of_program(store: Store[Workspace], viewpoint: str, name: str) -> EntryUse:
     """What the program is known to do with an entry of the root blackboard, and trees by its name with `@`."""
     view = View(store, viewpoint)
-    found = view.ask(_with_sign).get(name, Use(0))
+    found = view.ask(_with_sign).get(name, EntryUse(0))
     if ("", name) in view.ask(signal_entries):
-        found |= Use.GIVEN
+        found |= EntryUse.GIVEN
     for entry, direction in view.ask(lookups.outside_entries):
         if entry == name:
-            found |= Use.READ if direction != "output" else Use(0)
-            found |= Use.WRITTEN | Use.CREATED if direction != "input" else Use(0)
+            found |= EntryUse.READ if direction != "output" else EntryUse(0)
+            found |= EntryUse.WRITTEN | EntryUse.CREATED if direction != "input" else EntryUse(0)
     return found
 
 
 @of_scope
-def _with_sign(store: Store[Workspace], viewpoint: str) -> dict[str, Use]:
+def _with_sign(store: Store[Workspace], viewpoint: str) -> dict[str, EntryUse]:
     """The entries of the root blackboard that trees name with its `@`."""
     view = View(store, viewpoint)
-    found: dict[str, Use] = {}
+    found: dict[str, EntryUse] = {}
     for tree in view.ask(inputs.names, Kind.TREE):
         for touch in view.ask(handling, tree).touches:
             if touch.name[:1] == "@":
-                found[touch.name[1:]] = found.get(touch.name[1:], Use(0)) | _use(touch)
+                found[touch.name[1:]] = found.get(touch.name[1:], EntryUse(0)) | _use(touch)
     return found
 
 
-def _use(touch: Touch) -> Use:
-    return Use(Use.READ * touch.reads | Use.WRITTEN * touch.writes | Use.CREATED * touch.creates)
+def _use(touch: Touch) -> EntryUse:
+    return EntryUse(EntryUse.READ * touch.reads | EntryUse.WRITTEN * touch.writes | EntryUse.CREATED * touch.creates)
 
 
 @of_scope
@@ -174,7 +174,7 @@ def writes_alone(store: Store[Workspace], viewpoint: str, tree: str, called: str
     )
 
 
-def calls_of(view: View, tree: str) -> Iterator[tuple[str, Call]]:
+def calls_of(view: View, tree: str) -> Iterator[tuple[str, SubTreeCall]]:
     """The SubTrees that run a tree, each with the tree that it is in."""
     for caller in view.ask(callers, tree):
         yield from ((caller, call) for call in view.ask(handling, caller).calls if call.tree == tree)

@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from btq_lang.checks import lookups
 from btq_lang.checks.view import View
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related, replace_fix
 from btq_lang.syntax.tree import Include, quote
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span, counted
@@ -96,7 +96,7 @@ def include_fix(view: View, path: str) -> Fix:
     """The fix that includes another file, after the existing includes."""
     at, line = include_line(view.ask(lookups.head), view.path, path)
     shown = posixpath.relpath(path, posixpath.dirname(view.path) or ".")
-    return Fix(f"Include `{shown}`", (Change(Place(Span(at, at), view.path), line),))
+    return Fix(f"Include `{shown}`", (FixEdit(Place(Span(at, at), view.path), line),))
 
 
 def include_line(head: tuple[int, str], path: str, other: str) -> tuple[int, str]:

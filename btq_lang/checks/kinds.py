@@ -21,7 +21,7 @@ from btq_lang.checks.missing_ids import missing_id
 from btq_lang.checks.one_parent import TOO_FAR, dedented
 from btq_lang.checks.own_lines import has_bare_label, label_as_child
 from btq_lang.checks.view import COUNTS, SECOND, View, has_names, is_first_tree, misspelt_clause, near_names
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
@@ -335,7 +335,7 @@ def _as_built_in(view: View, seen: ResolvedNode, name: Word, foreign: ForeignNam
     """The fix that writes the built-in, in XML without what it requires: that needs an attribute more."""
     end = (seen.node.label or name).end
     if foreign.attributes and not (seen.node.attributes or view.is_xml):
-        changes = (Change(Place(name.span), foreign.tag), Change(Place(Span(end, end)), f" ({foreign.attributes})"))
+        changes = (FixEdit(Place(name.span), foreign.tag), FixEdit(Place(Span(end, end)), f" ({foreign.attributes})"))
         return Fix(f"Replace it with `{foreign.tag} ({foreign.attributes})`", changes)
     return replace_fix(f"Replace `{name.text}` with `{foreign.tag}`", name.span, foreign.tag)
 
@@ -412,7 +412,7 @@ def _declared(view: View, seen: ResolvedNode, model: str, ports: tuple[LikelyPor
         type_ = f" : {port.type}" if port.type else ""
         lines.append(f"{inside}{port.direction} {written(port.name)}{type_}\n")
     title = f"Declare it{' with its ports' if ports else ''}: `{model}`"
-    return Fix(title, (Change(Place(Span(0, 0)), "".join(lines)),))
+    return Fix(title, (FixEdit(Place(Span(0, 0)), "".join(lines)),))
 
 
 def _category_meant(view: View, seen: ResolvedNode) -> str | None:

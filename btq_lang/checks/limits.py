@@ -13,7 +13,15 @@ from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Place, Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements.budget_parts import port_count, port_seconds
-from btq_lang.requirements.model import Claim, Compare, Read, Requirement, Table, Target, Value
+from btq_lang.requirements.model import (
+    Compare,
+    NodeTarget,
+    Quantity,
+    ResolvedClaim,
+    ResolvedRequirement,
+    ResolvedTable,
+    SignalRead,
+)
 from btq_lang.syntax.tree import Goal
 from btq_lang.syntax.tree import Requirement as WrittenRequirement
 from btq_lang.util.text import Span
@@ -68,9 +76,9 @@ def dead_bound(demanded: Demanded) -> Iterator[Found]:
 
 def outbid_bound(demanded: Demanded) -> Iterator[Found]:
     """A bound without effect, for the same requirement has a tighter one of the same kind for the same node."""
-    kinds: dict[tuple[object, ...], list[tuple[Claim, _Limit, Place]]] = {}
+    kinds: dict[tuple[object, ...], list[tuple[ResolvedClaim, _Limit, Place]]] = {}
     for applied, claim, node, place in demanded.claims:
-        if claim.limit is not None and Table in (type(claim.limit.value), type(claim.limit.upper)):
+        if claim.limit is not None and ResolvedTable in (type(claim.limit.value), type(claim.limit.upper)):
             continue  # each of its values is for another situation
         is_counted = VERBS[claim.verb].operand == "count"
         for limit in [((claim.per,), claim.lowest, claim.highest)] if is_counted else _limits(claim):
@@ -97,10 +105,10 @@ def outbid_bound(demanded: Demanded) -> Iterator[Found]:
                 yield found_at(bound[3], "dead-bound", message, related=related)
 
 
-def goal_beyond_bound(view: View, requirement: Requirement) -> Iterator[Found]:
+def goal_beyond_bound(view: View, requirement: ResolvedRequirement) -> Iterator[Found]:
     """A goal that is worse than what the requirement allows: a run that violates the bound would reach it."""
     goal = requirement.goal
-    if not isinstance(goal, Value) or requirement.place.path != view.path:
+    if not isinstance(goal, Quantity) or requirement.place.path != view.path:
         return
     clause = _goal_clause(view, requirement.name)
     if clause is None:
@@ -125,7 +133,7 @@ def attempts_mismatch(demanded: Demanded) -> Iterator[Found]:
     """`tries at most` and the number of attempts of Retry and Repeat do not match."""
     for _, claim, node, place in demanded.claims:
         most = claim.highest if VERBS[claim.verb].operand == "count" else None
-        loops = _loops(node, claim.per.node) if most is not None and isinstance(claim.per, Target) else []
+        loops = _loops(node, claim.per.node) if most is not None and isinstance(claim.per, NodeTarget) else []
         if most is None or not loops:
             continue
         count = prod(times for _, times in loops)
@@ -167,7 +175,7 @@ def contradicting_bounds(demanded: Demanded) -> Iterator[Found]:
 _Limit = tuple[tuple[object, ...], tuple[float, str] | None, tuple[float, str] | None]
 
 
-def _limits(claim: Claim) -> Iterator[_Limit]:
+def _limits(claim: ResolvedClaim) -> Iterator[_Limit]:
     """What a claim bounds, with its lower and its upper limit."""
     if VERBS[claim.verb].limits:
         # Every value of a table would have to contradict: the most lenient one is compared with the other bound.
@@ -181,9 +189,9 @@ def _limits(claim: Claim) -> Iterator[_Limit]:
 def _compared(verb: str, condition: Compare) -> Iterator[_Limit]:
     pairs = zip(condition.operators, condition.operands, condition.operands[1:], strict=False)
     for operator, left, right in pairs:
-        if isinstance(left, Read) and isinstance(right, Value):
+        if isinstance(left, SignalRead) and isinstance(right, Quantity):
             read, bound = left, right
-        elif isinstance(left, Value) and isinstance(right, Read):
+        elif isinstance(left, Quantity) and isinstance(right, SignalRead):
             read, bound = right, left
             operator = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}.get(operator, operator)
         else:
@@ -223,8 +231,8 @@ def _goal_clause(view: View, name: str) -> Goal | None:
     return next((clause for clause in clauses if isinstance(clause, Goal)), None)
 
 
-def _dimension(claim: Claim) -> Dimension | None:
+def _dimension(claim: ResolvedClaim) -> Dimension | None:
     """The dimension of a claim's limit; None if uncertain."""
     value = claim.limit.value if claim.limit is not None else None
-    value = value.cases[0].value if isinstance(value, Table) else value
-    return value.unit.dimension if isinstance(value, Value) else None
+    value = value.cases[0].value if isinstance(value, ResolvedTable) else value
+    return value.unit.dimension if isinstance(value, Quantity) else None

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from btq_lang.workspace.custom_nodes import LikelyPort
 
 
-class Meaning(Record):
+class VisibleMeaning(Record):
     """All that others see of what a name means.
 
     Attributes:
@@ -90,17 +90,17 @@ def ends_at_once(workspace: Workspace, viewpoint: str, kind: Kind, name: str) ->
 
 
 @of_name
-def meaning(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Meaning | None:
+def meaning(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> VisibleMeaning | None:
     """What a name means."""
     found = workspace.find(viewpoint, kind, name)
     if found is None:
         return None
     target = found.symbol.target
     if isinstance(target, Tree):
-        return Meaning(None, None, target.ports)
+        return VisibleMeaning(None, None, target.ports)
     if isinstance(target, Model):
-        return Meaning(None, target, target.ports)
-    return Meaning(_declaration(workspace, found).owner, target, ())
+        return VisibleMeaning(None, target, target.ports)
+    return VisibleMeaning(_declaration(workspace, found).owner, target, ())
 
 
 @of_name

@@ -16,7 +16,7 @@ from btq_lang.catalog.literals import OLD_ENTRY, check_literal, is_pointer, plai
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.versions import OUTPUT_IN_BRACES
 from btq_lang.checks.engines import is_for_version_4
-from btq_lang.checks.entries import Mention, handling, mentions
+from btq_lang.checks.entries import EntryMention, handling, mentions
 from btq_lang.checks.flow import calls_of
 from btq_lang.checks.pointers import pointed_at
 from btq_lang.checks.view import View, port_of
@@ -148,7 +148,7 @@ def _is_own_name(view: View, name: str) -> bool:
     return any(port is not None and port.content == "value" for port in ports)
 
 
-def _named(view: View, name: str) -> list[Mention]:
+def _named(view: View, name: str) -> list[EntryMention]:
     return [each for each in view.ask(mentions, view.path, view.facts) if each.name == name]
 
 

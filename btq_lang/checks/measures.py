@@ -16,7 +16,7 @@ from btq_lang.workspace.queries import Store, hub
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
-    from btq_lang.requirements.model import Claim
+    from btq_lang.requirements.model import ResolvedClaim
 
 
 @hub
@@ -63,15 +63,15 @@ def requirement_without_subject(view: View) -> Iterator[Diagnostic]:
 
 def _found_in(view: View, name: str) -> Iterator[Diagnostic]:
     from btq_lang.requirements.definitions import requirement  # as above
-    from btq_lang.requirements.model import Span, Total
+    from btq_lang.requirements.model import DurationSum, Interval
     from btq_lang.requirements.nodes import has_nodes
 
     found, _ = view.ask(requirement, name)
     claims = found.claims if found is not None and view.ask(has_nodes) else ()
     is_about_nothing = all(claim.subject is None for claim in claims)
     for claim in claims:
-        if isinstance(claim.subject, Span | Total) and VERBS[claim.verb].limits != "completion":
-            of = "the time from one event to another" if isinstance(claim.subject, Span) else "a sum of durations"
+        if isinstance(claim.subject, Interval | DurationSum) and VERBS[claim.verb].limits != "completion":
+            of = "the time from one event to another" if isinstance(claim.subject, Interval) else "a sum of durations"
             message = f"`{claim.verb}` is about a node, not about {of}, so nothing can check it"
             note = "write `takes` after it, or a node before the verb"
             yield _found(claim, message, note)
@@ -81,7 +81,7 @@ def _found_in(view: View, name: str) -> Iterator[Diagnostic]:
             yield _found(claim, message, note)
 
 
-def _found(claim: Claim, message: str, note: str) -> Diagnostic:
+def _found(claim: ResolvedClaim, message: str, note: str) -> Diagnostic:
     return Diagnostic("requirement-without-subject", claim.place.span, message, notes=(note,))
 
 

@@ -13,7 +13,7 @@ from functools import lru_cache
 
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import callers
-from btq_lang.checks.entries import Mention, blackboards
+from btq_lang.checks.entries import EntryMention, blackboards
 from btq_lang.checks.entries import mentions as mentions_in
 from btq_lang.checks.strings import in_source, moved
 from btq_lang.checks.view import View
@@ -68,7 +68,7 @@ def misspelt_entry(view: View) -> Iterator[Diagnostic]:
         yield from _unquoted_texts(once, view, tree.name.text)
 
 
-def _misspelt_booleans(mentions: Iterable[Mention], view: View, tree: str) -> Iterator[Diagnostic]:
+def _misspelt_booleans(mentions: Iterable[EntryMention], view: View, tree: str) -> Iterator[Diagnostic]:
     """`True` in a script, where it is the name of an entry."""
     for mention in mentions:
         meant = mention.name.lower()
@@ -80,7 +80,7 @@ def _misspelt_booleans(mentions: Iterable[Mention], view: View, tree: str) -> It
             yield Diagnostic("misspelt-entry", mention.span, message, fixes=(fix,))
 
 
-def _unquoted_texts(mentions: Iterable[Mention], view: View, tree: str) -> Iterator[Diagnostic]:
+def _unquoted_texts(mentions: Iterable[EntryMention], view: View, tree: str) -> Iterator[Diagnostic]:
     """`msg := hello`, `state == idle`: an entry that nothing sets, where a text may be meant."""
     from btq_lang.syntax.script.tree import operands  # most files have no script, and it is large
 
@@ -105,7 +105,7 @@ def _may_be_text(name: str) -> bool:
     return name[:1] != "@" and not name.isupper() and name.lower() not in ("true", "false")
 
 
-def _stand_together(mentions: Iterable[Mention], mention: Mention, other: str) -> bool:
+def _stand_together(mentions: Iterable[EntryMention], mention: EntryMention, other: str) -> bool:
     """Whether one node has both entries at its ports, or creates both: then two are meant."""
     other = other.removeprefix("@")
     return any(
@@ -159,7 +159,7 @@ def _is_meant(store: Store[Workspace], viewpoint: str, tree: str, name: str, mea
     return len(uses) == 1 and (is_port or is_mentioned)
 
 
-def _diagnostic(mentions: Iterable[Mention], mention: Mention, meant: str, is_single: bool) -> Diagnostic:
+def _diagnostic(mentions: Iterable[EntryMention], mention: EntryMention, meant: str, is_single: bool) -> Diagnostic:
     """is_single: whether the other name also occurs once, so that it may be the misspelt one."""
     name = mention.name
     other = next((each for each in mentions if each.name == meant), None)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TypeVar
 
-from btq_lang.catalog.changes import Change
+from btq_lang.catalog.changes import BehaviorChange
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2 import DISTRIBUTIONS, FILES
 from btq_lang.catalog.nav2.changes import CHANGES, INSTEAD, RENAMED, RENAMED_PORTS
@@ -56,7 +56,7 @@ def _collects(view: View, seen: ResolvedNode) -> bool:
     return any(entry == name for entry, _ in view.ask(lookups.outside_entries))
 
 
-def changed(view: View, seen: ResolvedNode, name: Word, change: Change) -> Iterator[Diagnostic]:
+def changed(view: View, seen: ResolvedNode, name: Word, change: BehaviorChange) -> Iterator[Diagnostic]:
     """A row about a node, if the value of its port is one that the row concerns."""
     value = seen.node.attribute(change.port) if change.port else None
     if not change.matches(value.text if value is not None else None):

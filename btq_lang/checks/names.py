@@ -11,7 +11,7 @@ from btq_lang.checks import lookups
 from btq_lang.checks.kinds import likely_category
 from btq_lang.checks.missing_ids import missing_id
 from btq_lang.checks.view import View
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Include, Model, Models, Tree, Verbatim, Word, is_name, models_in, written
 from btq_lang.util.record import replace
@@ -153,7 +153,7 @@ def _renamed(view: View, name: Word) -> tuple[Fix, ...]:
     while legal in taken:
         legal += "_"
     places = (declaration.place, *view.ask(lookups.uses_of_tree, name.text))
-    changes = tuple(Change(place, written(legal)) for place in places)
+    changes = tuple(FixEdit(place, written(legal)) for place in places)
     return (Fix(f"Rename it to `{legal}` everywhere", changes),)
 
 

@@ -7,7 +7,7 @@ from typing import Final
 
 from btq_lang.catalog.kinds import CHILDREN
 from btq_lang.checks.view import View
-from btq_lang.diagnostics.model import Change, Fix, Place
+from btq_lang.diagnostics.model import Fix, FixEdit, Place
 from btq_lang.lexer import tokens
 from btq_lang.syntax.scan import line_start
 from btq_lang.syntax.tree import Node, Verbatim
@@ -20,7 +20,7 @@ def sequence_above(view: View, children: Sequence[Node | Verbatim]) -> tuple[Fix
     margin, step, starts = _lines(view, children)
     if not starts:
         return ()
-    above = Change(Place(Span(starts[0], starts[0])), f"{margin}->\n{step}")
+    above = FixEdit(Place(Span(starts[0], starts[0])), f"{margin}->\n{step}")
     return (Fix("Put them below a Sequence `->`", (above, *_indented(starts[1:], step))),)
 
 
@@ -43,13 +43,13 @@ def dedented(view: View, seen: ResolvedNode, children: Sequence[Node | Verbatim]
     outer = view.text[line_start(view.text, 0, seen.node.start) : seen.node.start]
     if not margin.startswith(outer) or not all(view.text.startswith(margin, start) for start in starts):
         return ()
-    changes = [Change(Place(Span(start + len(outer), start + len(margin))), "") for start in starts]
+    changes = [FixEdit(Place(Span(start + len(outer), start + len(margin))), "") for start in starts]
     title = f"Dedent {'it' if len(children) == 1 else 'them'} to the level of `{seen.node.head.text}`"
     return (Fix(title, tuple(changes)),) if changes else ()
 
 
-def _indented(starts: Sequence[int], step: str) -> list[Change]:
-    return [Change(Place(Span(start, start)), step) for start in starts]
+def _indented(starts: Sequence[int], step: str) -> list[FixEdit]:
+    return [FixEdit(Place(Span(start, start)), step) for start in starts]
 
 
 def _lines(view: View, children: Sequence[Node | Verbatim]) -> tuple[str, str, list[int]]:

@@ -12,7 +12,7 @@ from itertools import pairwise
 from btq_lang.btcpp.exact_edits import exact_edits
 from btq_lang.checks.engines import is_for_version_4
 from btq_lang.checks.suppressions import is_silenced_in_xml
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related
+from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related
 from btq_lang.util.record import replace
 from btq_lang.util.text import Edit, Span
 from btq_lang.workspace.workspace import Workspace
@@ -49,14 +49,14 @@ def _placed(workspace: Workspace, path: str, fix: Fix) -> Fix | None:
 
     Fixes are safe for version 4 of the engine, so not in XML that may be for version 3.
     """
-    changes: list[Change] = []
+    changes: list[FixEdit] = []
     is_safe = fix.safe
     for change in fix.changes:
         file = workspace.files[change.place.path or path]
         if file.origin is None:
             changes.append(change)
         elif edits := exact_edits(file, Edit(change.place.span, change.text)):
-            changes += [Change(Place(edit.span, change.place.path), edit.text) for edit in edits]
+            changes += [FixEdit(Place(edit.span, change.place.path), edit.text) for edit in edits]
             is_safe = is_safe and workspace.store.ask(is_for_version_4, change.place.path or path)
         else:
             return None

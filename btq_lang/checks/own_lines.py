@@ -13,7 +13,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import lookup
 from btq_lang.checks import lookups
 from btq_lang.checks.view import View
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place
+from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place
 from btq_lang.grammar.cursor import QUOTES
 from btq_lang.grammar.nodes import CHILD
 from btq_lang.syntax.scan import line_end, line_start
@@ -39,7 +39,7 @@ def label_as_child(view: View, seen: ResolvedNode, tag: str = "") -> tuple[tuple
     fixes = () if has_own_ports or node.clauses else _on_lines(view, node, (node.label.start,))
     if tag:
         title = f"Write `{tag}`, and `{node.label.raw}` on a line of its own"
-        fixes = tuple([Fix(title, (Change(Place(node.head.span), tag), *fix.changes)) for fix in fixes])
+        fixes = tuple([Fix(title, (FixEdit(Place(node.head.span), tag), *fix.changes)) for fix in fixes])
     return notes, fixes
 
 
@@ -91,7 +91,7 @@ def _on_lines(view: View, node: Node, starts: Sequence[int]) -> tuple[Fix, ...]:
     margin = text[line : node.start]
     step = "\t" if margin.startswith("\t") else "    "
     gaps = [Span(line + len(text[line:start].rstrip(" \t,")), start) for start in starts]
-    changes = [Change(Place(gap), f"\n{margin}{step}") for gap in gaps]
+    changes = [FixEdit(Place(gap), f"\n{margin}{step}") for gap in gaps]
     title = "Put it on a line of its own" if len(starts) == 1 else "Put them on lines of their own"
     return () if margin.strip() else (Fix(title, tuple(changes)),)
 

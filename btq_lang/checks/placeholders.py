@@ -11,7 +11,7 @@ from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, lookup, spellings
 from btq_lang.checks import lookups
 from btq_lang.checks.view import View, has_names
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
@@ -54,11 +54,11 @@ def _is_script(view: View, name: str) -> bool:
     """Whether a name can only be meant as code: `speed := 0.5`, `battery > 20`."""
     if _OPERATOR.search(name) is None:
         return False
-    from btq_lang.syntax.script.tree import Assign, Binary, Comparison  # few files need it
+    from btq_lang.syntax.script.tree import Assign, ScriptBinary, ScriptComparison  # few files need it
 
     script = view.script(name)
     ends = (script.statements[-1],) if script.complete and script.statements and not script.problems else ()
-    return any(isinstance(end, Assign | Comparison | Binary) for end in ends)
+    return any(isinstance(end, Assign | ScriptComparison | ScriptBinary) for end in ends)
 
 
 def _code_as_name(node: Node, kind: Word, name: Word) -> Diagnostic:
@@ -167,29 +167,29 @@ def _looks_like_builtin(name: str) -> bool:
     return bool(near(name, (spelling for kind in BUILTINS.values() for spelling in spellings(kind))))
 
 
-def _replace_head(text: str, node: Node, head: str) -> tuple[Change, ...] | None:
+def _replace_head(text: str, node: Node, head: str) -> tuple[FixEdit, ...] | None:
     """The changes that put `head` in place of the kind and the name."""
     assert node.kind is not None, "a placeholder has a kind"
     names = [pair for pair in node.attributes if pair.key.text == "name"]
     if node.label is not None:
         if names or text[node.kind.end : node.label.start].strip(_BLANKS):
             return None
-        return (Change(Place(Span(node.kind.start, node.label.end)), head),)
+        return (FixEdit(Place(Span(node.kind.start, node.label.end)), head),)
     if len(names) != 1 or names[0] is not node.attributes[0]:
         return None
     return _without_name(text, node.kind, names[0], head)
 
 
-def _without_name(text: str, kind: Word, name: Pair, head: str) -> tuple[Change, ...] | None:
+def _without_name(text: str, kind: Word, name: Pair, head: str) -> tuple[FixEdit, ...] | None:
     """The changes that replace the kind and remove the name from the brackets, where it comes first; empty brackets go
     too."""
     before, after = text[kind.end : name.span.start], re.compile(_AFTER_NAME).match(text, name.span.end)
     if before.strip() != "(" or after is None:
         return None
     if after["closing"]:
-        return (Change(Place(Span(kind.start, after.end())), head),)
+        return (FixEdit(Place(Span(kind.start, after.end())), head),)
     start, end = name.span.start, after.end()
     above, line_end = before.rstrip(_BLANKS), LINE_END.match(text, end)
     if line_end is not None and above.endswith(("\r", "\n")):
         start, end = kind.end + len(above), line_end.end()  # the name has a line of its own
-    return Change(Place(kind.span), head), Change(Place(Span(start, end)), "")
+    return FixEdit(Place(kind.span), head), FixEdit(Place(Span(start, end)), "")

@@ -20,7 +20,7 @@ from btq_lang.checks import lookups
 from btq_lang.checks.kinds import model_related, way_in
 from btq_lang.checks.own_nodes import OWN, WHY, may_be_own
 from btq_lang.checks.view import View, ports_beside
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix, write_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related, replace_fix, write_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tokens import NUMBER, QUANTITY
 from btq_lang.syntax.tree import Include, Meta, Node, Pair, Port, Root, Tree, Word, models_in, quote, written
@@ -174,15 +174,15 @@ def _wished(view: View, pair: Pair, value: Word) -> Diagnostic:
     """An attribute that no version has, with the one that does what it says."""
     key, is_negated = pair.key.text, _WISHED[pair.key.text.casefold()]
     script = f"!({value.text})" if is_negated else value.text
-    changes = [Change(Place(pair.key.span), "_skipIf")]
+    changes = [FixEdit(Place(pair.key.span), "_skipIf")]
     inner = Span(value.start + 1, value.end - 1)
     if is_negated and not value.quoted:
-        changes.append(Change(Place(value.span), written(script)))
+        changes.append(FixEdit(Place(value.span), written(script)))
     elif is_negated and _REFERRED.search(value.text[1:-1]):  # XML spells it in pieces: change the first and the last
-        changes.append(Change(Place(Span(inner.start, inner.start + 1)), f"!({value.text[0]}"))
-        changes.append(Change(Place(Span(inner.end - 1, inner.end)), f"{value.text[-1]})"))
+        changes.append(FixEdit(Place(Span(inner.start, inner.start + 1)), f"!({value.text[0]}"))
+        changes.append(FixEdit(Place(Span(inner.end - 1, inner.end)), f"{value.text[-1]})"))
     elif is_negated:
-        changes.append(Change(Place(inner), script))
+        changes.append(FixEdit(Place(inner), script))
     fix = Fix(f'Write `_skipIf="{script}"`', tuple(changes))
     message = f"no version of the engine has `{key}`, and it ignores it silently; did you mean `_skipIf`?"
     return Diagnostic("unknown-attribute", pair.key.span, message, notes=(f'write `_skipIf="{script}"`',), fixes=(fix,))
@@ -407,7 +407,7 @@ def _renamings(
             amount = f"{value.raw} {unit.symbol}"
             if view.is_xml:
                 amount = f"{convert(float(value.raw), unit, of_port):g}"
-            changes = (Change(Place(key.span), written(name)), Change(Place(value.span), amount))
+            changes = (FixEdit(Place(key.span), written(name)), FixEdit(Place(value.span), amount))
             fixes.append(Fix(f"Write `{name} = {amount}`", changes))
     return tuple(fixes)
 
@@ -440,7 +440,7 @@ def _assigned(
         return None  # perhaps a script itself
     script = f"{key.text} := {value.text.strip('{}')}"
     written_value = script if view.is_xml else quote(script)
-    changes = (Change(Place(key.span), port.name), Change(Place(value.span), written_value))
+    changes = (FixEdit(Place(key.span), port.name), FixEdit(Place(value.span), written_value))
     shown = f'{port.name} = "{script}"'
     return (shown,), (Fix(f"Write `{shown}`", changes),)
 

@@ -17,7 +17,7 @@ from btq_lang.checks.view import View, declared_ports
 from btq_lang.checks.writers import all_entries, isolated, key_of
 from btq_lang.diagnostics.model import Related
 from btq_lang.requirements import nodes
-from btq_lang.requirements.model import Claim, Requirement, Signal, signals_in
+from btq_lang.requirements.model import ResolvedClaim, ResolvedRequirement, ResolvedSignal, signals_in
 from btq_lang.util.reach import reached
 from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts
@@ -54,7 +54,7 @@ def guard_never_renewed(demanded: Demanded) -> Iterator[Found]:
         yield found_at(shown, "guard-never-renewed", message, related=related, notes=notes)
 
 
-def _watched(requirement: Requirement, claim: Claim) -> Iterable[Signal]:
+def _watched(requirement: ResolvedRequirement, claim: ResolvedClaim) -> Iterable[ResolvedSignal]:
     """The signals that are read again after the node has started; empty if unknown."""
     if requirement.classic:
         return ()

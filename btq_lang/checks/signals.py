@@ -12,7 +12,7 @@ from btq_lang.checks.writers import all_entries, isolated, written_keys
 from btq_lang.diagnostics.model import Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements import reader
-from btq_lang.requirements.model import Signal
+from btq_lang.requirements.model import ResolvedSignal
 from btq_lang.requirements.nodes import has_nodes, mission
 from btq_lang.util.spelling import near
 from btq_lang.workspace import inputs
@@ -40,7 +40,7 @@ def of_signals(view: View, guards: Sequence[Guard]) -> Iterator[Found]:
 
 def guards(demanded: Demanded) -> Iterator[Guard]:
     """The signals and the entries that the engine reads to enforce a claim, each once, and where to report it."""
-    known: dict[tuple[int, ...], tuple[tuple[Signal, ...], tuple[str, ...]]] = {}
+    known: dict[tuple[int, ...], tuple[tuple[ResolvedSignal, ...], tuple[str, ...]]] = {}
     for applied, claim, _, place in demanded.claims:
         if claim.verb not in _READING or not applied.requirement.is_enforceable:
             continue
@@ -55,7 +55,7 @@ def guards(demanded: Demanded) -> Iterator[Guard]:
         yield *known[key], place
 
 
-def _never_written(view: View, here: list[Signal], guards: Sequence[Guard]) -> Iterator[Found]:
+def _never_written(view: View, here: list[ResolvedSignal], guards: Sequence[Guard]) -> Iterator[Found]:
     """A signal whose blackboard entry no port and no script of the mission writes, if another entry has nearly the same
     name, or if a guard reads it; the robot's program may write it, so then it is a hint.  A guard reads the root
     blackboard, so what a tree writes into its own is another entry."""
@@ -90,7 +90,7 @@ def _near_keys(store: Store[Workspace], viewpoint: str, key: str) -> tuple[str, 
     return near(key, store.ask(written_keys, viewpoint))
 
 
-def _of_text(view: View, here: list[Signal]) -> Iterator[Found]:
+def _of_text(view: View, here: list[ResolvedSignal]) -> Iterator[Found]:
     """A numeric signal whose entry a text port writes: a script that compares it converts the text, and throws if it is
     not a number."""
     main = view.ask(mission)
@@ -114,7 +114,7 @@ def _of_text(view: View, here: list[Signal]) -> Iterator[Found]:
 def _may_be_unset(view: View, guards: Iterable[Guard]) -> Iterator[Found]:
     """A guard on a signal without a first value, or of a classic description on an entry that nothing writes: until
     something writes it, the engine ends the mission."""
-    reported: dict[str, tuple[Signal, list[Related]]] = {}
+    reported: dict[str, tuple[ResolvedSignal, list[Related]]] = {}
     for read, entries, place in guards:
         for entry in entries:
             if (

@@ -6,7 +6,7 @@ escape or a line end of two characters being one piece.
 
 from __future__ import annotations
 
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, relocated
+from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, relocated
 from btq_lang.syntax.tree import Word, quote
 from btq_lang.util.record import replace
 from btq_lang.util.text import Edit, Span, apply_edits
@@ -32,15 +32,15 @@ def moved(diagnostic: Diagnostic, word: Word) -> Diagnostic:
     return replace(placed, fixes=fixes)
 
 
-def _changes(changes: tuple[Change, ...], word: Word) -> tuple[Change, ...]:
+def _changes(changes: tuple[FixEdit, ...], word: Word) -> tuple[FixEdit, ...]:
     """In a STRING each change in its place; another value needs quotes once it changes."""
     if word.quoted:
         sign = word.raw[0]
         return tuple(
-            Change(Place(in_source(word, change.place.span)), _escaped(change.text, sign)) for change in changes
+            FixEdit(Place(in_source(word, change.place.span)), _escaped(change.text, sign)) for change in changes
         )
     text = apply_edits(word.text, (Edit(change.place.span, change.text) for change in changes))
-    return (Change(Place(word.span), quote(text)),)
+    return (FixEdit(Place(word.span), quote(text)),)
 
 
 def _escaped(text: str, sign: str) -> str:

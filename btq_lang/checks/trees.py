@@ -11,11 +11,11 @@ from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.catalog.versions import DEEP_TREES
 from btq_lang.checks import calls, lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
-from btq_lang.checks.lookups import Meaning
+from btq_lang.checks.lookups import VisibleMeaning
 from btq_lang.checks.missing_ids import missing_id
 from btq_lang.checks.one_parent import below, sequence_above
 from btq_lang.checks.view import View, is_first_tree, near_names
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related, Tag, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.nodes import OF_ITS_OWN
 from btq_lang.syntax.tree import Model, Node, Tree, written
@@ -294,10 +294,10 @@ def _main_tree_fix(view: View, name: str) -> Fix:
     text = f"{margin}Root {written(name)}\n"
     if (root := view.ask(lookups.root)) is not None:
         at, text = root, f" {written(name)}"
-    return Fix(f"Make `{name}` the main tree", (Change(Place(Span(at, at), view.path), text),))
+    return Fix(f"Make `{name}` the main tree", (FixEdit(Place(Span(at, at), view.path), text),))
 
 
-def _is_subtree_model(meaning: Meaning) -> bool:
+def _is_subtree_model(meaning: VisibleMeaning) -> bool:
     return isinstance(meaning.target, Model) and meaning.target.category.raw == "SubTree"
 
 

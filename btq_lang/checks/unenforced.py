@@ -11,7 +11,7 @@ from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements.attach import claimed_of_no_tree, uses_of_nodes
-from btq_lang.requirements.model import Applied, Claim, Target
+from btq_lang.requirements.model import Applied, NodeTarget, ResolvedClaim
 from btq_lang.workspace import inputs
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode
@@ -63,7 +63,7 @@ def _found(
 
 
 def _is_reported_otherwise(
-    demanded: Demanded, applied: Applied, claim: Claim, node: ResolvedNode, place: Place
+    demanded: Demanded, applied: Applied, claim: ResolvedClaim, node: ResolvedNode, place: Place
 ) -> bool:
     """Whether a rule of its own reports why the engine does not enforce it."""
     if claim.signal is not None:
@@ -74,15 +74,15 @@ def _is_reported_otherwise(
     return most is not None and (most[0] < 0.001 or not demanded.budgets.composed(node).waits)
 
 
-def _nodes(claim: Claim, node: ResolvedNode) -> Iterator[ResolvedNode]:
+def _nodes(claim: ResolvedClaim, node: ResolvedNode) -> Iterator[ResolvedNode]:
     """The nodes that get a wrapper."""
     yield node
     for other in (claim.per, claim.event.subject if claim.event is not None else None):
-        if isinstance(other, Target):
+        if isinstance(other, NodeTarget):
             yield other.node
 
 
-def _is_built(demanded: Demanded, applied: Applied, claim: Claim, node: ResolvedNode) -> bool:
+def _is_built(demanded: Demanded, applied: Applied, claim: ResolvedClaim, node: ResolvedNode) -> bool:
     """Whether the wrapper is written: in this file, or because the node's own file attaches the requirement."""
     if node.path == demanded.view.path:
         return True

@@ -14,8 +14,8 @@ from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import callers, is_missed
-from btq_lang.checks.entries import Mention, handling, mentions
-from btq_lang.checks.flow import Use, calls_of, of_program, uses, writes_alone
+from btq_lang.checks.entries import EntryMention, handling, mentions
+from btq_lang.checks.flow import EntryUse, calls_of, of_program, uses, writes_alone
 from btq_lang.checks.meant_entries import meant_entry
 from btq_lang.checks.misspelt import misspelt_entry
 from btq_lang.checks.ports import adding_fix
@@ -46,12 +46,12 @@ def unset_entry(view: View) -> Iterator[Diagnostic]:
     yield from _found(view, name.text, named, told) if told else found
 
 
-def _found(view: View, tree: str, named: Sequence[Mention], but: set[str]) -> list[Diagnostic]:
+def _found(view: View, tree: str, named: Sequence[EntryMention], but: set[str]) -> list[Diagnostic]:
     """What is wrong with entries, except some."""
     return [*_uncreated(view, tree, named, but), *_unset(view, tree, named, but)]
 
 
-def _told(view: View, named: Sequence[Mention]) -> set[str]:
+def _told(view: View, named: Sequence[EntryMention]) -> set[str]:
     """The entries of which another rule tells what is wrong: they are misspelt, or in a script that is."""
     spans: list[Span] = []
     for each in chain(misspelt_entry(view), meant_entry(view)):
@@ -61,16 +61,16 @@ def _told(view: View, named: Sequence[Mention]) -> set[str]:
     return {each.name for each in named if any(span.touches(each.span) for span in spans)}
 
 
-def _uncreated(view: View, tree: str, named: Sequence[Mention], but: set[str]) -> Iterator[Diagnostic]:
+def _uncreated(view: View, tree: str, named: Sequence[EntryMention], but: set[str]) -> Iterator[Diagnostic]:
     """The first assignment to each entry that nothing creates."""
     created = {each.name for each in named if each.creates} | but
     for name, mention in _first([each for each in named if each.in_script and each.writes], created).items():
         use = view.ask(uses, tree, name)
-        if use & (Use.CREATED | Use.GIVEN | Use.OPEN):
+        if use & (EntryUse.CREATED | EntryUse.GIVEN | EntryUse.OPEN):
             continue
-        if use & Use.OUTSIDE and next(each for each in named if each.name == name) is not mention:
+        if use & EntryUse.OUTSIDE and next(each for each in named if each.name == name) is not mention:
             continue  # programs set what scripts read first
-        is_certain = not use & Use.STRANGE and (not use & Use.OUTSIDE or _is_known_root(view, tree))
+        is_certain = not use & EntryUse.STRANGE and (not use & EntryUse.OUTSIDE or _is_known_root(view, tree))
         message = f"a script assigns to `{name}`, which nothing creates"
         creating, fixes = _creating(view, mention)
         notes = (f"the engine throws when it runs the script; {creating}",)
@@ -78,7 +78,7 @@ def _uncreated(view: View, tree: str, named: Sequence[Mention], but: set[str]) -
         yield Diagnostic("uncreated-entry", mention.span, message, notes=notes, fixes=fixes, severity=severity)
 
 
-def _creating(view: View, mention: Mention) -> tuple[str, tuple[Fix, ...]]:
+def _creating(view: View, mention: EntryMention) -> tuple[str, tuple[Fix, ...]]:
     """How an entry is created that a script assigns to, and the fix if that is done with another sign."""
     from btq_lang.syntax.script.tree import Assign  # few scripts assign to what nothing creates
 
@@ -97,27 +97,27 @@ def _creating(view: View, mention: Mention) -> tuple[str, tuple[Fix, ...]]:
     return f"create the entry before: `{mention.name} := …`", ()
 
 
-def _unset(view: View, tree: str, named: Sequence[Mention], but: set[str]) -> Iterator[Diagnostic]:
+def _unset(view: View, tree: str, named: Sequence[EntryMention], but: set[str]) -> Iterator[Diagnostic]:
     """The first reading of each entry that nothing writes."""
-    outside: list[Mention] = []
+    outside: list[EntryMention] = []
     for name, mention in _first([each for each in named if _reads(each)], but).items():
-        use = view.ask(uses, tree, name) if name.isidentifier() else Use.OPEN
-        if use & (Use.GIVEN | Use.OPEN):
+        use = view.ask(uses, tree, name) if name.isidentifier() else EntryUse.OPEN
+        if use & (EntryUse.GIVEN | EntryUse.OPEN):
             continue
-        if use & Use.WRITTEN:
+        if use & EntryUse.WRITTEN:
             if not view.ask(callers, tree) and view.ask(_is_before_all, tree, name):
                 outside.append(mention)
             continue
-        if not use & Use.READ:
+        if not use & EntryUse.READ:
             continue  # trees get it that do not read it
         writers = [seen for seen in view.seen.subtrees if seen.id and view.ask(writes_alone, tree, seen.id.text, name)]
         if writers:
             yield _lost(view, mention, writers, use)
-        elif use & Use.OUTSIDE:
+        elif use & EntryUse.OUTSIDE:
             is_usual = mention.in_script and not view.ask(lookups.outside_entries)  # programs set what scripts read
-            if not (use & Use.STRANGE or is_usual or view.ask(_is_passed, tree, name)):
+            if not (use & EntryUse.STRANGE or is_usual or view.ask(_is_passed, tree, name)):
                 outside.append(mention)
-        elif not use & Use.STRANGE and view.ask(_needs, tree, name):
+        elif not use & EntryUse.STRANGE and view.ask(_needs, tree, name):
             yield _not_given(view, tree, mention)
     of_program = view.ask(lookups.set_in_cpp)
     outside = [each for each in outside if each.name not in of_program and view.ask(_needs, tree, each.name)]
@@ -125,18 +125,18 @@ def _unset(view: View, tree: str, named: Sequence[Mention], but: set[str]) -> It
         yield from _never_set(view, outside)
 
 
-def _lost(view: View, mention: Mention, writers: Sequence[ResolvedNode], use: Use) -> Diagnostic:
+def _lost(view: View, mention: EntryMention, writers: Sequence[ResolvedNode], use: EntryUse) -> Diagnostic:
     """An entry that SubTrees write for themselves."""
     name, seen = mention.name, writers[0]
     assert seen.id is not None, "its tree is known"
     message = f"nothing writes `{name}`, which is read here: `{seen.id.text}` writes an entry of its own"
     related = (Related(Place(seen.node.head.span), f"does not pass on `{name}`"),)
     fixes = adding_fix(view, seen.node, f"Pass on `{name}`", f"{written(name)} = {{{name}}}")
-    severity = Severity.HINT if use & Use.STRANGE else None
+    severity = Severity.HINT if use & EntryUse.STRANGE else None
     return Diagnostic("unset-entry", mention.span, message, related, fixes=fixes, severity=severity)
 
 
-def _not_given(view: View, tree: str, mention: Mention) -> Diagnostic:
+def _not_given(view: View, tree: str, mention: EntryMention) -> Diagnostic:
     """An entry of a tree that is run without it."""
     name = mention.name
     message = f"nothing in `{tree}` writes `{name}`, which is read here, and no SubTree passes it"
@@ -150,7 +150,7 @@ def _runs_without(store: Store[Workspace], viewpoint: str, tree: str, name: str)
     return view.declared_at(Kind.TREE, caller, f"runs `{tree}`") if caller is not None else ()
 
 
-def _never_set(view: View, named: Sequence[Mention]) -> Iterator[Diagnostic]:
+def _never_set(view: View, named: Sequence[EntryMention]) -> Iterator[Diagnostic]:
     """Entries of the root blackboard: a warning each if it is known what the program sets; else a hint for all."""
     if view.ask(lookups.outside_entries):
         for each in named:
@@ -170,7 +170,7 @@ def _never_set(view: View, named: Sequence[Mention]) -> Iterator[Diagnostic]:
     yield Diagnostic("unset-entry", named[0].span, message, related, notes, severity=Severity.HINT)
 
 
-def _not_written(view: View, named: Sequence[Mention]) -> Iterator[str]:
+def _not_written(view: View, named: Sequence[EntryMention]) -> Iterator[str]:
     """What in the tree was probably meant to write the entries: one with a similar name, or an input."""
     of_tree = view.ask(mentions, view.path, view.facts)
     read = {each.name for each in of_tree if each.reads or each.node.is_subtree}
@@ -185,7 +185,7 @@ def _not_written(view: View, named: Sequence[Mention]) -> Iterator[str]:
             yield f"if `{each.node.node.head.text}` writes `{each.name}`, its model declares `{port}` as an output"
 
 
-def _reads(mention: Mention) -> bool:
+def _reads(mention: EntryMention) -> bool:
     """Whether a mention only reads an entry, or passes it on to a tree that may."""
     return (mention.reads and not mention.writes) or mention.node.is_subtree
 
@@ -204,7 +204,7 @@ def _needs(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> boo
     return any(view.ask(_needs, *each) for each in sorted(below))
 
 
-def _is_needed(view: View, mention: Mention) -> bool:
+def _is_needed(view: View, mention: EntryMention) -> bool:
     """Whether a node cannot do without the value of an entry."""
     if mention.in_script or mention.node.kind is not None:
         return True
@@ -217,9 +217,9 @@ def _is_needed(view: View, mention: Mention) -> bool:
     return any(port is not None and port.required for port in ports)
 
 
-def _first(named: Sequence[Mention], but: set[str]) -> dict[str, Mention]:
+def _first(named: Sequence[EntryMention], but: set[str]) -> dict[str, EntryMention]:
     """The first mention of each name."""
-    found: dict[str, Mention] = {}
+    found: dict[str, EntryMention] = {}
     for each in named:
         if each.name not in but:
             found.setdefault(each.name, each)
@@ -230,7 +230,7 @@ def _is_before_all(store: Store[Workspace], viewpoint: str, tree: str, name: str
     """Whether a tree reads an entry of the root blackboard before it writes it: at an earlier child of one Sequence."""
     view = View(store, viewpoint)
     found = view.ask(inputs.definition, Kind.TREE, tree)
-    if found is None or view.ask(of_program, name) & Use.WRITTEN:
+    if found is None or view.ask(of_program, name) & EntryUse.WRITTEN:
         return False
     named = [each for each in view.ask(mentions, *found) if each.name == name]
     own = view.ask(handling, tree)

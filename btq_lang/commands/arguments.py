@@ -23,12 +23,12 @@ SEVERITIES = ("error", "warning", "info", "hint")
 
 
 @cache
-def build_parser() -> Parser:
+def build_parser() -> SuggestingParser:
     """The parser of the command line, from which shell completion and documentation are generated, too.
 
     Its result has the command's name as `command` and the command's own parser as `parser`.
     """
-    parser = Parser(
+    parser = SuggestingParser(
         prog="btq",
         description="Quality-aware behavior trees for BehaviorTree.CPP: check, build and understand .btq files.",
         epilog="exit codes: 0 clean, 1 findings, 2 usage or I/O\n\nstart here: btq init my-robot && btq check my-robot",
@@ -49,7 +49,7 @@ def build_parser() -> Parser:
     return parser
 
 
-class Parser(ArgumentParser):
+class SuggestingParser(ArgumentParser):
     """A parser that suggests what an invalid choice was probably meant to be, as argparse does since Python 3.14."""
 
     add = ArgumentParser.add_argument
@@ -77,7 +77,7 @@ class Parser(ArgumentParser):
         super().error(message)
 
 
-_Adder: TypeAlias = "Callable[[Parser], None]"
+_Adder: TypeAlias = "Callable[[SuggestingParser], None]"
 _COMMANDS: Final[list[tuple[str, str, str | None, _Adder]]] = []  # name, help, epilog, and what adds the options
 
 
@@ -91,7 +91,7 @@ def _command(name: str, help: str, epilog: str | None = None) -> Callable[[_Adde
     return register
 
 
-def _add_paths(parser: Parser) -> None:
+def _add_paths(parser: SuggestingParser) -> None:
     parser.add(
         "paths", nargs="*", default=["."], metavar="PATH", help="files and folders, `-` for standard input; default: ."
     )
@@ -107,7 +107,7 @@ def _add_paths(parser: Parser) -> None:
     "  btq check --fix mission.btq        and apply the safe fixes\n"
     "  btq check --statistics             which rules have most findings\n",
 )
-def _add_check(parser: Parser) -> None:
+def _add_check(parser: SuggestingParser) -> None:
     _add_paths(parser)
     parser.add(
         "--output-format", choices=FORMATS, help="default: full; on GitHub github, on GitLab with --output-file gitlab"
@@ -173,7 +173,7 @@ def _add_check(parser: Parser) -> None:
     "  btq format --check           in CI: is everything formatted?\n"
     "  btq format - < mission.btq   to standard output\n",
 )
-def _add_format(parser: Parser) -> None:
+def _add_format(parser: SuggestingParser) -> None:
     _add_paths(parser)
     parser.flag("--check", "write nothing; exit 1 if a file would change")
     parser.flag("--diff", "write nothing, show the changes; exit 1 if there are any")
@@ -189,7 +189,7 @@ def _add_format(parser: Parser) -> None:
     "  btq build missions -o install      below another folder\n"
     "  btq build --check                  in CI: does the XML match the missions?\n",
 )
-def _add_build(parser: Parser) -> None:
+def _add_build(parser: SuggestingParser) -> None:
     from btq_lang.catalog.versions import targets  # of the catalog, which not every reader of this module needs
 
     _add_paths(parser)
@@ -206,7 +206,7 @@ def _add_build(parser: Parser) -> None:
     _add_color(parser)
 
 
-def _add_folder(parser: Parser, metavar: str, help: str) -> None:
+def _add_folder(parser: SuggestingParser, metavar: str, help: str) -> None:
     def folder(path: str) -> str:
         if path == "-":
             raise ArgumentTypeError("expected a folder; input from `-` goes to standard output")
@@ -226,7 +226,7 @@ def _add_folder(parser: Parser, metavar: str, help: str) -> None:
     "  btq import - < mission.xml      to standard output\n"
     "  btq import run.btlog            the tree that ran\n",
 )
-def _add_import(parser: Parser) -> None:
+def _add_import(parser: SuggestingParser) -> None:
     parser.add("files", nargs="+", metavar="FILE", help="XML files and logs, `-` for XML on standard input")
     _add_folder(parser, "DIR", "the folder to write into; default: that of each file")
     parser.flag("--keep-v3", "keep the syntax of files for version 3 of the engine")
@@ -245,7 +245,7 @@ def _add_import(parser: Parser) -> None:
     "  btq trace --format markdown             for a pull request\n"
     "  btq trace --evidence verdicts.json      with the verdicts that btq verify wrote\n",
 )
-def _add_trace(parser: Parser) -> None:
+def _add_trace(parser: SuggestingParser) -> None:
     _add_paths(parser)
     _add_evidence(parser, _OF_PROJECT)
     parser.flag("--bundle", "what is enforced in builds with --bundle")
@@ -270,7 +270,7 @@ def _add_trace(parser: Parser) -> None:
     "  btq verify --store evidence --by label             the verdicts of all that is kept\n"
     "  btq verify --live tcp://127.0.0.1:1667             a running robot, until Ctrl+C\n",
 )
-def _add_verify(parser: Parser) -> None:
+def _add_verify(parser: SuggestingParser) -> None:
     parser.add(
         "logs",
         nargs="*",
@@ -352,7 +352,7 @@ def _add_verify(parser: Parser) -> None:
     "  btq compare logs/v1.3 logs/v1.4               two folders of logs, without a store\n"
     "  btq compare evidence v1.3 v1.4 -o report.md   for a pull request\n",
 )
-def _add_compare(parser: Parser) -> None:
+def _add_compare(parser: SuggestingParser) -> None:
     # Two names alone are `store` and `before`: if `store` were the optional one, `STORE --by robot A B` would fail.
     parser.usage = (
         "btq compare [-h] [STORE] A B [--by {label,robot}] [--label LABEL] [--at-least PERCENT]\n"
@@ -383,7 +383,7 @@ def _add_compare(parser: Parser) -> None:
     "  btq report evidence --by label -o report.html     without the robots\n"
     "  btq report evidence --sides v1.3 v1.5 -o report.html\n",
 )
-def _add_report(parser: Parser) -> None:
+def _add_report(parser: SuggestingParser) -> None:
     parser.add("store", nargs="?", metavar="STORE", help=_STORE)
     parser.add(
         "--by",
@@ -405,7 +405,7 @@ def _add_report(parser: Parser) -> None:
     "  btq graph mission.btq --format mermaid             for pull requests\n"
     "  btq graph mission.btq --evidence logs/ -o now.svg  with what logs show of each requirement\n",
 )
-def _add_graph(parser: Parser) -> None:
+def _add_graph(parser: SuggestingParser) -> None:
     parser.add("paths", nargs=1, metavar="FILE", help="the mission, `-` for standard input")
     parser.add("--stdin-filename", metavar="FILE", help="the file name of standard input, for resolving its includes")
     parser.add("--format", choices=GRAPH_FORMATS, help="default: by the suffix of the -o file, else svg")
@@ -424,7 +424,7 @@ def _add_graph(parser: Parser) -> None:
     "examples:\n  btq preview mission.btq --open\n"
     "  btq preview mission.btq --on-click 'emacsclient -n +{line}:{column} {file}'\n",
 )
-def _add_preview(parser: Parser) -> None:
+def _add_preview(parser: SuggestingParser) -> None:
     parser.add("file", metavar="FILE", help="the mission")
     parser.add("--port", type=int, default=0, metavar="N", help="the port, on this machine only; default: a free one")
     parser.flag("--open", "show it in the browser")
@@ -450,7 +450,7 @@ def _add_preview(parser: Parser) -> None:
     "  btq diff --git main...HEAD --format markdown mission.btq\n"
     "  ssh robot cat mission.xml | btq diff - mission.btq\n",
 )
-def _add_diff(parser: Parser) -> None:
+def _add_diff(parser: SuggestingParser) -> None:
     parser.add(
         "paths",
         nargs="*",
@@ -470,7 +470,7 @@ def _add_diff(parser: Parser) -> None:
     "examples:\n  btq explain unknown-port\n  btq explain '->'\n  btq explain time-behaviour\n"
     "  btq explain on violation\n",
 )
-def _add_explain(parser: Parser) -> None:
+def _add_explain(parser: SuggestingParser) -> None:
     parser.add("subject", nargs="*", metavar="RULE|NODE|QUALITY|WORD", help="default: list the rules")
     _add_color(parser)
 
@@ -483,7 +483,7 @@ def _add_explain(parser: Parser) -> None:
     "  btq nodes src --format xml -o nodes.xml   a palette for Groot\n"
     "  btq nodes src include -o nodes.html       a page for people\n",
 )
-def _add_nodes(parser: Parser) -> None:
+def _add_nodes(parser: SuggestingParser) -> None:
     parser.add("paths", nargs="+", metavar="SRC", help="C++ files and folders")
     parser.add("--format", choices=("btq", "xml", "html"), help="default: by the suffix of the -o file, else btq")
     parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
@@ -497,7 +497,7 @@ def _add_nodes(parser: Parser) -> None:
     "  btq schema xsd missions --target 4.6     for an older engine\n"
     "  btq schema project -o btq.schema.json    a JSON schema of btq.toml\n",
 )
-def _add_schema(parser: Parser) -> None:
+def _add_schema(parser: SuggestingParser) -> None:
     from btq_lang.catalog.versions import targets  # as above
 
     parser.add("format", choices=("xsd", "project"), help="an XSD of the nodes, or a JSON schema of btq.toml")
@@ -514,7 +514,7 @@ def _add_schema(parser: Parser) -> None:
     "examples:\n  btq init my-robot && btq check my-robot\n"
     "  btq init --from-xml        a project file for the XML in this folder\n",
 )
-def _add_init(parser: Parser) -> None:
+def _add_init(parser: SuggestingParser) -> None:
     parser.add("folder", nargs="?", default=".", metavar="FOLDER", help="default: .")
     parser.flag("--from-xml", "only a project file, for the XML that is there")
     parser.flag("--convert", "with --from-xml: and write .btq files beside the XML")
@@ -525,18 +525,18 @@ def _add_init(parser: Parser) -> None:
     "print the completion script of a shell",
     'examples:\n  eval "$(btq completion bash)"\n  btq completion fish > ~/.config/fish/completions/btq.fish\n',
 )
-def _add_completion(parser: Parser) -> None:
+def _add_completion(parser: SuggestingParser) -> None:
     from btq_lang.commands.shell import SHELLS
 
     parser.add("shell", choices=SHELLS)
 
 
 @_command("lsp", "serve an editor: the language server, also called btq-lsp")
-def _add_lsp(parser: Parser) -> None:
+def _add_lsp(parser: SuggestingParser) -> None:
     add_server_options(parser)
 
 
-def _add_evidence(parser: Parser, default: str) -> None:
+def _add_evidence(parser: SuggestingParser, default: str) -> None:
     parser.add(
         "--evidence",
         action="append",
@@ -547,7 +547,7 @@ def _add_evidence(parser: Parser, default: str) -> None:
     )
 
 
-def _add_config(parser: Parser) -> None:
+def _add_config(parser: SuggestingParser) -> None:
     parser.add(
         "--config",
         metavar="FILE",
@@ -555,7 +555,7 @@ def _add_config(parser: Parser) -> None:
     )
 
 
-def _add_color(parser: Parser) -> None:
+def _add_color(parser: SuggestingParser) -> None:
     parser.add("--color", choices=("auto", "always", "never"), default="auto", help="default: auto")
 
 

@@ -22,7 +22,7 @@ from btq_lang.render.fingerprint import fingerprint
 from btq_lang.workspace.loader import LoadProblem, absolute, read, shown, write_whole
 
 if TYPE_CHECKING:
-    from btq_lang.projects.files import Group
+    from btq_lang.projects.files import FileGroup
     from btq_lang.projects.options import CheckOptions
     from btq_lang.render import Finding
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 def compared(
-    findings: Sequence[Finding], groups: Iterable[Group], options: CheckOptions, is_whole: bool
+    findings: Sequence[Finding], groups: Iterable[FileGroup], options: CheckOptions, is_whole: bool
 ) -> tuple[list[Finding], int, tuple[LoadProblem, ...]]:
     """The findings that are not in the baseline of the command line, or else of the project of their file; the number
     of the others; and what is wrong with baselines.  With `--update-baseline`, they are written first if `is_whole`:

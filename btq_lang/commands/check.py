@@ -12,7 +12,7 @@ from btq_lang.checks.includes import is_reported_beside
 from btq_lang.commands.output import FOR_PEOPLE, is_coloured, tell
 from btq_lang.commands.reporting import form_of, report_problem, write_report
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
-from btq_lang.projects.files import STDIN, Files, Group, no_mission_below, usage_problem
+from btq_lang.projects.files import STDIN, FileGroup, Files, no_mission_below, usage_problem
 from btq_lang.projects.options import Refused, refuse
 from btq_lang.render import Finding, Report
 from btq_lang.util.record import replace
@@ -120,7 +120,7 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     return code, (*_watched(groups), *files.project_files, *(each.path for each in files.parameter_files))
 
 
-def _show_files(groups: Iterable[Group], parameter_files: Iterable[ParameterFile], files: Files) -> None:
+def _show_files(groups: Iterable[FileGroup], parameter_files: Iterable[ParameterFile], files: Files) -> None:
     """`--show-files`: print what would be checked."""
     missions = (path for group in groups for path in (*group.given, *group.cpp))
     for path in sorted({*missions, *files.project_files, *(each.path for each in parameter_files)}):
@@ -134,7 +134,7 @@ def _is_other(path: str) -> bool:
 
 
 def _report(
-    groups: tuple[Group, ...],
+    groups: tuple[FileGroup, ...],
     parameter_files: tuple[ParameterFile, ...],
     options: CheckOptions,
     files: Files,
@@ -212,8 +212,8 @@ def _parameter_files(files: Files, options: CheckOptions) -> tuple[ParameterFile
 
 
 def _chosen(
-    groups: tuple[Group, ...], parameter_files: tuple[ParameterFile, ...], options: CheckOptions
-) -> tuple[Group, ...]:
+    groups: tuple[FileGroup, ...], parameter_files: tuple[ParameterFile, ...], options: CheckOptions
+) -> tuple[FileGroup, ...]:
     """The groups for the target, with only what has changed.
 
     Raises:
@@ -240,11 +240,11 @@ def _chosen(
     return groups
 
 
-def _has_baseline(checked: Iterable[Group | ParameterFile], options: CheckOptions) -> bool:
+def _has_baseline(checked: Iterable[FileGroup | ParameterFile], options: CheckOptions) -> bool:
     return options.baseline is not None or any(each.project.baseline for each in checked)
 
 
-def _add_ignores(groups: tuple[Group, ...], findings: list[Finding], options: CheckOptions, files: Files) -> int:
+def _add_ignores(groups: tuple[FileGroup, ...], findings: list[Finding], options: CheckOptions, files: Files) -> int:
     """`--add-ignore`: write the comments and check again."""
     from copy import copy  # as all here only where it is needed
 
@@ -260,7 +260,7 @@ def _add_ignores(groups: tuple[Group, ...], findings: list[Finding], options: Ch
 
 
 def _findings(
-    groups: Iterable[Group], texts: Mapping[str, str], options: CheckOptions
+    groups: Iterable[FileGroup], texts: Mapping[str, str], options: CheckOptions
 ) -> tuple[list[Finding], tuple[str, ...]]:
     """What is wrong with the requested files, and these files; a file of several factories is checked in each."""
     of_file: dict[str, list[tuple[Factory | None, tuple[Diagnostic, ...]]]] = {}
@@ -284,12 +284,12 @@ def _findings(
     return findings, tuple(of_file)
 
 
-def _watched(groups: Iterable[Group]) -> tuple[str, ...]:
+def _watched(groups: Iterable[FileGroup]) -> tuple[str, ...]:
     """The files that another run depends on."""
     return tuple(path for group in groups for path in group.watched)
 
 
-def _show_fixes(groups: tuple[Group, ...], options: CheckOptions, has_problems: bool) -> int:
+def _show_fixes(groups: tuple[FileGroup, ...], options: CheckOptions, has_problems: bool) -> int:
     """`--diff`: print what `--fix` would change; returns the exit code."""
     from btq_lang.commands.fixing import fix, show_fixes
 
@@ -300,7 +300,7 @@ def _show_fixes(groups: tuple[Group, ...], options: CheckOptions, has_problems: 
     return 2 if has_problems else int(is_changed and not options.exit_zero)
 
 
-def _found(group: Group, jobs: int) -> Iterator[tuple[str, tuple[Diagnostic, ...]]]:
+def _found(group: FileGroup, jobs: int) -> Iterator[tuple[str, tuple[Diagnostic, ...]]]:
     """The diagnostics of each requested file, in order; many files are checked in parallel."""
     if len(group.given) == 1:  # the usual case needs no progress
         yield group.given[0], check(group.workspace, group.given[0])

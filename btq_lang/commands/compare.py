@@ -30,13 +30,13 @@ def run(options: Namespace) -> int:
 
 
 def _compared(options: Namespace, store: str, sides: tuple[str, str], at_least: float) -> int:
-    from btq_lang.evidence.compare.comparison import Unknown, compare
+    from btq_lang.evidence.compare.comparison import UnknownSide, compare
     from btq_lang.evidence.store.engine import NoEngine, asked
 
     try:
         comparisons = compare(asked(store, options.label), options.by, sides, at_least)
-    except (NoEngine, Unknown) as error:
-        of = f" with the label {options.label}" if options.label is not None and isinstance(error, Unknown) else ""
+    except (NoEngine, UnknownSide) as error:
+        of = f" with the label {options.label}" if options.label is not None and isinstance(error, UnknownSide) else ""
         raise Refused(f"{error}{of}") from error
     form = form_of(options, FORMATS)
     write_output(options.output, write(comparisons, options.by, sides, form), form)

@@ -14,9 +14,9 @@ from btq_lang.btcpp.marks import DESCRIPTION_MARK, is_built_of
 from btq_lang.btcpp.recognition import is_mission
 from btq_lang.commands.output import is_coloured, write_output
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.diff import Place, as_json, as_markdown, as_text
-from btq_lang.diff.comparison import NOWHERE, Comparison, ManualEdit, Side, compared, without_made_models
-from btq_lang.projects.files import STDIN, Files, Group
+from btq_lang.diff import DiskPlace, as_json, as_markdown, as_text
+from btq_lang.diff.comparison import NOWHERE, MissionComparison, Side, UnmergedEdit, compared, without_made_models
+from btq_lang.projects.files import STDIN, FileGroup, Files
 from btq_lang.projects.git import Commit, revisions
 from btq_lang.projects.opening import Disk
 from btq_lang.projects.options import Refused, refuse
@@ -38,7 +38,7 @@ def run(options: Namespace) -> int:
     return int(any(comparison.changes for comparison in comparisons))
 
 
-def _rendered(comparisons: tuple[Comparison, ...], options: Namespace) -> Iterator[str]:
+def _rendered(comparisons: tuple[MissionComparison, ...], options: Namespace) -> Iterator[str]:
     if options.format == "json":
         return as_json.render(comparisons)
     if options.format == "markdown":
@@ -76,7 +76,7 @@ def _first_error(file: File) -> str | None:
 # ---- two files, two folders ----
 
 
-def _of_paths(paths: list[str], stdin_filename: str | None) -> Iterator[Comparison]:
+def _of_paths(paths: list[str], stdin_filename: str | None) -> Iterator[MissionComparison]:
     if len(paths) != 2:
         raise Refused(
             f"expected two missions, found {len(paths)}; to compare revisions of one: btq diff --git HEAD FILE"
@@ -97,7 +97,7 @@ def _of_paths(paths: list[str], stdin_filename: str | None) -> Iterator[Comparis
         yield without_made_models(compared(sides[0].get(before, NOWHERE), sides[1].get(after, NOWHERE)))
 
 
-def _with_stdin(paths: list[str], stdin_filename: str | None) -> Comparison:
+def _with_stdin(paths: list[str], stdin_filename: str | None) -> MissionComparison:
     """Compare a file with standard input."""
     other = next((path for path in paths if path != STDIN), None)
     if other is None:
@@ -168,7 +168,7 @@ def _built_in(files: Disk | Commit, path: str) -> Side | None:
     if built is None:
         return None
     manual_edits = tuple(
-        ManualEdit(each.guard, each.sum, f"{each.happened}; {ADVICE}", Place(xml, each.span))
+        UnmergedEdit(each.guard, each.sum, f"{each.happened}; {ADVICE}", DiskPlace(xml, each.span))
         for xml, each in built.manual_edits
     )
     return Side(files.shown(path), built.workspace, built.workspace.closure(built.path), built.shown, manual_edits)
@@ -184,7 +184,7 @@ def _xml_below(folder: str) -> tuple[str, ...]:
     return tuple(path for path, xml in texts.items() if is_mission(xml) and not is_built_of(xml, sources))
 
 
-def _groups(paths: list[str], stdin_filename: str | None = None) -> tuple[Group, ...]:
+def _groups(paths: list[str], stdin_filename: str | None = None) -> tuple[FileGroup, ...]:
     groups, problems = Files().groups(paths, stdin_filename)
     refuse(*problems)
     return groups
@@ -193,7 +193,7 @@ def _groups(paths: list[str], stdin_filename: str | None = None) -> tuple[Group,
 # ---- revisions ----
 
 
-def _of_revisions(options: Namespace) -> Iterator[Comparison]:
+def _of_revisions(options: Namespace) -> Iterator[MissionComparison]:
     if STDIN in options.paths:
         raise Refused("standard input has no revisions: git show REV:FILE | btq diff - FILE")
     for path in map(absolute, options.paths or ["."]):

@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterable, Iterator
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.projects.files import Group
+from btq_lang.projects.files import FileGroup
 from btq_lang.render import Finding
 from btq_lang.util.text import LineIndex, Span
 from btq_lang.util.toml_places import find_key
@@ -18,10 +18,10 @@ from btq_lang.workspace.config import configured, keys_above
 from btq_lang.workspace.loader import absolute, read
 
 
-def unused_external(groups: Iterable[Group], paths: Collection[str]) -> Iterator[Finding]:
+def unused_external(groups: Iterable[FileGroup], paths: Collection[str]) -> Iterator[Finding]:
     """A hint for each entry of `external` that nothing needs, in its project file; `paths`: what is checked."""
     requested = {absolute(path).rstrip("/") for path in paths}
-    by_file: dict[str, list[Group]] = {}
+    by_file: dict[str, list[FileGroup]] = {}
     for group in groups:
         if group.project_file is not None and group.project.external and group.project.root in requested:
             by_file.setdefault(group.project_file, []).append(group)

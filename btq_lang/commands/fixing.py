@@ -9,7 +9,7 @@ from typing import Final
 from btq_lang.btcpp.opening import with_source
 from btq_lang.checks import check_each
 from btq_lang.diagnostics.model import Diagnostic
-from btq_lang.projects.files import Group, write_stdout
+from btq_lang.projects.files import FileGroup, write_stdout
 from btq_lang.render.colour import painter
 from btq_lang.util.record import replace
 from btq_lang.workspace.file import File
@@ -20,9 +20,9 @@ from btq_lang.workspace.workspace import Workspace
 _ROUNDS: Final = 10  # of fixing: a fix may enable another
 
 
-def fix(groups: Iterable[Group], is_wanted: Callable[[Diagnostic], bool]) -> tuple[tuple[Group, ...], int]:
+def fix(groups: Iterable[FileGroup], is_wanted: Callable[[Diagnostic], bool]) -> tuple[tuple[FileGroup, ...], int]:
     """The groups with the safe fixes of the requested files applied, and how many these are; nothing is written."""
-    done: list[Group] = []
+    done: list[FileGroup] = []
     count = 0
     finished: dict[str, File] = {}  # of earlier groups: a file may be in several factories
     for group in groups:
@@ -42,11 +42,11 @@ def fix(groups: Iterable[Group], is_wanted: Callable[[Diagnostic], bool]) -> tup
 
 
 def write_fixes(
-    before: Iterable[Group], after: Iterable[Group], stdin: str | None
-) -> tuple[tuple[Group, ...], tuple[LoadProblem, ...]]:
+    before: Iterable[FileGroup], after: Iterable[FileGroup], stdin: str | None
+) -> tuple[tuple[FileGroup, ...], tuple[LoadProblem, ...]]:
     """Write what differs, and the new text of standard input to standard output; returns the groups as they
     are then."""
-    done: list[Group] = []
+    done: list[FileGroup] = []
     trouble: list[LoadProblem] = []
     finished: dict[str, File] = {}
     for old, new in zip(before, after, strict=True):
@@ -69,7 +69,7 @@ def write_fixes(
     return tuple(done), tuple(trouble)
 
 
-def show_fixes(before: Iterable[Group], after: Iterable[Group], is_coloured: bool) -> bool:
+def show_fixes(before: Iterable[FileGroup], after: Iterable[FileGroup], is_coloured: bool) -> bool:
     """Print what would be written as a unified diff; returns whether there is anything."""
 
     is_changed = False

@@ -22,12 +22,12 @@ from btq_lang.workspace.loader import absolute, find_project, read, shown
 
 if TYPE_CHECKING:
     from btq_lang.evidence.verdicts import RequirementVerdict
-    from btq_lang.projects.files import Group
+    from btq_lang.projects.files import FileGroup
     from btq_lang.trace.collect import VerdictsOf
     from btq_lang.workspace.config import Project
 
 
-def verdicts_for(given: Sequence[str], groups: Sequence[Group], problems: list[str]) -> VerdictsOf | None:
+def verdicts_for(given: Sequence[str], groups: Sequence[FileGroup], problems: list[str]) -> VerdictsOf | None:
     """A function from the path of a mission to the verdicts on it; None: there is no evidence.
 
     Args:
@@ -57,7 +57,7 @@ def verdicts_for(given: Sequence[str], groups: Sequence[Group], problems: list[s
     return lambda mission: by_mission.get(mission) or by_mission.get(name_of(mission), [])
 
 
-def evidence_paths(given: Sequence[str], groups: Sequence[Group]) -> Sequence[str]:
+def evidence_paths(given: Sequence[str], groups: Sequence[FileGroup]) -> Sequence[str]:
     """The paths of the evidence that counts; `given`: as of `verdicts_for`."""
     if given:
         return given
@@ -89,7 +89,7 @@ def _read(path: str, missions: set[str], by_mission: dict[str, list[RequirementV
         by_mission.setdefault(key, []).extend(requirements)
 
 
-def _project(groups: Sequence[Group]) -> Project:
+def _project(groups: Sequence[FileGroup]) -> Project:
     return groups[0].project if groups else find_project(".").project
 
 
@@ -112,7 +112,7 @@ def _stored(store: str, problems: list[str]) -> Sequence[tuple[str, Sequence[Req
 
 
 def _judged(
-    given: Sequence[str], groups: Sequence[Group], problems: list[str]
+    given: Sequence[str], groups: Sequence[FileGroup], problems: list[str]
 ) -> Iterator[tuple[str, Sequence[RequirementVerdict]]]:
     project = _project(groups)
     logs, wrong = logs_below(given, project)

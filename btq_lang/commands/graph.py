@@ -20,7 +20,7 @@ from btq_lang.workspace.loader import LoadProblem, shown
 
 if TYPE_CHECKING:
     from btq_lang.graph.figure import Figure
-    from btq_lang.projects.files import Group
+    from btq_lang.projects.files import FileGroup
     from btq_lang.workspace.workspace import Workspace
 
 
@@ -49,7 +49,7 @@ def run(options: Namespace) -> int:
     return int(bool(unread))
 
 
-def _figures(options: Namespace, groups: Sequence[Group], workspace: Workspace, path: str) -> Sequence[Figure]:
+def _figures(options: Namespace, groups: Sequence[FileGroup], workspace: Workspace, path: str) -> Sequence[Figure]:
     """The trees, with what logs show of their requirements if that is asked for."""
     if not options.evidence:
         return figures(workspace, path, options.qualities)

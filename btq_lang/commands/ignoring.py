@@ -15,7 +15,7 @@ from btq_lang.btcpp.opening import with_source
 from btq_lang.checks import check
 from btq_lang.checks.silencing import above_line, at_line_end, before_element, before_tag, line_to_silence
 from btq_lang.diagnostics.model import Diagnostic
-from btq_lang.projects.files import Group
+from btq_lang.projects.files import FileGroup
 from btq_lang.projects.options import CheckOptions
 from btq_lang.render import Finding
 from btq_lang.util.grouping import grouped
@@ -28,7 +28,7 @@ Added: TypeAlias = tuple[Edit, list[Diagnostic]]  # a comment, and what it silen
 
 
 def add_ignores(
-    groups: Iterable[Group], findings: Sequence[Finding], reason: str
+    groups: Iterable[FileGroup], findings: Sequence[Finding], reason: str
 ) -> tuple[int, tuple[LoadProblem, ...]]:
     """Write comments for the findings into their files; returns how many, and what could not be written."""
     of_file = grouped((finding.path, finding.diagnostic) for finding in findings)

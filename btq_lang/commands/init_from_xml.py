@@ -21,7 +21,7 @@ from btq_lang.catalog.versions import VERSION_3, VERSIONS, is_before_4
 from btq_lang.checks import check_each
 from btq_lang.checks.engines import declared_engines
 from btq_lang.commands.init_navigators import free_name, navigator_tables
-from btq_lang.commands.init_nodes import OF_NAV2, Nodes, nodes_for, nodes_lines
+from btq_lang.commands.init_nodes import OF_NAV2, NodesLines, nodes_for, nodes_lines
 from btq_lang.commands.output import show
 from btq_lang.commands.packages import Packages, packages_of
 from btq_lang.projects.files import Files
@@ -104,7 +104,7 @@ def _names_distribution(nodes: str) -> bool:
     return any(f'"{name}"' in nodes for name in PACKAGED)
 
 
-def _fits(distribution: str | None, named: tuple[Nodes, ...], engines: tuple[str, ...]) -> bool:
+def _fits(distribution: str | None, named: tuple[NodesLines, ...], engines: tuple[str, ...]) -> bool:
     """Whether a distribution is that of the engine, and no trees use nodes of another one."""
     if distribution is None or any(OF_NAV2 in each.patterns for each in named):
         return False

@@ -23,7 +23,7 @@ _WITHOUT_GRAMMAR = "btq reads it with pip install 'btq-lang[cpp]'"
 OF_NAV2 = "nav2-DISTRIBUTION"  # which one is unknown
 
 
-class Nodes(Record):
+class NodesLines(Record):
     """Patterns for the key `nodes`.
 
     Attributes:
@@ -36,7 +36,7 @@ class Nodes(Record):
     obstacle: str = ""
 
 
-def nodes_for(workspace: Workspace, packages: Packages, trouble: Callable[[str], str]) -> tuple[Nodes, ...]:
+def nodes_for(workspace: Workspace, packages: Packages, trouble: Callable[[str], str]) -> tuple[NodesLines, ...]:
     """What a project file may name.
 
     Args:
@@ -45,7 +45,7 @@ def nodes_for(workspace: Workspace, packages: Packages, trouble: Callable[[str],
     """
     of_nav2 = _of_nav2(workspace, packages)
     is_read = find_spec("tree_sitter_cpp") is not None
-    sources = Nodes(packages.sources, "C++ that registers nodes", "" if is_read else _WITHOUT_GRAMMAR)
+    sources = NodesLines(packages.sources, "C++ that registers nodes", "" if is_read else _WITHOUT_GRAMMAR)
     named = () if of_nav2 is None else (of_nav2,)
     both = (*named, sources) if sources.patterns else named
     if not trouble(nodes_lines(both)):
@@ -58,7 +58,7 @@ def nodes_for(workspace: Workspace, packages: Packages, trouble: Callable[[str],
     return (*named, replace(sources, obstacle=obstacle)) if sources.patterns else named
 
 
-def nodes_lines(named: tuple[Nodes, ...]) -> str:
+def nodes_lines(named: tuple[NodesLines, ...]) -> str:
     """The lines of the project file."""
     written = [each for each in named if not each.obstacle]
     left_out = [each for each in named if each.obstacle]
@@ -71,15 +71,15 @@ def nodes_lines(named: tuple[Nodes, ...]) -> str:
     return f"# nodes = [{_listed(*left_out)}]\n{reasons}" if left_out else ""
 
 
-def _listed(*named: Nodes) -> str:
+def _listed(*named: NodesLines) -> str:
     return ", ".join(json.dumps(pattern, ensure_ascii=False) for each in named for pattern in each.patterns)
 
 
-def _reason(left_out: Nodes) -> str:
+def _reason(left_out: NodesLines) -> str:
     return f"{left_out.why}; {left_out.obstacle}"
 
 
-def _of_nav2(workspace: Workspace, packages: Packages) -> Nodes | None:
+def _of_nav2(workspace: Workspace, packages: Packages) -> NodesLines | None:
     """Nav2's nodes, if XML uses any."""
     used = _used(workspace)
     if not any(used.values()):
@@ -90,13 +90,13 @@ def _of_nav2(workspace: Workspace, packages: Packages) -> Nodes | None:
         why = "the only distribution of Nav2 with the nodes and ports of the trees"
         if len(fitting) > 1:
             fitting, why = named, "the distribution of Nav2 for which the parameters of bt_navigator are"
-        return Nodes((f"nav2-{fitting[0]}",), why)
+        return NodesLines((f"nav2-{fitting[0]}",), why)
     return _open(f"they fit {', '.join(fitting)}" if fitting else "no distribution has all of these nodes and ports")
 
 
-def _open(which: str) -> Nodes:
+def _open(which: str) -> NodesLines:
     """Nav2's nodes, of a distribution that a person must name."""
-    return Nodes((OF_NAV2,), "the trees use nodes of Nav2", f"name yours: {which}")
+    return NodesLines((OF_NAV2,), "the trees use nodes of Nav2", f"name yours: {which}")
 
 
 def _of_engine(workspace: Workspace, engines: tuple[str, ...], used: Mapping[str, set[str]]) -> Iterator[str]:

@@ -17,7 +17,7 @@ from btq_lang.workspace.loader import LoadProblem, absolute, write_whole
 if TYPE_CHECKING:
     from argparse import Namespace
 
-    from btq_lang.projects.messages import Messages
+    from btq_lang.projects.messages import CommandOutput
     from btq_lang.projects.options import CheckOptions
 
 FOR_PEOPLE: Final = ("full", "concise", "table", "text")
@@ -90,7 +90,7 @@ def write_file(path: str, content: str | bytes) -> None:
         raise Refused(LoadProblem(target, f"cannot be written: {error.strerror}")) from error
 
 
-def show(messages: Messages) -> None:
+def show(messages: CommandOutput) -> None:
     """Print a command's messages."""
     for line, is_remark in messages.lines:
         print(line, file=sys.stderr if is_remark else sys.stdout)

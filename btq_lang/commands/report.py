@@ -15,14 +15,14 @@ def run(options: Namespace) -> int:
     problem = page_problem(options.output)
     if problem or store is None:
         raise Refused(problem or NO_STORE)
-    from btq_lang.evidence.compare.comparison import Unknown
+    from btq_lang.evidence.compare.comparison import UnknownSide
     from btq_lang.evidence.report.overview import overview
     from btq_lang.evidence.report.page import render
     from btq_lang.evidence.store.engine import NoEngine, asked
 
     try:
         page = overview(asked(store), store, options.by or ("label", "robot"), options.sides or ())
-    except (NoEngine, Unknown) as error:
+    except (NoEngine, UnknownSide) as error:
         raise Refused(error) from error
     write_output(options.output, render(page))
     return int(page.is_worse)

@@ -15,7 +15,7 @@ from btq_lang.checks.engines import declared_engines
 from btq_lang.commands.output import form_problem, tell, write_output
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
-from btq_lang.projects.files import Files, Group, no_mission_below, usage_problem
+from btq_lang.projects.files import FileGroup, Files, no_mission_below, usage_problem
 from btq_lang.projects.options import refuse
 from btq_lang.util.record import replace
 from btq_lang.workspace.engine_version import written_for
@@ -63,7 +63,7 @@ def _of_version_4(workspace: Workspace) -> Workspace:
     return workspace.with_project(replace(workspace.project, written_for=workspace.project.engines))
 
 
-def _target(groups: Iterable[Group], paths: list[str]) -> str:
+def _target(groups: Iterable[FileGroup], paths: list[str]) -> str:
     """The newest version of the engine that the files are written for, if it has a schema."""
     asked = [group.workspace.store.ask(declared_engines, path) for group in groups for path in group.given]
     if not asked:

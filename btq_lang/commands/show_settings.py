@@ -10,7 +10,7 @@ from btq_lang.catalog.versions import VERSIONS
 from btq_lang.commands.output import tell
 from btq_lang.util.toml_places import find_key
 from btq_lang.workspace.config import KEYS, Project, keys_above, table_of
-from btq_lang.workspace.loader import Found, absolute, find_project, read, shown
+from btq_lang.workspace.loader import FoundProject, absolute, find_project, read, shown
 from btq_lang.workspace.overrides import overrides_at
 
 
@@ -30,7 +30,7 @@ def show_settings(paths: Iterable[str], given: Mapping[str, object]) -> int:
     return 2 if problems else 0
 
 
-def _settings(home: Found, path: str, given: Mapping[str, object]) -> Iterator[tuple[str, str]]:
+def _settings(home: FoundProject, path: str, given: Mapping[str, object]) -> Iterator[tuple[str, str]]:
     """Settings as lines of TOML, and where each comes from."""
     file = shown(home.path) if home.path is not None else ""
     above = keys_above(file)

@@ -9,8 +9,8 @@ from typing import Final
 from btq_lang.btcpp.opening import file_of
 from btq_lang.catalog.nav2 import FILES, PACKAGED
 from btq_lang.checks.lookups import distribution
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related
-from btq_lang.projects.files import Group
+from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related
+from btq_lang.projects.files import FileGroup
 from btq_lang.render import Finding
 from btq_lang.util.record import replace
 from btq_lang.util.text import counted
@@ -19,13 +19,13 @@ from btq_lang.workspace.loader import read
 from btq_lang.workspace.workspace import Workspace
 
 
-def moving(groups: Iterable[Group], target: str) -> tuple[Group, ...]:
+def moving(groups: Iterable[FileGroup], target: str) -> tuple[FileGroup, ...]:
     """The groups, to be checked for a target too: a version of the engine, or as a project names its nodes,
     `nav2-lyrical`."""
     return tuple(replace(group, workspace=with_target(group.workspace, target)) for group in groups)
 
 
-def is_comparable(groups: Iterable[Group], target: str) -> bool:
+def is_comparable(groups: Iterable[FileGroup], target: str) -> bool:
     """Whether it is known what some trees are for, if the target is a distribution."""
     given = ((group.workspace.store, path) for group in groups for path in group.given)
     return target not in PACKAGED or any(store.ask(distribution, path) is not None for store, path in given)
@@ -68,7 +68,7 @@ def _joined(group: list[Finding]) -> Finding:
 def _fixes(first: Diagnostic, others: list[Diagnostic]) -> Iterator[Fix]:
     """The fixes that all have, each for all places."""
     for fix in first.fixes:
-        changes: list[tuple[Change, ...]] = [fix.changes]
+        changes: list[tuple[FixEdit, ...]] = [fix.changes]
         changes += [one.changes for each in others for one in each.fixes if one.title == fix.title]
         if len(changes) == len(others) + 1:
             yield replace(fix, changes=tuple(change for of_one in changes for change in of_one))

@@ -16,7 +16,7 @@ from btq_lang.workspace.loader import shown
 
 if TYPE_CHECKING:
     from btq_lang.evidence.readers.topics import Clock
-    from btq_lang.evidence.verdicts import Report
+    from btq_lang.evidence.verdicts import VerdictReport
 
 
 def events_problem(options: Namespace) -> str | None:
@@ -41,7 +41,7 @@ def overwrites(path: str, logs: Iterable[str]) -> str | None:
     return None
 
 
-def write_events(path: str, report: Report, logs: Sequence[str]) -> None:
+def write_events(path: str, report: VerdictReport, logs: Sequence[str]) -> None:
     """Write the violations into a file.
 
     Args:
@@ -66,7 +66,7 @@ def write_events(path: str, report: Report, logs: Sequence[str]) -> None:
         print(f"btq verify: {path}: {number} left out; a ROS message cannot have their times", file=sys.stderr)
 
 
-def _clocks(report: Report, logs: Sequence[str]) -> dict[str, Clock]:
+def _clocks(report: VerdictReport, logs: Sequence[str]) -> dict[str, Clock]:
     """The clocks of the bags in which something is violated, by source."""
     found: dict[str, Clock] = {}
     broken = {

@@ -10,12 +10,12 @@ from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate
-    from btq_lang.evidence.verdicts import Report
+    from btq_lang.evidence.verdicts import VerdictReport
 
 FORMATS: Final = (*evidence.FORMATS, "html")
 
 
-def write(report: Report, missions: Sequence[Candidate], form: str, **options: Any) -> str:
+def write(report: VerdictReport, missions: Sequence[Candidate], form: str, **options: Any) -> str:
     """Write the verdicts in one of FORMATS.
 
     Args:

@@ -18,7 +18,7 @@ from btq_lang.projects.options import refuse
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate
-    from btq_lang.evidence.verdicts import Report
+    from btq_lang.evidence.verdicts import VerdictReport
     from btq_lang.evidence.verifying import Verification
 
 
@@ -39,7 +39,7 @@ def finish(options: Namespace, found: Verification, missions: Sequence[Candidate
     return code
 
 
-def print_report(options: Namespace, report: Report, missions: Sequence[Candidate]) -> int:
+def print_report(options: Namespace, report: VerdictReport, missions: Sequence[Candidate]) -> int:
     """Write the verdicts as a command line asks for them; returns the exit code.
 
     Args:

@@ -18,7 +18,7 @@ from btq_lang.evidence.sentences import worst_violation
 from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.verdicts import ClauseVerdict, Report, RequirementVerdict
+    from btq_lang.evidence.verdicts import ClauseVerdict, RequirementVerdict, VerdictReport
 
 
 def progress_to_editor(logs: int) -> Callable[[int, int], None]:
@@ -37,7 +37,7 @@ def progress_to_editor(logs: int) -> Callable[[int, int], None]:
     return reached
 
 
-def write_summary(path: str, report: Report) -> None:
+def write_summary(path: str, report: VerdictReport) -> None:
     """Write the summary, whole or not at all, with few violations of each clause."""
     missions = (replace(each, requirements=tuple(map(_shortened, each.requirements))) for each in report.missions)
     write_file(path, render(replace(report, missions=tuple(missions))))

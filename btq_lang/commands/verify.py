@@ -27,7 +27,7 @@ from btq_lang.workspace.loader import IS_SPECIAL, find_project, is_special, show
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate
-    from btq_lang.evidence.model import Series
+    from btq_lang.evidence.model import SampleSeries
 
 
 def run(options: Namespace) -> int:
@@ -65,7 +65,9 @@ def run(options: Namespace) -> int:
     return finish(options, found, missions, logs)
 
 
-def _given(options: Namespace, problems: list[str]) -> tuple[Sequence[str], Sequence[Candidate], dict[str, Series]]:
+def _given(
+    options: Namespace, problems: list[str]
+) -> tuple[Sequence[str], Sequence[Candidate], dict[str, SampleSeries]]:
     """The logs, missions and samples of a command line; errors are appended to the problems."""
     problem = form_problem(options, FORMATS)
     if options.jobs < 1:
@@ -82,7 +84,7 @@ def _given(options: Namespace, problems: list[str]) -> tuple[Sequence[str], Sequ
         return (), (), {}
     logs, wrong = logs_below(requested, project)
     problems += wrong
-    samples: dict[str, Series] = {}
+    samples: dict[str, SampleSeries] = {}
     if options.signals is not None and is_special(options.signals):
         problems.append(f"{shown(options.signals)}: {IS_SPECIAL}")
     elif options.signals is not None:

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from typing import Final
 
 from btq_lang.cpp.macros import uncalled
-from btq_lang.cpp.model import CppNodes, Place
+from btq_lang.cpp.model import CppNodes, SourcePosition
 from btq_lang.diagnostics.model import Diagnostic, Tag
 from btq_lang.util.text import LineIndex, counted
 
@@ -36,9 +36,9 @@ def nothing_registered(texts: Mapping[str, str]) -> str:
     return f"no node is registered in {counted(len(texts), 'C++ file')}; {where}"
 
 
-def _all(found: CppNodes) -> Iterator[tuple[str, Place, str]]:
+def _all(found: CppNodes) -> Iterator[tuple[str, SourcePosition, str]]:
     """Each with its rule and place; nodes that share a base class, and so a place, are named together."""
-    nodes: dict[tuple[str, Place, str], list[str]] = {}
+    nodes: dict[tuple[str, SourcePosition, str], list[str]] = {}
     for node in found.nodes:
         for port in node.unread:
             message = f"provides the port `{port.name}`, but its code never names it"

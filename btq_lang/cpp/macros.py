@@ -12,7 +12,7 @@ import sys
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Final, TypeAlias
 
-from btq_lang.cpp.model import Place
+from btq_lang.cpp.model import SourcePosition
 from btq_lang.util.grouping import grouped
 from btq_lang.util.record import Record
 
@@ -38,7 +38,7 @@ class Failed(Record):
     """A macro that is used and cannot be expanded."""
 
     message: str
-    place: Place
+    place: SourcePosition
 
 
 class Registering(Record):
@@ -46,7 +46,7 @@ class Registering(Record):
 
     name: str
     arguments: tuple[str, ...]
-    place: Place
+    place: SourcePosition
 
 
 def macros_in(path: str, text: str) -> tuple[Macro, ...]:
@@ -186,7 +186,7 @@ class Expanded:
             return None
         return choice[0] if choice else None
 
-    def _call(self, macro: Macro, given: list[str], within: frozenset[str], place: Place) -> str | None:
+    def _call(self, macro: Macro, given: list[str], within: frozenset[str], place: SourcePosition) -> str | None:
         """What a macro expands to; None if it cannot be; within: the macros that are being expanded."""
         parameters = macro.parameters or ()
         is_variadic = parameters[-1:] != () and parameters[-1].endswith("...")
@@ -204,7 +204,9 @@ class Expanded:
         inside = _VISIBILITY.sub("", "".join(self._substituted(macro.body, values, within, place)))
         return self._rescanned(inside, within | {macro.name}, place)
 
-    def _substituted(self, body: str, values: Mapping[str, str], within: frozenset[str], place: Place) -> Iterator[str]:
+    def _substituted(
+        self, body: str, values: Mapping[str, str], within: frozenset[str], place: SourcePosition
+    ) -> Iterator[str]:
         """The pieces of a body with its parameters replaced."""
         tokens = ["", *(match[0] for match in _TOKEN.finditer(_HASHES.sub(lambda sign: sign[0].strip(), body))), "", ""]
         at = 1
@@ -222,7 +224,7 @@ class Expanded:
                 yield token
             at += 1
 
-    def _rescanned(self, text: str, within: frozenset[str], place: Place) -> str:
+    def _rescanned(self, text: str, within: frozenset[str], place: SourcePosition) -> str:
         """A text in which macros are expanded, except those that are being so."""
         pieces: list[str] = []
         copied = 0
@@ -240,7 +242,7 @@ class Expanded:
                 copied = end if macro.parameters is not None else match.end()
         return "".join((*pieces, text[copied:]))
 
-    def _fail(self, message: str, place: Place, *macros: Macro) -> None:
+    def _fail(self, message: str, place: SourcePosition, *macros: Macro) -> None:
         """Report what cannot be expanded, if that may hide a node or a port."""
         if any(MATTERS(each.body) for each in macros):
             self.failed.append(Failed(message, place))
@@ -249,9 +251,9 @@ class Expanded:
         start = self._original.rfind("\n", 0, offset) + 1
         return self._original.count("\n", 0, offset), _bytes(self._original[start:offset])
 
-    def _place(self, start: int, end: int) -> Place:
+    def _place(self, start: int, end: int) -> SourcePosition:
         (row, column), (end_row, end_column) = self._point(start), self._point(end)
-        return Place(self._path, row + 1, column + 1, end_row + 1, end_column + 1)
+        return SourcePosition(self._path, row + 1, column + 1, end_row + 1, end_column + 1)
 
 
 def _is_wanted(macro: Macro) -> bool:

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from btq_lang.catalog.kinds import Category, Direction
 
 
-class Place(Record):
+class SourcePosition(Record):
     """A place in a file; lines and columns count from 1, columns in bytes of UTF-8."""
 
     path: str
@@ -45,10 +45,10 @@ class CppPort(Record):
     default: str | None
     written: str
     text: str
-    place: Place
+    place: SourcePosition
 
 
-class Use(Record):
+class PortUse(Record):
     """A place where the code of a node reads or writes a port.
 
     Attributes:
@@ -60,7 +60,7 @@ class Use(Record):
     port: str
     writes: bool
     without: str
-    place: Place
+    place: SourcePosition
     falls_back: bool = False
 
 
@@ -83,12 +83,12 @@ class CppNode(Record):
     name: str
     category: Category
     class_name: str
-    place: Place
-    class_place: Place
+    place: SourcePosition
+    class_place: SourcePosition
     ports: tuple[CppPort, ...]
     complete: bool = True
     unread: tuple[CppPort, ...] = ()
-    undeclared: tuple[Use, ...] = ()
+    undeclared: tuple[PortUse, ...] = ()
     without: tuple[tuple[str, str], ...] = ()
     at_once: bool = False
 
@@ -101,7 +101,7 @@ class Unseen(Record):
     """What cannot be read from the sources; hides_node: whether that may be a node."""
 
     message: str
-    place: Place
+    place: SourcePosition
     hides_node: bool = False
 
 

@@ -15,8 +15,8 @@ from btq_lang.cpp.grammar import LAMBDAS, arguments, callee, contents, enclosing
 from btq_lang.cpp.macros import Macros, macros_in
 from btq_lang.cpp.model import CppNode, CppNodes
 from btq_lang.cpp.ports import Body, PortsReader, Provided
-from btq_lang.cpp.source import Call, Source
-from btq_lang.cpp.sources import Bound, Sources
+from btq_lang.cpp.source import CppSource, RegistrationCall
+from btq_lang.cpp.sources import BoundClass, CppSources
 from btq_lang.cpp.uses import Uses
 from btq_lang.cpp.values import string
 
@@ -35,12 +35,12 @@ def read_nodes(files: Mapping[str, str], distributions: tuple[str, ...] = DISTRI
         GrammarMissing: tree-sitter is not installed.
     """
     macros = Macros(macro for path, text in files.items() for macro in macros_in(path, text))
-    return nodes_of((Source(path, text, macros.needed_by(text)) for path, text in files.items()), distributions)
+    return nodes_of((CppSource(path, text, macros.needed_by(text)) for path, text in files.items()), distributions)
 
 
-def nodes_of(sources: Iterable[Source], distributions: tuple[str, ...] = DISTRIBUTIONS) -> CppNodes:
+def nodes_of(sources: Iterable[CppSource], distributions: tuple[str, ...] = DISTRIBUTIONS) -> CppNodes:
     """The nodes that parsed files register; distributions: as above."""
-    reader = _Reader(Sources(sources, distributions))
+    reader = _Reader(CppSources(sources, distributions))
     nodes: dict[str, CppNode] = {}
     for source in reader.sources.files.values():
         for call in source.calls:
@@ -56,11 +56,11 @@ def nodes_of(sources: Iterable[Source], distributions: tuple[str, ...] = DISTRIB
 
 
 class _Reader:
-    def __init__(self, sources: Sources) -> None:
+    def __init__(self, sources: CppSources) -> None:
         self.sources: Final = sources
         self._ports: Final = PortsReader(sources)
 
-    def node(self, call: Call) -> CppNode | None:
+    def node(self, call: RegistrationCall) -> CppNode | None:
         """The node that a call registers; None if it registers none, or none that can be seen."""
         given = arguments(call.node)
         if _OTHERS(call.name) or not given or _is_of_template(call):
@@ -91,7 +91,7 @@ class _Reader:
                     message = f"it cannot be seen under which ID `{each.name}` registers `{bound.name}`; {_OF_MACRO}"
                     self.sources.report(message, each.place, hides_node=True)
 
-    def _simple(self, call: Call, body: Body, given: list[Node]) -> CppNode | None:
+    def _simple(self, call: RegistrationCall, body: Body, given: list[Node]) -> CppNode | None:
         """`registerSimpleAction("Name", function, ports)`"""
         if (name := self._name(call, body, given[0])) is None:
             return None
@@ -106,7 +106,7 @@ class _Reader:
         category, without = _SIMPLE[call.name], uses.without_each(ports)
         return CppNode(name, category, "", place, place, ports, complete, uses.unread(ports), undeclared, without)
 
-    def _manifest(self, call: Call, body: Body, manifest: Node) -> CppNode | None:
+    def _manifest(self, call: RegistrationCall, body: Body, manifest: Node) -> CppNode | None:
         """`registerBuilder(CreateManifest<T>("Name", ports), builder)`"""
         if manifest.type == "call_expression":
             _, name, types = callee(manifest)
@@ -116,7 +116,7 @@ class _Reader:
         self._report(call, f"it cannot be seen which node this registers: `{text_of(manifest)}`")
         return None
 
-    def _class(self, call: Call, body: Body, type_: str, named: Node, given: Node | None) -> CppNode | None:
+    def _class(self, call: RegistrationCall, body: Body, type_: str, named: Node, given: Node | None) -> CppNode | None:
         """A class under a name; given: the argument that may be its ports."""
         if (name := self._name(call, body, named)) is None:
             return None
@@ -151,13 +151,13 @@ class _Reader:
             ends_within_tick(self.sources, bound),
         )
 
-    def _name(self, call: Call, body: Body, node: Node) -> str | None:
+    def _name(self, call: RegistrationCall, body: Body, node: Node) -> str | None:
         name = string(self.sources, node, body.frame)
         if name is None:
             self._report(call, f"the name of this node is an expression: `{text_of(node)}`")
         return name
 
-    def _report(self, call: Call, message: str) -> None:
+    def _report(self, call: RegistrationCall, message: str) -> None:
         self.sources.report(message, self.sources.place_of(call.path, call.node), hides_node=True)
 
 
@@ -166,7 +166,7 @@ def _may_be_ports(node: Node, body: Body) -> bool:
     return node.type != "identifier" or text_of(node) in body.lists
 
 
-def _is_of_template(call: Call) -> bool:
+def _is_of_template(call: RegistrationCall) -> bool:
     """Whether a call is in a template that registers what it is given."""
     around = enclosing(call.node, ("template_declaration",))
     while around is not None:
@@ -178,7 +178,7 @@ def _is_of_template(call: Call) -> bool:
     return False
 
 
-def ends_within_tick(sources: Sources, bound: Bound) -> bool:
+def ends_within_tick(sources: CppSources, bound: BoundClass) -> bool:
     """Whether the nodes of a class are seen never to return RUNNING.
 
     Only the engine says so, which throws if a SyncActionNode returns it, or each `return` of a `tick` that no class of

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.kinds import Direction
 from btq_lang.cpp.grammar import LAMBDAS, arguments, callee, contents, enclosing, field, named, text_of, walk
-from btq_lang.cpp.model import CppPort, Place
+from btq_lang.cpp.model import CppPort, SourcePosition
 from btq_lang.cpp.source import REGISTERS, substituted
-from btq_lang.cpp.sources import Bound, Sources
+from btq_lang.cpp.sources import BoundClass, CppSources
 from btq_lang.cpp.values import Frame, default, string, type_of
 from btq_lang.util.record import Record, replace
 
@@ -33,7 +33,7 @@ class Provided(Record):
 class PortsReader:
     """Evaluates expressions that are lists of ports, as far as that needs no running program."""
 
-    def __init__(self, sources: Sources) -> None:
+    def __init__(self, sources: CppSources) -> None:
         self.sources: Final = sources
         self._complete = True
         aliases = (alias for source in sources.files.values() for alias in source.aliases.items())
@@ -43,7 +43,7 @@ class PortsReader:
         """Whether a type is that of a list of ports, or an alias of it."""
         return _is_list(text_of(type_)) or named(type_)[1] in self._aliases
 
-    def of_class(self, bound: Bound, place: Place) -> Provided:
+    def of_class(self, bound: BoundClass, place: SourcePosition) -> Provided:
         """The ports that a class provides; place: where it is used."""
         self._complete = True
         ports = self._of_class(bound, place)
@@ -66,7 +66,7 @@ class PortsReader:
         ports = body.evaluated(node)
         return None if ports is None else Provided(tuple(ports.values()), self._complete)
 
-    def _of_class(self, bound: Bound, place: Place, depth: int = 0) -> Ports:
+    def _of_class(self, bound: BoundClass, place: SourcePosition, depth: int = 0) -> Ports:
         for each in self.sources.ancestry(bound):
             if bodies := self.sources.methods(each, "providedPorts"):
                 node, path = bodies[0]
@@ -82,7 +82,7 @@ class PortsReader:
                 return {}
         return {}
 
-    def _of_library(self, bound: Bound, place: Place) -> Ports | None:
+    def _of_library(self, bound: BoundClass, place: SourcePosition) -> Ports | None:
         """The ports of a class of a known library; None for any other."""
         provided = self.sources.library_ports(bound, place)
         if provided is None:
@@ -94,7 +94,7 @@ class PortsReader:
             self.incomplete(f"whether `{name}` provides {others} depends on the distribution; {what_to_do}", place)
         return ports
 
-    def incomplete(self, message: str, place: Place) -> None:
+    def incomplete(self, message: str, place: SourcePosition) -> None:
         """Report what is not understood."""
         self._complete = False
         self.sources.report(message, place)
@@ -133,7 +133,7 @@ class PortsReader:
             return {}
         return self._of_class(found, place, frame.depth + 1)
 
-    def _owners(self, scope: str, frame: Frame, place: Place) -> list[Bound]:
+    def _owners(self, scope: str, frame: Frame, place: SourcePosition) -> list[BoundClass]:
         """The classes that may have the function that a call means; scope: what is before its name."""
         if not scope:
             return list(self.sources.ancestry(frame.bound)) if frame.bound is not None else []

@@ -22,7 +22,7 @@ from btq_lang.cpp.grammar import (
     walk,
 )
 from btq_lang.cpp.macros import MATTERS, Expanded, Macro
-from btq_lang.cpp.model import Place, Unseen
+from btq_lang.cpp.model import SourcePosition, Unseen
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ class Function(Record):
     node: Node
 
 
-class Call(Record):
+class RegistrationCall(Record):
     """A call that may register a node; scope: the namespaces and classes around it."""
 
     name: str
@@ -68,7 +68,7 @@ class Call(Record):
     node: Node
 
 
-class Source:
+class CppSource:
     """One file.
 
     Args:
@@ -86,7 +86,7 @@ class Source:
         self.path: Final = path
         self.classes: Final[list[Class]] = []
         self.functions: Final[list[Function]] = []
-        self.calls: Final[list[Call]] = []
+        self.calls: Final[list[RegistrationCall]] = []
         self.strings: Final[dict[str, str]] = {}
         self.lists: Final[dict[str, tuple[Node, tuple[str, ...]]]] = {}
         self.aliases: Final[dict[str, str]] = {}
@@ -104,11 +104,11 @@ class Source:
             if any(map(MATTERS, lines[row : node.end_point[0] + 1])):
                 self.unseen.append(Unseen("the C++ grammar cannot read this", self.place_of(node), hides_node=True))
 
-    def place_of(self, node: Node) -> Place:
+    def place_of(self, node: Node) -> SourcePosition:
         """Where a node is on the disk."""
         row, column = self._expanded.original(*node.start_point)
         end_row, end_column = self._expanded.original(*node.end_point, at_end=True)
-        return Place(self.path, row + 1, column + 1, end_row + 1, end_column + 1)
+        return SourcePosition(self.path, row + 1, column + 1, end_row + 1, end_column + 1)
 
     def _visit(
         self, nodes: Iterable[Node], scope: tuple[str, ...], within: Class | None, parameters: tuple[str, ...]
@@ -192,7 +192,7 @@ class Source:
             elif each.type == "call_expression":
                 _, name, types = callee(each)
                 if REGISTERS(name):
-                    self.calls.append(Call(name, tuple(map(plain, types)), scope, self.path, each))
+                    self.calls.append(RegistrationCall(name, tuple(map(plain, types)), scope, self.path, each))
                 elif name in ACCESSES and _is_of_another(field(each, "function")) and (given := arguments(each)):
                     self.accessed.add(literal(given[0]) or "")
 

@@ -14,8 +14,8 @@ from btq_lang.catalog.kinds import Category
 from btq_lang.catalog.nav2 import DISTRIBUTIONS
 from btq_lang.catalog.nav2.bases import BASES, NAMESPACE, BasePort
 from btq_lang.catalog.nodes import BUILTINS
-from btq_lang.cpp.model import CppPort, Place, Unseen
-from btq_lang.cpp.source import Class, Function, Source, parts, substituted
+from btq_lang.cpp.model import CppPort, SourcePosition, Unseen
+from btq_lang.cpp.source import Class, CppSource, Function, parts, substituted
 from btq_lang.util.grouping import grouped
 from btq_lang.util.record import Record
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 T = TypeVar("T", Class, Function)
 
 
-class Bound(Record):
+class BoundClass(Record):
     """A class and what the parameters of its template mean; class_: None for one that is not in the sources."""
 
     class_: Class | None
@@ -39,7 +39,7 @@ class Bound(Record):
         return tuple(self.name.split("::"))
 
 
-class Sources:
+class CppSources:
     """The files, by path.
 
     Args:
@@ -49,43 +49,45 @@ class Sources:
         accessed: the ports that code reads or writes of another object.
     """
 
-    def __init__(self, sources: Iterable[Source], distributions: tuple[str, ...] = DISTRIBUTIONS) -> None:
+    def __init__(self, sources: Iterable[CppSource], distributions: tuple[str, ...] = DISTRIBUTIONS) -> None:
         self._distributions: Final = distributions
         self.files: Final = {source.path: source for source in sources}
         self.unseen: Final = [each for source in self.files.values() for each in source.unseen]
         self.accessed: Final = frozenset().union(*(source.accessed for source in self.files.values()))
-        self._orders: Final[dict[str, list[Source]]] = {}  # by path, the nearest first
+        self._orders: Final[dict[str, list[CppSource]]] = {}  # by path, the nearest first
         every = self.files.values()
         self._by_file_name: Final = grouped((path.rpartition("/")[2], path) for path in self.files)
         # By the last part of the name, of a class and of a function.
         self._classes: Final = grouped((_last(each.name), each) for source in every for each in source.classes)
         self._methods: Final = grouped((_last(each.name), each) for source in every for each in source.functions)
 
-    def place_of(self, path: str, node: Node) -> Place:
+    def place_of(self, path: str, node: Node) -> SourcePosition:
         """Where a node of a file is on the disk."""
         return self.files[path].place_of(node)
 
-    def report(self, message: str, place: Place, hides_node: bool = False) -> None:
+    def report(self, message: str, place: SourcePosition, hides_node: bool = False) -> None:
         """Report once what cannot be read."""
         unseen = Unseen(message, place, hides_node)
         if unseen not in self.unseen:
             self.unseen.append(unseen)
 
-    def find(self, type_: str, scope: tuple[str, ...], path: str, place: Place, aliases: int = 0) -> Bound:
+    def find(
+        self, type_: str, scope: tuple[str, ...], path: str, place: SourcePosition, aliases: int = 0
+    ) -> BoundClass:
         """The class that a type means at a place; aliases: by how many of them it was found."""
         name, given = parts(type_)
         found = self._nearest(self._classes.get(_last(name), []), name, scope, path, place)
         if found is None and aliases < _MOST_ALIASES and (alias := self.alias(name, scope, path)) is not None:
             return self.find(alias, scope, path, place, aliases + 1)
         if found is None:
-            return Bound(None, name, {str(at): each for at, each in enumerate(given)})
-        return Bound(found, found.name, dict(zip(found.parameters, given, strict=False)))
+            return BoundClass(None, name, {str(at): each for at, each in enumerate(given)})
+        return BoundClass(found, found.name, dict(zip(found.parameters, given, strict=False)))
 
-    def function(self, name: str, scope: tuple[str, ...], path: str, place: Place) -> Function | None:
+    def function(self, name: str, scope: tuple[str, ...], path: str, place: SourcePosition) -> Function | None:
         """The function outside of a class that a name means at a place."""
         return self._nearest(self._methods.get(_last(name), []), name, scope, path, place)
 
-    def ancestry(self, bound: Bound) -> Iterator[Bound]:
+    def ancestry(self, bound: BoundClass) -> Iterator[BoundClass]:
         """A class and all that it derives from, the nearest first; those that are not in the sources too."""
         waiting, seen = [bound], {bound.name}
         for each in waiting:
@@ -100,7 +102,7 @@ class Sources:
                     seen.add(found.name)
                     waiting.append(found)
 
-    def category(self, bound: Bound) -> Category | None:
+    def category(self, bound: BoundClass) -> Category | None:
         """The category that a class has from what it derives from; None if that is not in the sources."""
         for each in self.ancestry(bound):
             scope, _, name = each.name.rpartition("::")
@@ -110,7 +112,7 @@ class Sources:
                 return LIBRARIES[name]
         return next(filter(None, map(_mixed_in, self.ancestry(bound))), None)
 
-    def methods(self, bound: Bound, name: str) -> list[tuple[Node, str]]:
+    def methods(self, bound: BoundClass, name: str) -> list[tuple[Node, str]]:
         """The bodies of a class's own methods of a name, in the class or outside, each with its file."""
         class_ = bound.class_
         if class_ is None:
@@ -125,7 +127,7 @@ class Sources:
             found += [(name, each.node, each.path) for each in self._outside(class_, name)]
         return found
 
-    def string(self, name: str, bound: Bound | None, scope: tuple[str, ...], path: str) -> str | None:
+    def string(self, name: str, bound: BoundClass | None, scope: tuple[str, ...], path: str) -> str | None:
         """The string that a constant means."""
         for whole, source in self._meant(name, bound, scope, path):
             if whole in source.strings:
@@ -139,7 +141,7 @@ class Sources:
         return found.pop() if len(found) == 1 else None
 
     def constant(
-        self, name: str, bound: Bound | None, scope: tuple[str, ...], path: str
+        self, name: str, bound: BoundClass | None, scope: tuple[str, ...], path: str
     ) -> tuple[Node, tuple[str, ...], str] | None:
         """The value of a constant that may be ports, with its scope and file."""
         for whole, source in self._meant(name, bound, scope, path):
@@ -147,7 +149,9 @@ class Sources:
                 return *source.lists[whole], source.path
         return None
 
-    def _meant(self, name: str, bound: Bound | None, scope: tuple[str, ...], path: str) -> Iterator[tuple[str, Source]]:
+    def _meant(
+        self, name: str, bound: BoundClass | None, scope: tuple[str, ...], path: str
+    ) -> Iterator[tuple[str, CppSource]]:
         """The whole names that a name may mean, each in each file, the nearest first."""
         scopes = [each.scope for each in self.ancestry(bound)] if bound is not None else []
         for around in (scope, *scopes):
@@ -171,7 +175,7 @@ class Sources:
                     return source.aliases[whole]
         return None
 
-    def library_ports(self, bound: Bound, place: Place) -> tuple[dict[str, CppPort], str] | None:
+    def library_ports(self, bound: BoundClass, place: SourcePosition) -> tuple[dict[str, CppPort], str] | None:
         """The ports of a class of a known library, by name, each at a place, and those that it may have, too; None for
         any other class, which may provide any port."""
         if (of_nav2 := _of_nav2(bound)) is None:
@@ -198,7 +202,7 @@ class Sources:
                 found.append(function)
         return found
 
-    def _nearest(self, found: list[T], name: str, scope: tuple[str, ...], path: str, place: Place) -> T | None:
+    def _nearest(self, found: list[T], name: str, scope: tuple[str, ...], path: str, place: SourcePosition) -> T | None:
         """Of what has a name's last part, the one that the name means at a place."""
         if not found:
             return None
@@ -217,7 +221,7 @@ class Sources:
                 return None
         return fitting[0] if fitting else None
 
-    def _near(self, path: str) -> list[Source]:
+    def _near(self, path: str) -> list[CppSource]:
         """All files, the nearest first: the file itself, what it includes, directly or not, and the others."""
         if path not in self._orders:
             order = {path: self.files[path]}
@@ -236,7 +240,7 @@ class Sources:
         return [path for path in self._by_file_name.get(name, ()) if f"/{path}".endswith(end)]
 
 
-def _mixed_in(bound: Bound) -> Category | None:
+def _mixed_in(bound: BoundClass) -> Category | None:
     """The category of a class of the engine that a template, which is not in the sources, is given to derive from."""
     given = bound.meanings.values() if bound.class_ is None else ()
     names = (each.removeprefix("BT::") for each in given if each.startswith("BT::"))
@@ -256,7 +260,7 @@ def _last(name: str) -> str:
     return name.rpartition("::")[2]
 
 
-def _of_nav2(bound: Bound) -> tuple[BasePort, ...] | None:
+def _of_nav2(bound: BoundClass) -> tuple[BasePort, ...] | None:
     """The ports of a base class of Nav2's nodes in its distributions; None for any other class."""
     scope, _, name = bound.name.rpartition("::")
     return BASES.get(name) if bound.class_ is None and scope in ("", NAMESPACE) else None
@@ -266,7 +270,7 @@ def _default(port: BasePort) -> str | None:
     return "" if port.direction == "input" else None
 
 
-def _library_ports(bound: Bound, place: Place) -> dict[str, CppPort] | None:
+def _library_ports(bound: BoundClass, place: SourcePosition) -> dict[str, CppPort] | None:
     """The ports of a class of the engine or of behaviortree_ros2, by name, each at a place."""
     name = bound.name.rpartition("::")[2]
     if name in ROS_PORTS:

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.cpp_classes import ENGINE
 from btq_lang.cpp.grammar import LAMBDAS, arguments, callee, contents, enclosing, field, literal, text_of, walk
-from btq_lang.cpp.model import CppPort, Use
+from btq_lang.cpp.model import CppPort, PortUse
 from btq_lang.cpp.source import ACCESSES
-from btq_lang.cpp.sources import Bound, Sources
+from btq_lang.cpp.sources import BoundClass, CppSources
 from btq_lang.cpp.values import Frame, string
 
 if TYPE_CHECKING:
@@ -30,15 +30,15 @@ class Uses:
         complete: whether all code is in the sources, and the names of all ports in it can be seen.
     """
 
-    def __init__(self, sources: Sources) -> None:
-        self.all: Final[list[Use]] = []
+    def __init__(self, sources: CppSources) -> None:
+        self.all: Final[list[PortUse]] = []
         self.complete = True
         self._sources: Final = sources
         self._strings: Final[set[str]] = set()
         self._identifiers: Final[set[str]] = set()
 
     @classmethod
-    def of_class(cls, sources: Sources, bound: Bound) -> Uses:
+    def of_class(cls, sources: CppSources, bound: BoundClass) -> Uses:
         """What the methods of a class and of its bases do."""
         uses = cls(sources)
         for each in sources.ancestry(bound):
@@ -53,7 +53,7 @@ class Uses:
         return uses
 
     @classmethod
-    def of_function(cls, sources: Sources, given: Node, frame: Frame) -> Uses:
+    def of_function(cls, sources: CppSources, given: Node, frame: Frame) -> Uses:
         """What a function does that a node is made of: a lambda, or the name of one or of a function."""
         uses = cls(sources)
         function = _function(sources, given, frame)
@@ -69,7 +69,7 @@ class Uses:
         named = self._strings | self._sources.accessed | self._sources.strings_of(self._identifiers)
         return tuple(port for port in ports if port.name not in named)
 
-    def undeclared(self, ports: Iterable[CppPort]) -> tuple[Use, ...]:
+    def undeclared(self, ports: Iterable[CppPort]) -> tuple[PortUse, ...]:
         """Uses of ports that are not among some."""
         names = {port.name for port in ports}
         return tuple(use for use in self.all if use.port not in names and not use.falls_back)
@@ -101,15 +101,17 @@ class Uses:
             if port is not None:
                 writes = name == "setOutput"
                 without = "" if writes else _without(call)
-                self.all.append(Use(port, writes, without, self._sources.place_of(frame.path, call)))
+                self.all.append(PortUse(port, writes, without, self._sources.place_of(frame.path, call)))
             elif not _is_parameter(given[0]):  # else the name is in a string of the code that calls this
                 self.complete = False
         elif _FALLS_BACK(name):
             for port in filter(None, map(literal, given)):
-                self.all.append(Use(port, False, "goes on", self._sources.place_of(frame.path, call), falls_back=True))
+                self.all.append(
+                    PortUse(port, False, "goes on", self._sources.place_of(frame.path, call), falls_back=True)
+                )
 
 
-def _function(sources: Sources, given: Node, frame: Frame) -> tuple[Node, Frame] | None:
+def _function(sources: CppSources, given: Node, frame: Frame) -> tuple[Node, Frame] | None:
     """The function that an argument is, with the frame of its body; None if it cannot be seen."""
     if given.type == "lambda_expression":
         return given, frame

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.cpp.grammar import arguments, callee, contents, field, literal, named, text_of
 from btq_lang.cpp.source import substituted
-from btq_lang.cpp.sources import Bound, Sources
+from btq_lang.cpp.sources import BoundClass, CppSources
 
 if TYPE_CHECKING:
     from tree_sitter import Node
@@ -22,7 +22,7 @@ class Frame:
         depth: the number of functions around that called each other.
     """
 
-    def __init__(self, bound: Bound | None, scope: tuple[str, ...], path: str, depth: int = 0) -> None:
+    def __init__(self, bound: BoundClass | None, scope: tuple[str, ...], path: str, depth: int = 0) -> None:
         self.bound: Final = bound
         self.scope: Final = scope
         self.path: Final = path
@@ -35,7 +35,7 @@ class Frame:
         return self.bound.meanings if self.bound is not None else {}
 
 
-def string(sources: Sources, node: Node | None, frame: Frame) -> str | None:
+def string(sources: CppSources, node: Node | None, frame: Frame) -> str | None:
     """The string that an expression is: a literal, a constant, or either in `std::string(…)`."""
     if node is None:
         return None
@@ -59,7 +59,7 @@ def string(sources: Sources, node: Node | None, frame: Frame) -> str | None:
     return None
 
 
-def default(sources: Sources, node: Node, frame: Frame) -> str | None:
+def default(sources: CppSources, node: Node, frame: Frame) -> str | None:
     """The text of a default value; None if it is an expression."""
     if (found := string(sources, node, frame)) is not None:
         return found
@@ -73,7 +73,7 @@ def default(sources: Sources, node: Node, frame: Frame) -> str | None:
     return "inf" if _INFINITY.fullmatch(written) else None
 
 
-def type_of(sources: Sources, written: str, frame: Frame) -> str:
+def type_of(sources: CppSources, written: str, frame: Frame) -> str:
     """The type of a port: what an alias or a template's parameter means, else as it is written."""
     type_ = substituted(written, frame.meanings)
     ancestry = sources.ancestry(frame.bound) if frame.bound is not None else ()

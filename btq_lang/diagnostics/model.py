@@ -44,7 +44,7 @@ class Related(Record):
     message: str
 
 
-class Change(Record):
+class FixEdit(Record):
     """One edit of a fix: the text at `place` becomes `text`."""
 
     place: Place
@@ -60,7 +60,7 @@ class Fix(Record):
     """
 
     title: str
-    changes: tuple[Change, ...]
+    changes: tuple[FixEdit, ...]
     safe: bool = False
 
 
@@ -83,7 +83,7 @@ class Diagnostic(Record):
 
 def replace_fix(title: str, span: Span, text: str, *, safe: bool = False) -> Fix:
     """The commonest fix: one replacement beside the diagnostic."""
-    return Fix(title, (Change(Place(span), text),), safe)
+    return Fix(title, (FixEdit(Place(span), text),), safe)
 
 
 def write_fix(text: str, span: Span, *, safe: bool = False) -> Fix:
@@ -110,7 +110,7 @@ def relocated(diagnostic: Diagnostic, span: Span, move: Callable[[Place], Place]
         return diagnostic
 
     def moved(fix: Fix) -> Fix:
-        return Fix(fix.title, tuple([Change(move(each.place), each.text) for each in fix.changes]), fix.safe)
+        return Fix(fix.title, tuple([FixEdit(move(each.place), each.text) for each in fix.changes]), fix.safe)
 
     related = tuple([Related(move(each.place), each.message) for each in diagnostic.related])
     return replace(diagnostic, span=span, related=related, fixes=tuple(map(moved, diagnostic.fixes)))

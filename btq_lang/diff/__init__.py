@@ -16,13 +16,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from btq_lang.diff.changes import TITLES, Change, Detail, section
-from btq_lang.diff.contents import Place, contents
+from btq_lang.diff.contents import DiskPlace, contents
 from btq_lang.diff.items import item_changes, renamed_items
 from btq_lang.diff.matching import Forest, match
 from btq_lang.diff.nodes import tree_changes
 from btq_lang.workspace.workspace import Workspace
 
-__all__ = ["Change", "Detail", "Place", "compare"]
+__all__ = ["Change", "Detail", "DiskPlace", "compare"]
 
 
 def compare(old: Workspace, old_paths: Iterable[str], new: Workspace, new_paths: Iterable[str]) -> tuple[Change, ...]:

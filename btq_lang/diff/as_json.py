@@ -21,13 +21,13 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator
 
-from btq_lang.diff import Change, Place
-from btq_lang.diff.comparison import Comparison, Side, all_changes
+from btq_lang.diff import Change, DiskPlace
+from btq_lang.diff.comparison import MissionComparison, Side, all_changes
 from btq_lang.diff.wording import SIGNS
 from btq_lang.util.version import __version__
 
 
-def render(comparisons: Iterable[Comparison]) -> Iterator[str]:
+def render(comparisons: Iterable[MissionComparison]) -> Iterator[str]:
     """The document, in one piece."""
     comparisons = tuple(comparisons)
     counts = {what: sum(change.what == what for change in all_changes(comparisons)) for what in SIGNS}
@@ -48,7 +48,7 @@ def render(comparisons: Iterable[Comparison]) -> Iterator[str]:
     yield json.dumps(document, indent=2)
 
 
-def _change(comparison: Comparison, change: Change) -> dict[str, object]:
+def _change(comparison: MissionComparison, change: Change) -> dict[str, object]:
     return {
         "what": change.what,
         "thing": change.thing,
@@ -62,7 +62,7 @@ def _change(comparison: Comparison, change: Change) -> dict[str, object]:
     }
 
 
-def _place(side: Side, place: Place | None) -> dict[str, object] | None:
+def _place(side: Side, place: DiskPlace | None) -> dict[str, object] | None:
     if place is None:
         return None
     path, start, end = side.place(place)

@@ -9,11 +9,11 @@ import re
 from collections.abc import Iterable, Iterator
 
 from btq_lang.diff.changes import TITLES, Change, section
-from btq_lang.diff.comparison import Comparison
+from btq_lang.diff.comparison import MissionComparison
 from btq_lang.diff.wording import headline, lines, summary
 
 
-def render(comparisons: Iterable[Comparison]) -> Iterator[str]:
+def render(comparisons: Iterable[MissionComparison]) -> Iterator[str]:
     """The lines of the document."""
     comparisons = tuple(each for each in comparisons if each.changes)
     if not comparisons:
@@ -41,7 +41,7 @@ def code(text: str) -> str:
     return f"{ticks}{blank}{text}{blank}{ticks}"
 
 
-def _change(comparison: Comparison, change: Change) -> Iterator[str]:
+def _change(comparison: MissionComparison, change: Change) -> Iterator[str]:
     thing, name, happened = headline(change, code)
     what, _, more = happened.partition(" ")
     said = [thing, code(name) if name else "", f"**{what}**", more, f"({code(comparison.line(change))})"]

@@ -14,13 +14,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 
 from btq_lang.diff.changes import Change
-from btq_lang.diff.comparison import Comparison, all_changes
+from btq_lang.diff.comparison import MissionComparison, all_changes
 from btq_lang.diff.wording import SIGNS, headline, lines, summary
 
 Paint = Callable[[str, str], str]
 
 
-def render(comparisons: Iterable[Comparison], paint: Paint) -> Iterator[str]:
+def render(comparisons: Iterable[MissionComparison], paint: Paint) -> Iterator[str]:
     """The lines; none if nothing changed.
 
     Args:
@@ -36,7 +36,7 @@ def render(comparisons: Iterable[Comparison], paint: Paint) -> Iterator[str]:
         yield summary(all_changes(comparisons))
 
 
-def _change(comparison: Comparison, change: Change, paint: Paint) -> Iterator[str]:
+def _change(comparison: MissionComparison, change: Change, paint: Paint) -> Iterator[str]:
     thing, name, happened = headline(change)
     sign = SIGNS[change.what]
     said = " ".join(word for word in (sign, thing, name, happened) if word)

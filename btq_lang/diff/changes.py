@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final, Literal, TypeAlias
 
-from btq_lang.diff.contents import Place, Values
+from btq_lang.diff.contents import DiskPlace, Values
 from btq_lang.util.record import Record
 
 # The titles of the lists of changes, in their order: what the mission is and must be first, then how it does that.
@@ -60,8 +60,8 @@ class Change(Record):
     what: What
     thing: str
     name: str
-    old: Place | None
-    new: Place | None
+    old: DiskPlace | None
+    new: DiskPlace | None
     details: tuple[Detail, ...] = ()
     below: int = 0
     around: tuple[str, ...] = ()

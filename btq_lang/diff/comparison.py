@@ -7,14 +7,14 @@ from typing import Final
 
 from btq_lang.btcpp.marks import is_generated
 from btq_lang.btcpp.models import made_models
-from btq_lang.diff import Change, Place, compare
+from btq_lang.diff import Change, DiskPlace, compare
 from btq_lang.diff.changes import GUARD, Detail
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import Position
 from btq_lang.workspace.workspace import Workspace
 
 
-class ManualEdit(Record):
+class UnmergedEdit(Record):
     """A manual edit of a mission's XML that is not a part of the mission.
 
     Attributes:
@@ -26,7 +26,7 @@ class ManualEdit(Record):
     name: str
     contents: str
     message: str
-    place: Place
+    place: DiskPlace
 
 
 class Side(Record):
@@ -43,15 +43,15 @@ class Side(Record):
     workspace: Workspace
     paths: tuple[str, ...]
     shown: Callable[[str], str]
-    manual_edits: tuple[ManualEdit, ...] = ()
+    manual_edits: tuple[UnmergedEdit, ...] = ()
 
-    def place(self, place: Place) -> tuple[str, Position, Position]:
+    def place(self, place: DiskPlace) -> tuple[str, Position, Position]:
         """A place: the file as it is shown, and its start and end, counted from 0."""
         lines = self.workspace.files[place.path].source_lines
         return self.shown(place.path), lines.position(place.span.start), lines.position(place.span.end)
 
 
-class Comparison(Record):
+class MissionComparison(Record):
     """Two missions and what changed between them."""
 
     old: Side
@@ -94,13 +94,13 @@ def diff_missions(old: Workspace, old_path: str, new: Workspace, new_path: str) 
     return without_made_models(compared(*sides)).changes
 
 
-def compared(old: Side, new: Side) -> Comparison:
+def compared(old: Side, new: Side) -> MissionComparison:
     """Compare two missions."""
     changes = compare(old.workspace, old.paths, new.workspace, new.paths)
-    return Comparison(old, new, (*changes, *_manual_edits(old, new)))
+    return MissionComparison(old, new, (*changes, *_manual_edits(old, new)))
 
 
-def without_made_models(comparison: Comparison) -> Comparison:
+def without_made_models(comparison: MissionComparison) -> MissionComparison:
     """Leave out the models that a build has added to XML for undeclared nodes."""
     made = {
         (what, path, name)
@@ -127,7 +127,7 @@ def _manual_edits(old: Side, new: Side) -> Iterator[Change]:
             yield Change("changed", GUARD, each.name, None, each.place, (Detail("by hand", None, each.message),))
 
 
-def all_changes(comparisons: Iterable[Comparison]) -> tuple[Change, ...]:
+def all_changes(comparisons: Iterable[MissionComparison]) -> tuple[Change, ...]:
     return tuple(change for comparison in comparisons for change in comparison.changes)
 
 

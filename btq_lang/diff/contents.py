@@ -33,24 +33,24 @@ MAIN: Final = "main tree"
 MISSION: Final = "mission"
 
 
-class Place(Record):
+class DiskPlace(Record):
     """A place: a file, and a span of its text on the disk."""
 
     path: str
     span: Span
 
 
-class Value(Record):
+class AspectValue(Record):
     """The value of one aspect."""
 
     key: object
     text: str
 
 
-Values: TypeAlias = dict[str, Value]
+Values: TypeAlias = dict[str, AspectValue]
 
 
-class Part:
+class TreePart:
     """A node, or a tree above its nodes.
 
     Attributes:
@@ -65,7 +65,7 @@ class Part:
 
     __slots__ = ("category", "children", "kind", "name", "place", "requirements", "target", "values", "word")
 
-    def __init__(self, kind: str, word: str, place: Place) -> None:
+    def __init__(self, kind: str, word: str, place: DiskPlace) -> None:
         self.kind = kind
         self.word = word
         self.place: Final = place
@@ -74,7 +74,7 @@ class Part:
         self.category: str | None = None
         self.values: Values = {}
         self.requirements: list[str] = []
-        self.children: list[Part] = []
+        self.children: list[TreePart] = []
 
 
 class Item(Record):
@@ -89,16 +89,16 @@ class Item(Record):
     thing: str
     name: str
     values: Values
-    place: Place
+    place: DiskPlace
 
 
-def contents(workspace: Workspace, paths: Iterable[str]) -> tuple[list[Part], list[Item]]:
+def contents(workspace: Workspace, paths: Iterable[str]) -> tuple[list[TreePart], list[Item]]:
     """The trees of some files together, and all else in them; of duplicates the first counts, as in the language.
 
     Args:
         paths: the mission's own file is the last; the Roots of the others have no effect.
     """
-    trees: list[Part] = []
+    trees: list[TreePart] = []
     items: dict[tuple[str, str], Item] = {}
     paths = tuple(paths)
     for path in paths:
@@ -117,8 +117,8 @@ def contents(workspace: Workspace, paths: Iterable[str]) -> tuple[list[Part], li
     if main is not None:  # if it is named in the Root, or is the only candidate
         values = items[MISSION, ""].values if (MISSION, "") in items else {}
         name = main.symbol.name
-        place = Place(main.path, main.span)
-        items[MISSION, ""] = Item(MISSION, "", {**values, MAIN: Value(name, name)}, place)
+        place = DiskPlace(main.path, main.span)
+        items[MISSION, ""] = Item(MISSION, "", {**values, MAIN: AspectValue(name, name)}, place)
     for tree in trees:
         model = items.get(("node model", tree.name or ""))
         if model is not None and model.values["category"].key == SUBTREE:  # XML has a tree's ports only there
@@ -139,13 +139,13 @@ class _Reader:
 
     # ---- trees ----
 
-    def tree(self, tree: syntax.Tree) -> Part:
-        top = Part(TREE, "BehaviorTree", self._place(tree.start, tree.end))
+    def tree(self, tree: syntax.Tree) -> TreePart:
+        top = TreePart(TREE, "BehaviorTree", self._place(tree.start, tree.end))
         top.name = tree.name.text if tree.name is not None else None
         self._pairs(top, tree.attributes)
         self._clauses(top, tree.clauses)
         top.values.update(self._ports(tree.ports))
-        waiting: list[tuple[Part, tuple[syntax.Node | syntax.Verbatim, ...]]] = [(top, tree.children)]
+        waiting: list[tuple[TreePart, tuple[syntax.Node | syntax.Verbatim, ...]]] = [(top, tree.children)]
         while waiting:
             above, children = waiting.pop()
             for child in children:
@@ -155,8 +155,8 @@ class _Reader:
                     waiting.append((part, child.children))
         return top
 
-    def _node(self, node: syntax.Node) -> Part:
-        part = Part("", node.head.text, self._place(node.start, node.end))
+    def _node(self, node: syntax.Node) -> TreePart:
+        part = TreePart("", node.head.text, self._place(node.start, node.end))
         part.category = node.category.raw if node.category is not None else None
         part.name = node.name.text if node.name is not None else None
         if is_placeholder(node) and part.name is not None:
@@ -170,12 +170,12 @@ class _Reader:
         self._clauses(part, node.clauses)
         return part
 
-    def _verbatim(self, verbatim: syntax.Verbatim) -> Part:
-        part = Part(VERBATIM, "xml", self._place(verbatim.start, verbatim.end))
+    def _verbatim(self, verbatim: syntax.Verbatim) -> TreePart:
+        part = TreePart(VERBATIM, "xml", self._place(verbatim.start, verbatim.end))
         part.values["element"] = _value(verbatim.text)
         return part
 
-    def _pairs(self, part: Part, pairs: tuple[syntax.Pair, ...], has_id: bool = False) -> None:
+    def _pairs(self, part: TreePart, pairs: tuple[syntax.Pair, ...], has_id: bool = False) -> None:
         builtin = BUILTINS.get(part.kind)
         for pair in pairs:
             key = pair.key.text
@@ -184,15 +184,15 @@ class _Reader:
             port = builtin.port(key) if builtin is not None else None
             part.values[key] = _value(pair.value, port.unit if port is not None else None)
 
-    def _clauses(self, part: Part, clauses: tuple[syntax.NodeClause, ...]) -> None:
+    def _clauses(self, part: TreePart, clauses: tuple[syntax.NodeClause, ...]) -> None:
         for clause in clauses:
             if isinstance(clause, syntax.Tags):
                 for tag in clause.names:
-                    part.values[f"tag {tag.text}"] = Value(True, "")
+                    part.values[f"tag {tag.text}"] = AspectValue(True, "")
             if isinstance(clause, syntax.Satisfices):
                 for quality in clause.qualities:
                     if not quality.requirements:
-                        part.values[f"quality {self._quality(quality.path)}"] = Value(True, "")
+                        part.values[f"quality {self._quality(quality.path)}"] = AspectValue(True, "")
                     for requirement in quality.requirements:
                         self._attach(part, requirement, quality.path)
             else:
@@ -200,7 +200,7 @@ class _Reader:
                     self._attach(part, use)
 
     def _attach(
-        self, part: Part, requirement: syntax.Requirement | syntax.ReqRef, quality: syntax.QualityPath | None = None
+        self, part: TreePart, requirement: syntax.Requirement | syntax.ReqRef, quality: syntax.QualityPath | None = None
     ) -> None:
         arguments: tuple[object, ...] = ()
         text = ""
@@ -212,7 +212,7 @@ class _Reader:
             text = ", ".join(f"{each.name.text} = {self._text(each.value)}" for each in requirement.arguments)
         elif not requirement.is_reference:
             self.inside.append(self._requirement(requirement, quality))
-        part.values[f"requirement {name}"] = Value(arguments, text)
+        part.values[f"requirement {name}"] = AspectValue(arguments, text)
         part.requirements.append(name)
 
     # ---- items ----
@@ -231,12 +231,12 @@ class _Reader:
             words = {"unit": item.unit, "from": item.source, "kind": item.behaviour, "fresh within": item.fresh}
             values = {aspect: _value(word) for aspect, word in words.items() if word is not None}
             if item.fresh is not None:
-                values["fresh within"] = Value(_meaning(item.fresh), item.fresh.raw)
+                values["fresh within"] = AspectValue(_meaning(item.fresh), item.fresh.raw)
             if item.initially is not None:
-                values["initially"] = Value(_meaning(item.initially), self._text(item.initially))
+                values["initially"] = AspectValue(_meaning(item.initially), self._text(item.initially))
             yield self._item("signal", item.name, values, item)
         elif isinstance(item, syntax.Context):
-            condition = Value(_meaning(item.condition), self._text(item.condition))
+            condition = AspectValue(_meaning(item.condition), self._text(item.condition))
             yield self._item("context", item.name, {"condition": condition}, item)
         elif isinstance(item, syntax.QualityDecl):
             values = {"title": _value(item.text)} if item.text is not None else {}
@@ -258,7 +258,7 @@ class _Reader:
             yield Item(MISSION, "qualities", {"edition": _value(item.edition)}, self._place(item.start, item.end))
         elif isinstance(item, syntax.Apply):
             text = self._slice(item.start, item.end)
-            yield Item("apply", text, {"": Value(_meaning(item), text)}, self._place(item.start, item.end))
+            yield Item("apply", text, {"": AspectValue(_meaning(item), text)}, self._place(item.start, item.end))
         elif isinstance(item, syntax.Verbatim):
             yield self._item("xml", item.text, {}, item)
 
@@ -266,21 +266,21 @@ class _Reader:
         values: Values = {}
         if requirement.text is not None:
             text = " ".join(requirement.text.text.split())
-            values["title"] = Value(text, f'"{text}"')
+            values["title"] = AspectValue(text, f'"{text}"')
         quality = requirement.quality or quality
         if quality is not None:
             values["quality"] = self._quality_value(quality)
         for parameter in requirement.parameters:
             text = " : ".join(word.raw for word in (parameter.name, parameter.unit) if word is not None)
             default = f" = {self._text(parameter.default)}" if parameter.default is not None else ""
-            values[f"parameter {parameter.name.text}"] = Value(_meaning(parameter), text + default)
+            values[f"parameter {parameter.name.text}"] = AspectValue(_meaning(parameter), text + default)
         for clause in requirement.clauses:
             aspect = clause.verb.text if isinstance(clause, syntax.Claim) else _ASPECTS[type(clause)]
             number = 2
             while aspect in values:
                 aspect = f"{aspect.split(' #')[0]} #{number}"
                 number += 1
-            values[aspect] = Value(_meaning(clause), self._slice(clause.start, clause.end))
+            values[aspect] = AspectValue(_meaning(clause), self._slice(clause.start, clause.end))
         return self._item("requirement", requirement.name, values, requirement)
 
     def _model(self, model: syntax.Model) -> Item:
@@ -294,12 +294,12 @@ class _Reader:
                 for pair in part.attributes:
                     values[f"metadata {pair.key.text}"] = _value(pair.value)
             elif isinstance(part, syntax.Verbatim):
-                values[f"xml {part.text.text if part.text is not None else ''}"] = Value(True, "")
+                values[f"xml {part.text.text if part.text is not None else ''}"] = AspectValue(True, "")
         return self._item("node model", model.name, values, model)
 
     def _ports(self, ports: tuple[syntax.Port, ...]) -> Values:
         return {
-            f"port {port.name.text if port.name is not None else ''}": Value(
+            f"port {port.name.text if port.name is not None else ''}": AspectValue(
                 (
                     *(port.direction.raw, _saying(port.type), _default(port), _saying(port.text)),
                     *sorted((pair.key.text, _saying(pair.value)) for pair in port.attributes),
@@ -319,8 +319,8 @@ class _Reader:
         match = find(words, self._edition)
         return match.quality.id if match.quality is not None else path.text
 
-    def _quality_value(self, path: syntax.QualityPath) -> Value:
-        return Value(self._quality(path), path.text)
+    def _quality_value(self, path: syntax.QualityPath) -> AspectValue:
+        return AspectValue(self._quality(path), path.text)
 
     def _text(self, part: object) -> str:
         """A part of the tree as it is written, on one line."""
@@ -333,9 +333,9 @@ class _Reader:
             text = "".join(token.text if token.kind != COMMENT else " " for token in tokens(text))
         return " ".join(text.split())
 
-    def _place(self, start: int, end: int) -> Place:
+    def _place(self, start: int, end: int) -> DiskPlace:
         span = Span(start, end).shifted(self.entry.start)
-        return Place(self._file.path, self._file.on_disk(span))
+        return DiskPlace(self._file.path, self._file.on_disk(span))
 
 
 def _places(part: object) -> Iterator[tuple[int, int]]:
@@ -356,15 +356,15 @@ def _in_si(word: syntax.Word) -> object:
     return quantity[1].dimension, f"{to_si(quantity[0], quantity[1]):.12g}"
 
 
-def _value(word: syntax.Word | None, unit: str | None = None) -> Value:
+def _value(word: syntax.Word | None, unit: str | None = None) -> AspectValue:
     if word is None:
-        return Value(None, "")
+        return AspectValue(None, "")
     if word.kind == QUANTITY:
         quantity, wanted = parse_quantity(word.raw), parse_unit(unit) if unit is not None else None
         if quantity is not None and wanted is not None and quantity[1].dimension == wanted.dimension:
-            return Value(f"{convert(quantity[0], quantity[1], wanted):.15g}", word.raw)
-        return Value("".join(word.raw.split()), word.raw)
-    return Value(word.text, word.raw if "\n" not in word.raw else " ".join(word.raw.split()))
+            return AspectValue(f"{convert(quantity[0], quantity[1], wanted):.15g}", word.raw)
+        return AspectValue("".join(word.raw.split()), word.raw)
+    return AspectValue(word.text, word.raw if "\n" not in word.raw else " ".join(word.raw.split()))
 
 
 def _saying(word: syntax.Word | None) -> str:
@@ -379,7 +379,7 @@ def _default(port: syntax.Port) -> str:
 
 _MISSION_WORDS: Final = {"main_tree_to_execute": MAIN}
 _ASPECTS: Final[dict[type, str]] = {
-    syntax.Scope: "scope",
+    syntax.ScopeClause: "scope",
     syntax.Odds: "odds",
     syntax.Confidence: "confidence",
     syntax.Window: "over last",

@@ -10,7 +10,7 @@ from collections.abc import Hashable, Iterable, Iterator, Sequence
 from typing import Final
 
 from btq_lang.diff.changes import Change, Detail, details
-from btq_lang.diff.contents import MAIN, MISSION, Item, Part, Value
+from btq_lang.diff.contents import MAIN, MISSION, AspectValue, Item, TreePart
 from btq_lang.util.grouping import grouped
 from btq_lang.util.text import counted
 
@@ -31,7 +31,7 @@ def renamed_items(old: Iterable[Item], new: Iterable[Item]) -> dict[tuple[str, s
 
 
 def item_changes(
-    old: Sequence[Item], new: Sequence[Item], renamed: dict[tuple[str, str], str], nodes: tuple[Iterable[Part], ...]
+    old: Sequence[Item], new: Sequence[Item], renamed: dict[tuple[str, str], str], nodes: tuple[Iterable[TreePart], ...]
 ) -> Iterator[Change]:
     """The changes of things, in the order of the new mission, then those that were removed.
 
@@ -54,7 +54,7 @@ def item_changes(
         values = was.values
         if thing == MISSION and MAIN in values:
             main = renamed.get(("tree", str(values[MAIN].key)), values[MAIN].key)
-            values = {**values, MAIN: Value(main, values[MAIN].text)}
+            values = {**values, MAIN: AspectValue(main, values[MAIN].text)}
         differences = [*details(values, item.values)]
         if thing == "requirement":
             counts = attached[0][was.name], attached[1][name]

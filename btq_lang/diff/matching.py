@@ -22,7 +22,7 @@ from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Seq
 from typing import Final, TypeAlias
 
 from btq_lang.catalog.nodes import BUILTINS
-from btq_lang.diff.contents import TREE, Part
+from btq_lang.diff.contents import TREE, TreePart
 from btq_lang.util.grouping import grouped
 
 Ids: TypeAlias = dict[Hashable, int]
@@ -49,8 +49,8 @@ class Forest:
         match: the index of each part's match in the other forest, -1 if there is none.
     """
 
-    def __init__(self, trees: Sequence[Part]) -> None:
-        self.parts: Final[list[Part]] = []
+    def __init__(self, trees: Sequence[TreePart]) -> None:
+        self.parts: Final[list[TreePart]] = []
         self.parents: Final[list[int]] = []
         stack = [(tree, -1) for tree in reversed(trees)]
         while stack:
@@ -113,12 +113,12 @@ def match(old: Forest, new: Forest, renamed: dict[tuple[str, str], str]) -> None
     _line_up(old, new)
 
 
-def _kind(part: Part, renamed: Mapping[tuple[str, str], str]) -> Hashable:
+def _kind(part: TreePart, renamed: Mapping[tuple[str, str], str]) -> Hashable:
     target = renamed.get(("tree", part.target), part.target) if part.target is not None else None
     return renamed.get(("node model", part.kind), part.kind), target
 
 
-def _content(part: Part, kind: Hashable, renamed: Mapping[tuple[str, str], str]) -> Hashable:
+def _content(part: TreePart, kind: Hashable, renamed: Mapping[tuple[str, str], str]) -> Hashable:
     values = frozenset((renamed_aspect(aspect, renamed), value.key) for aspect, value in part.values.items())
     return kind, None if part.kind == TREE else part.name, values
 

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Literal
 
 from btq_lang.diff.changes import Change, Detail, details
-from btq_lang.diff.contents import SUBTREE, TREE, VERBATIM, Part, Values
+from btq_lang.diff.contents import SUBTREE, TREE, VERBATIM, TreePart, Values
 from btq_lang.diff.matching import Forest, common, renamed_aspect
 
 
@@ -109,7 +109,7 @@ def _nearest(forest: Forest) -> list[int]:
 # ---- changed ----
 
 
-def _differences(old: Part, new: Part, renamed: Mapping[tuple[str, str], str]) -> Iterable[Detail]:
+def _differences(old: TreePart, new: TreePart, renamed: Mapping[tuple[str, str], str]) -> Iterable[Detail]:
     if renamed.get(("node model", old.kind), old.kind) != new.kind:
         yield Detail("kind", old.word, new.word)
     elif old.category is not None and new.category is not None and old.category != new.category:
@@ -126,7 +126,7 @@ def _differences(old: Part, new: Part, renamed: Mapping[tuple[str, str], str]) -
 # ---- names ----
 
 
-def shown(part: Part) -> str:
+def shown(part: TreePart) -> str:
     """A node as it is shown: by its name, else by the tree that it calls or its kind."""
     if part.kind == VERBATIM:
         return part.values["element"].text

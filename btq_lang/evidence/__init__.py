@@ -43,13 +43,15 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.verdicts import Report
+    from btq_lang.evidence.verdicts import VerdictReport
 
 FORMATS: Final = ("table", "json", "csv", "junit", "markdown")
 _MODULES: Final = {"json": "json_document", "csv": "csv_rows"}  # named otherwise
 
 
-def write(report: Report, form: str, *, colour: bool = False, verbose: bool = False, width: int | None = None) -> str:
+def write(
+    report: VerdictReport, form: str, *, colour: bool = False, verbose: bool = False, width: int | None = None
+) -> str:
     """Write the verdicts in one of FORMATS.
 
     Args:

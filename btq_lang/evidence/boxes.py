@@ -12,8 +12,8 @@ from btq_lang.evidence.edges import edge_of
 from btq_lang.evidence.rejudging import shown_now
 from btq_lang.evidence.verdicts import SATISFIED, UNKNOWN, VIOLATED, ClauseVerdict
 from btq_lang.evidence.wording import measured
-from btq_lang.graph.figure import Measured
-from btq_lang.requirements.model import Value
+from btq_lang.graph.figure import MeasuredClause
+from btq_lang.requirements.model import Quantity
 from btq_lang.util.grouping import grouped
 from btq_lang.util.text import counted
 
@@ -46,14 +46,14 @@ def measured_of(shown: Iterable[Shown]) -> MeasuredBy:
         if applied is not None and verdict is not None
     )
 
-    def of(applied: Applied) -> tuple[Measured, ...]:
+    def of(applied: Applied) -> tuple[MeasuredClause, ...]:
         clauses = by_key.get(_key(applied), [])
         return tuple(_measured(demand, clause, is_named=len(clauses) > 1) for demand, clause in clauses)
 
     return of
 
 
-def _measured(demand: Demand, clause: ClauseVerdict, is_named: bool) -> Measured:
+def _measured(demand: Demand, clause: ClauseVerdict, is_named: bool) -> MeasuredClause:
     """What logs show of a clause; is_named: its text is among the lines."""
     bounds, by_run = _bounds(demand), clause.by_run
 
@@ -68,7 +68,7 @@ def _measured(demand: Demand, clause: ClauseVerdict, is_named: bool) -> Measured
     numbers = [value.si for value in by_run if value.si is not None]
     if numbers and bounds:
         history += f", from {shown(min(numbers))} to {shown(max(numbers))}"
-    return Measured(
+    return MeasuredClause(
         tuple(lines),
         clause.verdict.replace(" ", "-"),
         # Where nothing is measured, whether it held.
@@ -85,11 +85,11 @@ def _standing(clause: ClauseVerdict) -> str:
     return ": ".join(filter(None, (clause.verdict, ", ".join(counts + unknown))))
 
 
-def _bounds(demand: Demand) -> tuple[Value, ...]:
+def _bounds(demand: Demand) -> tuple[Quantity, ...]:
     """The bounds of a clause that are numbers."""
     limit = demand.claim.limit
     if limit is not None:
-        return tuple(bound for bound in (limit.value, limit.upper) if isinstance(bound, Value))
+        return tuple(bound for bound in (limit.value, limit.upper) if isinstance(bound, Quantity))
     edge = edge_of(demand.claim, demand.applied.subject if demand.applied is not None else None, demand.requirement)
     return (edge.value,) if edge is not None else ()
 

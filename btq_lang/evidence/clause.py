@@ -30,24 +30,34 @@ from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.over_run import OverRun, target_of
 from btq_lang.evidence.run_verbs import run_judge
 from btq_lang.evidence.scopes import in_scope, within
-from btq_lang.evidence.signals import Signals, Unknown
+from btq_lang.evidence.signals import Signals, UnknownValue
 from btq_lang.evidence.tally import Run
 from btq_lang.evidence.verbs import JUDGES, OUT, Judgement, agreed
 from btq_lang.evidence.verbs import duration as lasted
-from btq_lang.evidence.verdicts import NEVER, VIOLATED, ClauseVerdict, Link, Measures
+from btq_lang.evidence.verdicts import NEVER, VIOLATED, CauseLink, ClauseVerdict, Measures
 from btq_lang.evidence.wording import duration
-from btq_lang.requirements.model import Aggregate, Mission, Running, Span, Target, Total, Value, parts_in, signals_in
+from btq_lang.requirements.model import (
+    Aggregate,
+    DurationSum,
+    Interval,
+    MissionRun,
+    NodeTarget,
+    Quantity,
+    Running,
+    parts_in,
+    signals_in,
+)
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
     from btq_lang.evidence.explain import Explainer
-    from btq_lang.evidence.guards import Guard, Refusal
+    from btq_lang.evidence.guards import Guard, RefusedStart
     from btq_lang.evidence.identity import Joined
     from btq_lang.evidence.model import Outcome
     from btq_lang.evidence.odds import Limits
     from btq_lang.evidence.outline import Demand
-    from btq_lang.requirements.model import Claim, Event, Subject
+    from btq_lang.requirements.model import ResolvedClaim, ResolvedEvent, Subject
 
 
 class _Place(Record):
@@ -63,7 +73,7 @@ class _Place(Record):
 
 
 # An activation as it may have been, what was observed during it then, and whether it was in scope.
-_Way: TypeAlias = "tuple[Activation, Observed, bool | Unknown]"
+_Way: TypeAlias = "tuple[Activation, Observed, bool | UnknownValue]"
 
 
 class JudgedClause:
@@ -87,21 +97,21 @@ class JudgedClause:
         self._tally: Final = self.found.tally
         self._margins: Final = self.found.margins
         self._subject: Final = subject
-        self._judge: Final = JUDGES.get(claim.verb) if not isinstance(subject, Span | Total) else None
+        self._judge: Final = JUDGES.get(claim.verb) if not isinstance(subject, Interval | DurationSum) else None
         self._judge_run: Final = run_judge(claim, subject)
         # Whether a mission succeeds is what the log's root returns, whatever is around the written root.
-        self._is_result: Final = isinstance(subject, Mission) and VERBS[claim.verb].limits == "success"
+        self._is_result: Final = isinstance(subject, MissionRun) and VERBS[claim.verb].limits == "success"
         self.judged: Final = replace(within(claim, requirement.scopes), subject=subject)
         self._edge: Final = edge_of(self.judged, subject, requirement) if with_measures else None
         self._extremes: Final = self._edge.extremes if self._edge is not None else ()
         self._with_measures: Final = with_measures
         self._events: Final = _events(claim, subject)
         subjects = (subject, *(each.subject for each in self._events))
-        self._is_about_mission: Final = any(isinstance(each, Mission) for each in subjects)
+        self._is_about_mission: Final = any(isinstance(each, MissionRun) for each in subjects)
         parts = (claim.condition, claim.limit, *self._events, *(scope.condition for scope in requirement.scopes))
         self._running: Final = [each.target for each in parts_in(parts) if isinstance(each, Running)]
         measures_time = VERBS[claim.verb].operand not in ("condition", "use")
-        self._bounds_time: Final = VERBS[claim.verb].operand in _OF_TIME and not isinstance(subject, Total)
+        self._bounds_time: Final = VERBS[claim.verb].operand in _OF_TIME and not isinstance(subject, DurationSum)
         self._reads: Final = None if measures_time else [*signals_in((parts, claim.signal))]
         is_whole = any(scope.word == "while" for scope in requirement.scopes) and claim.verb not in _AT_ANY_TIME
         is_of_all = any(isinstance(each, Aggregate) for each in parts_in(parts))
@@ -115,7 +125,7 @@ class JudgedClause:
         self._nearby: Callable[[int], Nearby]
         # Until it is known what else ran meanwhile.
         self._waiting: Final[list[tuple[Activation, Observed, str, Guard | None]]] = []
-        self._refused: Final[list[Refusal]] = []  # in the open run, of the clause's nodes
+        self._refused: Final[list[RefusedStart]] = []  # in the open run, of the clause's nodes
         self._around: Final[list[int]] = []  # a guard of a span is around the parent of its nodes
         self._stopped: Final[list[Activation]] = []  # of these, in the open run
         self._notes: Final[Counter[str]] = Counter()
@@ -145,9 +155,9 @@ class JudgedClause:
         for uids in self._own(joined) if self._is_judged else ():
             others = nearby(uids[0])
             needed = [target_of(each) for each in self._events if each.condition is None]
-            if isinstance(self.claim.per, Target):
+            if isinstance(self.claim.per, NodeTarget):
                 needed.append(self.claim.per)
-            lost = [each for each in [others.find(target) for target in needed] if isinstance(each, Unknown)]
+            lost = [each for each in [others.find(target) for target in needed] if isinstance(each, UnknownValue)]
             for target in self._running:
                 others.find(target)
             if lost:
@@ -157,7 +167,7 @@ class JudgedClause:
             if self._judge_run is not None:
                 history.watch(uids)
                 self._places.append(_Place(joined.tree.nodes[uids[0]].path, uids, others))
-        if isinstance(self._subject, Span):
+        if isinstance(self._subject, Interval):
             guards = joined.enforcing()
             above = [next((each for each in joined.tree.above(uid) if each not in guards), 0) for uid in self._nodes]
             self._around.extend(each for each in dict.fromkeys(above) if each)
@@ -209,7 +219,7 @@ class JudgedClause:
         self.broken[uid] = judgement, path
         return True
 
-    def refuse(self, refusal: Refusal, path: str) -> None:
+    def refuse(self, refusal: RefusedStart, path: str) -> None:
         """Count a start that a guard refused: it violates the demand that the guard enforces, and for `succeeds` it is
         a failure.
         """
@@ -304,7 +314,7 @@ class JudgedClause:
         refused = [each for each in self._refused if each.uid in place.uids]
         return OverRun(self.claim.verb, self.requirement.scopes, root, own, observed, refused, self._stopped, [])
 
-    def _judged_over(self, claim: Claim, overs: Sequence[OverRun]) -> Sequence[Judgement | None]:
+    def _judged_over(self, claim: ResolvedClaim, overs: Sequence[OverRun]) -> Sequence[Judgement | None]:
         """The judgements of a run by a claim; `overs`: the run as it may have been."""
         assert self._judge_run is not None, "the clause is judged by runs"
         late, *others = [[*self._judge_run(claim, over)] for over in overs]
@@ -353,7 +363,7 @@ class JudgedClause:
         between = activation.earliest, activation.begin
         return any(self._signals.changes(signal, *between) for signal in self._reads)
 
-    def _judged_by(self, claim: Claim, ways: Sequence[_Way]) -> Judgement | None:
+    def _judged_by(self, claim: ResolvedClaim, ways: Sequence[_Way]) -> Judgement | None:
         """The judgement of an activation by a claim; None: it does not count."""
         if len(ways) == 1:
             return self._judged_as(claim, *ways[0])
@@ -361,7 +371,7 @@ class JudgedClause:
         return agreed(late, early, activation=ways[0][0])
 
     def _judged_as(
-        self, claim: Claim, activation: Activation, observed: Observed, counts: bool | Unknown
+        self, claim: ResolvedClaim, activation: Activation, observed: Observed, counts: bool | UnknownValue
     ) -> Judgement | None:
         """The same, of one that began when it says, and is in scope or not."""
         if counts is False:
@@ -372,7 +382,7 @@ class JudgedClause:
             # Also for `needs`, although nothing can violate it any more: with one rule for all clauses, the counts of
             # two clauses at one node differ by what happened, not by where the log ends.
             judgement = None
-        if judgement is not None and isinstance(counts, Unknown):
+        if judgement is not None and isinstance(counts, UnknownValue):
             judgement = Judgement(None, judgement.at, counts.why, judgement.measure)
         return judgement
 
@@ -408,7 +418,7 @@ class JudgedClause:
             since = judgement.since if judgement.since is not None else of.begin
             self._add(judgement, path, since, of.end, chain)
 
-    def _add(self, judgement: Judgement, path: str, begin: int, end: int, chain: tuple[Link, ...]) -> None:
+    def _add(self, judgement: Judgement, path: str, begin: int, end: int, chain: tuple[CauseLink, ...]) -> None:
         measure = judgement.measure
         if judgement.holds is False and self._bounds_time and measure is not None and measure.is_upper:
             judgement = judgement._replace(passed=min(begin + round(measure.bound.si * 1e6), judgement.at))
@@ -421,7 +431,7 @@ class JudgedClause:
         subject = self._subject
         if self._is_about_mission and not joined.build.is_main:  # which did not run as a whole
             return []
-        if isinstance(subject, Span):
+        if isinstance(subject, Interval):
             firsts = self._instances(joined, _known(subject.first.subject))
             groups: dict[tuple[int, ...], tuple[int, ...]] = {}
             lasts = self._instances(joined, _known(subject.last.subject))
@@ -429,12 +439,12 @@ class JudgedClause:
                 together = near(uid, lasts, joined.tree)
                 groups[together] = (*groups.get(together, ()), uid)
             return [*groups.values()] if not self.found.missing else []
-        if isinstance(subject, Total):
+        if isinstance(subject, DurationSum):
             uids = [uid for target in subject.targets for uid in self._instances(joined, target)]
             return [tuple(uids)] if uids and not self.found.missing else []
         return [(uid,) for uid in self._instances(joined, _known(subject))]
 
-    def _instances(self, joined: Joined, target: Target | None) -> list[int]:
+    def _instances(self, joined: Joined, target: NodeTarget | None) -> list[int]:
         """The uids of a node's instances; notes those missing from the log."""
         found: list[int] = []
         for path, uid in joined.instances(target) if target is not None else ():
@@ -447,7 +457,7 @@ class JudgedClause:
 
     def _is_own(self, guard: Guard) -> bool:
         """Whether a guard enforces this clause; spans and sums have no guards."""
-        if isinstance(self._subject, Span | Total):
+        if isinstance(self._subject, Interval | DurationSum):
             return False
         return guard.requirement == self.requirement.name and self.claim.verb in guard.verbs
 
@@ -457,12 +467,12 @@ class JudgedClause:
         if subject is None:
             return "the clause applies to no node"
         if any(
-            isinstance(each, Mission) and each.node is None
+            isinstance(each, MissionRun) and each.node is None
             for each in (subject, *(each.subject for each in self._events))
         ):
             return "the mission has no known main tree"
         if self._judge is None and self._judge_run is None:
-            of = "the time from one event to another" if isinstance(subject, Span) else "a sum of durations"
+            of = "the time from one event to another" if isinstance(subject, Interval) else "a sum of durations"
             return f"`{self.claim.verb}` cannot be judged of {of}"
         return ""
 
@@ -492,11 +502,13 @@ class JudgedClause:
             event = self.claim.text.partition(" after ")[2].removeprefix("when ")
             why = f"it was not running when {event} ({counted(found.missed, 'time')})"
         is_of_run = VERBS[self.claim.verb].operand == "count" and self.claim.per is None
-        is_once_a_run = isinstance(self._subject, Total) or (is_of_run and len(found.paths) == 1)
+        is_once_a_run = isinstance(self._subject, DurationSum) or (is_of_run and len(found.paths) == 1)
         return ClauseVerdict(
             text=self.text,
             path=", ".join(found.paths),
-            of=self.claim.text.partition(f" {self.claim.verb} ")[0] if isinstance(self._subject, Span | Total) else "",
+            of=self.claim.text.partition(f" {self.claim.verb} ")[0]
+            if isinstance(self._subject, Interval | DurationSum)
+            else "",
             verdict=verdict,
             why=why,
             unit="runs" if tally.counts_runs or is_once_a_run else "activations",
@@ -510,11 +522,11 @@ class JudgedClause:
             **tally.fields(),
         )
 
-    def marks(self) -> dict[str, Value]:
+    def marks(self) -> dict[str, Quantity]:
         """What measured values are compared with, as of `Histogram`, as far as it does not vary."""
         limit, goal = self.claim.limit, self.requirement.goal
         marks = {"lower bound": limit.value, "upper bound": limit.upper} if limit is not None and limit.upper else {}
-        return {kind: each for kind, each in {**marks, "goal": goal}.items() if isinstance(each, Value)}
+        return {kind: each for kind, each in {**marks, "goal": goal}.items() if isinstance(each, Quantity)}
 
     def _measures(self) -> Measures:
         edge, odds = self._edge, self.requirement.odds
@@ -542,18 +554,18 @@ def _kind(judgement: Judgement | None, of: Activation) -> int:
     return margins.UNKNOWN if judgement.holds is None else margins.KEPT if judgement.holds else margins.VIOLATED
 
 
-def _events(claim: Claim, subject: Subject | None) -> tuple[Event, ...]:
+def _events(claim: ResolvedClaim, subject: Subject | None) -> tuple[ResolvedEvent, ...]:
     """The events that a clause names."""
-    if isinstance(subject, Span):
+    if isinstance(subject, Interval):
         return subject.first, subject.last
     return (claim.event,) if claim.event is not None else ()
 
 
-def _known(subject: Subject | None) -> Target | None:
+def _known(subject: Subject | None) -> NodeTarget | None:
     """The node of a subject, if the subject is a node."""
-    if isinstance(subject, Mission) and subject.node is not None:
-        return Target(subject.node)
-    return subject if isinstance(subject, Target) else None
+    if isinstance(subject, MissionRun) and subject.node is not None:
+        return NodeTarget(subject.node)
+    return subject if isinstance(subject, NodeTarget) else None
 
 
 def _clocked(judgement: Judgement | None, root: Activation | None) -> Judgement | None:

@@ -17,7 +17,7 @@ from btq_lang.util.record import replace
 if TYPE_CHECKING:
     from btq_lang.evidence.odds import Limits
     from btq_lang.evidence.verdicts import Timeline, Verdict
-    from btq_lang.requirements.model import Requirement
+    from btq_lang.requirements.model import ResolvedRequirement
 
 
 class ClauseFindings:
@@ -32,7 +32,7 @@ class ClauseFindings:
         left_out: as `failed`, `halted` and `idle` of `ClauseVerdict`.
     """
 
-    def __init__(self, requirement: Requirement, limits: Limits) -> None:
+    def __init__(self, requirement: ResolvedRequirement, limits: Limits) -> None:
         odds, confidence, window = requirement.odds, requirement.confidence, requirement.window
         self.tally: Final = Tally(odds, confidence, limits) if window is None else Recent(window, odds, confidence)
         self.margins: Final = Margins(odds is not None and odds.experiments == "runs")

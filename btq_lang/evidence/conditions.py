@@ -11,33 +11,33 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.units import ONE, Unit, parse_unit
-from btq_lang.evidence.signals import Unknown
+from btq_lang.evidence.signals import UnknownValue
 from btq_lang.requirements.model import (
     Aggregate,
     All,
     Any,
     Arithmetic,
+    ClassicScript,
     Compare,
     Flag,
     InContext,
     Minus,
-    Not,
-    Parameter,
-    Read,
+    Negation,
+    Quantity,
+    ResolvedParameter,
+    ResolvedScope,
+    ResolvedTable,
     Running,
-    Scope,
-    Script,
-    Table,
-    Text,
-    Value,
+    SignalRead,
+    TextValue,
 )
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Moment, SampleValue
     from btq_lang.evidence.observed import Observed
-    from btq_lang.requirements.model import Bounded, Claim, Condition, Number
+    from btq_lang.requirements.model import Bounded, Condition, Number, ResolvedClaim
 
-    Truth: TypeAlias = bool | Unknown
+    Truth: TypeAlias = bool | UnknownValue
 
 
 class Measure:
@@ -53,7 +53,7 @@ class Measure:
     # Not a Record: a log has as many as it has judgements, and a Record takes three times as long to make.
     __slots__ = ("bound", "excess", "is_upper", "name", "si", "unit")
 
-    def __init__(self, si: float, relation: str, bound: Value, unit: Unit | None, name: str = "") -> None:
+    def __init__(self, si: float, relation: str, bound: Quantity, unit: Unit | None, name: str = "") -> None:
         self.si: Final = si
         self.unit = unit
         self.bound: Final = bound
@@ -91,58 +91,62 @@ def truth(condition: Condition, observed: Observed, moment: Moment) -> Truth:
             found = truth(part, observed, moment)
             if found is decides:
                 return decides
-            if isinstance(found, Unknown) and not isinstance(unknown, Unknown):
+            if isinstance(found, UnknownValue) and not isinstance(unknown, UnknownValue):
                 unknown = found
         return unknown
-    if isinstance(condition, Not):
+    if isinstance(condition, Negation):
         found = truth(condition.condition, observed, moment)
-        return found if isinstance(found, Unknown) else not found
+        return found if isinstance(found, UnknownValue) else not found
     if isinstance(condition, InContext):
         return observed.holds(condition, moment, lambda: truth(condition.condition, observed, moment))
-    if isinstance(condition, Scope):
+    if isinstance(condition, ResolvedScope):
         return truth(condition.condition, observed.in_scope, moment)
     if isinstance(condition, Flag):
         return condition.value
-    if isinstance(condition, Read):
+    if isinstance(condition, SignalRead):
         value = observed.reading(condition.signal, moment)
-        return value if isinstance(value, bool | Unknown) else Unknown(f"`{condition.signal.name}` is not a bool")
+        return (
+            value
+            if isinstance(value, bool | UnknownValue)
+            else UnknownValue(f"`{condition.signal.name}` is not a bool")
+        )
     if isinstance(condition, Running):
         return observed.nodes.runs(condition.target, moment, observed.is_early)
-    return Unknown(_not_judged(condition))
+    return UnknownValue(_not_judged(condition))
 
 
-def bound_at(bounded: Bounded, observed: Observed, moment: Moment) -> Value | Unknown:
+def bound_at(bounded: Bounded, observed: Observed, moment: Moment) -> Quantity | UnknownValue:
     """The value of a bound at a moment; for a table, that of the first case that holds then."""
-    if isinstance(bounded, Table):
+    if isinstance(bounded, ResolvedTable):
         observed = observed.in_scope
         for case in bounded.cases:
             holds = case.condition is None or truth(case.condition, observed, moment)
-            if isinstance(holds, Unknown):
+            if isinstance(holds, UnknownValue):
                 return holds
             if holds:
                 return bound_at(case.value, observed, moment)
-        return Unknown("no case of the bound holds")
-    if isinstance(bounded, Value):
+        return UnknownValue("no case of the bound holds")
+    if isinstance(bounded, Quantity):
         return bounded
     value = _number(bounded, observed, moment)
-    if isinstance(value, Unknown) or not isinstance(value, float):
-        return value if isinstance(value, Unknown) else Unknown(f"`{bounded.text}` is not a number")
-    unit = bounded.signal.unit if isinstance(bounded, Read) else None
-    return Value(bounded.text, value, unit or ONE)
+    if isinstance(value, UnknownValue) or not isinstance(value, float):
+        return value if isinstance(value, UnknownValue) else UnknownValue(f"`{bounded.text}` is not a number")
+    unit = bounded.signal.unit if isinstance(bounded, SignalRead) else None
+    return Quantity(bounded.text, value, unit or ONE)
 
 
-def compared(claim: Claim, si: float, observed: Observed, moment: Moment) -> Measure | Unknown:
+def compared(claim: ResolvedClaim, si: float, observed: Observed, moment: Moment) -> Measure | UnknownValue:
     """Compare a measured value with the bound of a claim, which is evaluated at a moment."""
     limit = claim.limit
     assert limit is not None, "what is measured has a bound"
     bound = bound_at(limit.value, observed, moment)
-    if isinstance(bound, Unknown):
+    if isinstance(bound, UnknownValue):
         return bound
     measure = Measure(si, limit.relation, bound, bound.unit)
     if limit.upper is None:
         return measure
     upper = bound_at(limit.upper, observed, moment)
-    if isinstance(upper, Unknown):
+    if isinstance(upper, UnknownValue):
         return upper
     return max(measure, Measure(si, "<=", upper, upper.unit), key=operator.attrgetter("excess"))
 
@@ -153,12 +157,12 @@ def measure_of(condition: Condition, observed: Observed, moment: Moment, is_nega
     """
     if isinstance(condition, Compare):
         return _compared_with_bound(condition, observed, moment, is_negated)
-    if isinstance(condition, InContext | Not):
-        is_other = is_negated != isinstance(condition, Not)
+    if isinstance(condition, InContext | Negation):
+        is_other = is_negated != isinstance(condition, Negation)
         return measure_of(condition.condition, observed, moment, is_other)
     if isinstance(condition, Any):
         *cases, last = condition.conditions
-        is_last = all(isinstance(case, Not) and truth(case, observed, moment) is False for case in cases)
+        is_last = all(isinstance(case, Negation) and truth(case, observed, moment) is False for case in cases)
         return measure_of(last, observed, moment, is_negated) if is_last else None
     return None
 
@@ -175,9 +179,9 @@ def _compared_with_bound(condition: Compare, observed: Observed, moment: Moment,
         return None
     value = _number(left, observed, moment)
     bound = bound_at(right, observed, moment)
-    if not isinstance(value, float) or isinstance(bound, Unknown):
+    if not isinstance(value, float) or isinstance(bound, UnknownValue):
         return None
-    name = left.signal.name if isinstance(left, Read) else f"{left.function}({left.signal.name})"
+    name = left.signal.name if isinstance(left, SignalRead) else f"{left.function}({left.signal.name})"
     return Measure(value, OPPOSITE[sign] if is_negated else sign, bound, _unit(left), name)
 
 
@@ -185,49 +189,49 @@ def _compared(condition: Compare, observed: Observed, moment: Moment) -> Truth:
     values = [_number(each, observed, moment) for each in condition.operands]
     result: Truth = True
     for sign, left, right in zip(condition.operators, values, values[1:], strict=False):
-        if isinstance(left, Unknown) or isinstance(right, Unknown):
-            unknown = left if isinstance(left, Unknown) else right
-            assert isinstance(unknown, Unknown), "one of the two is"
+        if isinstance(left, UnknownValue) or isinstance(right, UnknownValue):
+            unknown = left if isinstance(left, UnknownValue) else right
+            assert isinstance(unknown, UnknownValue), "one of the two is"
             result = unknown if result is True else result
         elif isinstance(left, str) != isinstance(right, str):
-            result = Unknown("a string cannot be compared with a number")
+            result = UnknownValue("a string cannot be compared with a number")
         elif not _COMPARISONS[sign](left, right):
             return False
     return result
 
 
-def _number(part: Number | Flag | Text, observed: Observed, moment: Moment) -> SampleValue | Unknown:
+def _number(part: Number | Flag | TextValue, observed: Observed, moment: Moment) -> SampleValue | UnknownValue:
     """The value of an operand of a comparison, numbers in SI."""
-    if isinstance(part, Read):
+    if isinstance(part, SignalRead):
         return observed.reading(part.signal, moment)
-    if isinstance(part, Value):
+    if isinstance(part, Quantity):
         return part.si
-    if isinstance(part, Flag | Text):
+    if isinstance(part, Flag | TextValue):
         return part.value
     if isinstance(part, Aggregate):
         return observed.summary(part.function, part.signal)
-    if isinstance(part, Table):
+    if isinstance(part, ResolvedTable):
         bound = bound_at(part, observed, moment)
-        return bound if isinstance(bound, Unknown) else bound.si
+        return bound if isinstance(bound, UnknownValue) else bound.si
     if isinstance(part, Minus):
         value = _number(part.operand, observed, moment)
-        return value if isinstance(value, Unknown | str) else -value
+        return value if isinstance(value, UnknownValue | str) else -value
     if isinstance(part, Arithmetic):
         left, right = _number(part.left, observed, moment), _number(part.right, observed, moment)
-        if isinstance(left, Unknown) or isinstance(right, Unknown):
-            return left if isinstance(left, Unknown) else right
+        if isinstance(left, UnknownValue) or isinstance(right, UnknownValue):
+            return left if isinstance(left, UnknownValue) else right
         if isinstance(left, str) or isinstance(right, str):
-            return Unknown("no calculation is possible with a string")
+            return UnknownValue("no calculation is possible with a string")
         if part.operator == "/" and right == 0:
-            return Unknown("a division by zero")
+            return UnknownValue("a division by zero")
         return float(_OPERATIONS[part.operator](left, right))
-    return Unknown(_not_judged(part))
+    return UnknownValue(_not_judged(part))
 
 
-def _unit(part: Read | Aggregate) -> Unit | None:
+def _unit(part: SignalRead | Aggregate) -> Unit | None:
     """The unit to print a value in; a difference of temperatures is not a temperature."""
     unit = part.signal.unit
-    if isinstance(part, Read) or unit is None:
+    if isinstance(part, SignalRead) or unit is None:
         return unit
     if part.function == "count":
         return None
@@ -236,9 +240,9 @@ def _unit(part: Read | Aggregate) -> Unit | None:
 
 def _not_judged(part: object) -> str:
     """Names the construct that cannot be judged from logs."""
-    if isinstance(part, Script):
+    if isinstance(part, ClassicScript):
         return "a script of the engine is not judged"
-    return f"the parameter `{part.name}` has no value" if isinstance(part, Parameter) else "it is not judged"
+    return f"the parameter `{part.name}` has no value" if isinstance(part, ResolvedParameter) else "it is not judged"
 
 
 _COMPARISONS: Final[dict[str, Callable[[object, object], bool]]] = {
@@ -255,8 +259,8 @@ _OPERATIONS: Final[dict[str, Callable[[float, float], float]]] = {
     "*": operator.mul,
     "/": operator.truediv,
 }
-_MEASURED: Final = (Read, Aggregate)
-_BOUNDS: Final = (Value, Table, Read)
+_MEASURED: Final = (SignalRead, Aggregate)
+_BOUNDS: Final = (Quantity, ResolvedTable, SignalRead)
 MIRRORED: Final = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 OPPOSITE: Final = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
 _JUST: Final = 1e-9  # a measure equal to a strict bound violates it

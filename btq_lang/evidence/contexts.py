@@ -10,7 +10,7 @@ from btq_lang.evidence.conditions import truth
 from btq_lang.evidence.history import History, Nearby
 from btq_lang.evidence.model import ROOT, Activation
 from btq_lang.evidence.observed import Observed
-from btq_lang.evidence.signals import Signals, Unknown
+from btq_lang.evidence.signals import Signals, UnknownValue
 from btq_lang.requirements.model import Condition, InContext, Running, parts_in
 
 if TYPE_CHECKING:
@@ -48,6 +48,6 @@ class Contexts:
                 if found is True:
                     held[context.name] += 1
                     break
-                is_unknown = is_unknown or isinstance(found, Unknown)
+                is_unknown = is_unknown or isinstance(found, UnknownValue)
             else:
                 unknown[context.name] += is_unknown

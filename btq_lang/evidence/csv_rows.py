@@ -20,16 +20,16 @@ from collections.abc import Iterator
 from typing import Final
 
 from btq_lang.evidence.sentences import headline, result
-from btq_lang.evidence.verdicts import VIOLATED, Report
+from btq_lang.evidence.verdicts import VIOLATED, VerdictReport
 from btq_lang.render.spreadsheet import table
 
 
-def render(report: Report) -> str:
+def render(report: VerdictReport) -> str:
     """The verdicts, with a heading."""
     return table(_COLUMNS, _rows(report))
 
 
-def _rows(report: Report) -> Iterator[dict[str, str | float]]:
+def _rows(report: VerdictReport) -> Iterator[dict[str, str | float]]:
     for mission in report.missions:
         for requirement in mission.requirements:
             for clause in requirement.clauses:

@@ -15,7 +15,7 @@ from btq_lang.evidence.verdicts import Histogram
 
 if TYPE_CHECKING:
     from btq_lang.evidence.conditions import Measure
-    from btq_lang.requirements.model import Value
+    from btq_lang.requirements.model import Quantity
 
 
 class Distribution:
@@ -62,7 +62,7 @@ class Distribution:
         self._counts = doubled
         self._step *= 2
 
-    def histogram(self, marks: Mapping[str, Value]) -> Histogram | None:
+    def histogram(self, marks: Mapping[str, Quantity]) -> Histogram | None:
         """The histogram; None where nothing was measured.
 
         Args:

@@ -11,7 +11,17 @@ from typing import Final
 
 from btq_lang.catalog.verbs import VERBS, words
 from btq_lang.evidence.conditions import MIRRORED, OPPOSITE
-from btq_lang.requirements.model import Aggregate, Claim, Compare, Limit, Read, Requirement, Subject, Total, Value
+from btq_lang.requirements.model import (
+    Aggregate,
+    Compare,
+    DurationSum,
+    Limit,
+    Quantity,
+    ResolvedClaim,
+    ResolvedRequirement,
+    SignalRead,
+    Subject,
+)
 from btq_lang.util.record import Record, replace
 
 
@@ -24,10 +34,10 @@ class Edge(Record):
         moved: gives the claim with another value in its place.
     """
 
-    value: Value
+    value: Quantity
     is_upper: bool
     is_strict: bool
-    moved: Callable[[Value], Claim]
+    moved: Callable[[Quantity], ResolvedClaim]
 
     def across(self, si: float) -> float:
         """A number that is larger the further a value is on the wrong side."""
@@ -39,16 +49,16 @@ class Edge(Record):
         return measure > bound or (self.is_strict and measure == bound)
 
     @property
-    def extremes(self) -> tuple[Claim, Claim]:
+    def extremes(self) -> tuple[ResolvedClaim, ResolvedClaim]:
         """The claim with a bound that every measure keeps, and with one that none keeps."""
         far = (_FAR, -_FAR) if self.is_upper else (-_FAR, _FAR)
         within, beyond = (self.moved(replace(self.value, si=si)) for si in far)
         return within, beyond
 
 
-def edge_of(claim: Claim, subject: Subject | None, requirement: Requirement) -> Edge | None:
+def edge_of(claim: ResolvedClaim, subject: Subject | None, requirement: ResolvedRequirement) -> Edge | None:
     """The bound of a claim at a subject; None if it has none that may be moved."""
-    if requirement.window is not None or isinstance(subject, Total):
+    if requirement.window is not None or isinstance(subject, DurationSum):
         return None  # a window holds other judgements for another bound; of a sum parts may be unknown
     if claim.limit is not None:
         if VERBS[claim.verb].operand == "count" and requirement.scopes:
@@ -59,7 +69,7 @@ def edge_of(claim: Claim, subject: Subject | None, requirement: Requirement) -> 
     return _edge_of_condition(claim)
 
 
-def key_of(requirement: Requirement, claim: Claim, edge: Edge | None) -> str:
+def key_of(requirement: ResolvedRequirement, claim: ResolvedClaim, edge: Edge | None) -> str:
     """What a clause demands apart from its bound and its odds: judgements of equal keys count the same."""
     text = claim.text.replace(edge.value.text, "…", 1) if edge is not None else claim.text
     parts = [text, *(scope.text for scope in requirement.scopes)]
@@ -68,27 +78,27 @@ def key_of(requirement: Requirement, claim: Claim, edge: Edge | None) -> str:
     return " ".join([*parts, "of runs"] if of_runs else parts)
 
 
-def _edge_of_limit(claim: Claim, limit: Limit) -> Edge | None:
-    if not isinstance(limit.value, Value) or limit.upper is not None:
+def _edge_of_limit(claim: ResolvedClaim, limit: Limit) -> Edge | None:
+    if not isinstance(limit.value, Quantity) or limit.upper is not None:
         return None
     is_upper, is_strict = limit.relation in ("<=", "<"), limit.relation in ("<", ">")
     return Edge(limit.value, is_upper, is_strict, lambda value: replace(claim, limit=replace(limit, value=value)))
 
 
-def _edge_of_condition(claim: Claim) -> Edge | None:
+def _edge_of_condition(claim: ResolvedClaim) -> Edge | None:
     condition = claim.condition
     if not isinstance(condition, Compare) or len(condition.operators) != 1:
         return None
     (sign,), (left, right) = condition.operators, condition.operands
-    is_mirrored = isinstance(left, Value)
+    is_mirrored = isinstance(left, Quantity)
     value, measured = (left, right) if is_mirrored else (right, left)
-    if sign not in MIRRORED or not isinstance(value, Value) or not isinstance(measured, Read | Aggregate):
+    if sign not in MIRRORED or not isinstance(value, Quantity) or not isinstance(measured, SignalRead | Aggregate):
         return None
     sign = MIRRORED[sign] if is_mirrored else sign
     if claim.verb == "never":
         sign = OPPOSITE[sign]
 
-    def moved(other: Value) -> Claim:
+    def moved(other: Quantity) -> ResolvedClaim:
         operands = (other, measured) if is_mirrored else (measured, other)
         return replace(claim, condition=replace(condition, operands=operands))
 

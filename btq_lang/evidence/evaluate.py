@@ -17,7 +17,7 @@ from btq_lang.evidence.coverage import Coverage
 from btq_lang.evidence.explain import Explainer
 from btq_lang.evidence.guards import Guards
 from btq_lang.evidence.history import History, Nearby
-from btq_lang.evidence.model import ROOT, Activation, Outcome, Series, Session
+from btq_lang.evidence.model import ROOT, Activation, LogSession, Outcome, SampleSeries
 from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.odds import Limits
 from btq_lang.evidence.open_verdicts import open_clauses, unread_clauses
@@ -32,9 +32,9 @@ from btq_lang.evidence.verdicts import (
     OUTCOMES,
     ClauseVerdict,
     ContextSummary,
+    EvidenceFile,
     MissionVerdicts,
     RequirementVerdict,
-    Source,
     worst_of,
 )
 from btq_lang.util.grouping import grouped
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate, Joined
 
 
-class Findings:
+class LogFindings:
     """What was found in some logs of a mission; it refers to no text, so it may go to another process.
 
     Attributes:
@@ -56,12 +56,12 @@ class Findings:
     def __init__(self, clauses: Sequence[ClauseFindings], contexts: tuple[Counter[str], Counter[str]]) -> None:
         self.clauses: Final = clauses
         self.contexts: Final = contexts
-        self.sources: Final[list[Source]] = []
+        self.sources: Final[list[EvidenceFile]] = []
         self.outcomes: Final[Counter[Outcome]] = Counter(dict.fromkeys(OUTCOMES, 0))
         self.ended_by: Final[Counter[str]] = Counter()
         self.coverage: Final = Coverage()
 
-    def add(self, other: Findings, runs: int) -> None:
+    def add(self, other: LogFindings, runs: int) -> None:
         """Add what was found in later logs, whose runs are numbered by themselves, after so many runs."""
         for clause, found in zip(self.clauses, other.clauses, strict=True):
             clause.add(found, runs)
@@ -77,7 +77,7 @@ class Findings:
         """Name runs of the last file, by their numbers there, that another one has too."""
         self.sources[-1] = replace(self.sources[-1], left_out=(*self.sources[-1].left_out, *runs))
 
-    def add_source(self, source: Source) -> None:
+    def add_source(self, source: EvidenceFile) -> None:
         """Merge a session's counts into those of its file."""
         last = self.sources[-1] if self.sources else None
         if last is None or (last.file, last.identity) != (source.file, source.identity):
@@ -93,7 +93,7 @@ class Findings:
         )
 
 
-class Listener(Protocol):
+class EvaluationListener(Protocol):
     """Something that is given all that is found while it is found."""
 
     def join(self, joined: Joined, clauses: Sequence[JudgedClause]) -> None:
@@ -121,7 +121,7 @@ class MissionEvaluation:
         mission: Candidate,
         with_timelines: bool = False,
         ran: Callable[[int], None] = lambda number: None,
-        listeners: Sequence[Listener] = (),
+        listeners: Sequence[EvaluationListener] = (),
         limits: Limits = "one look",
         with_measures: bool = False,
     ) -> None:
@@ -140,14 +140,14 @@ class MissionEvaluation:
         self._signals: Final = found.signals
         self._clauses: Final = clauses
         self._contexts: Final = Contexts(found.contexts)
-        self.found: Final = Findings([each.found for each in clauses], self._contexts.counts)
+        self.found: Final = LogFindings([each.found for each in clauses], self._contexts.counts)
         self._open_run: Final = OpenRun(read_signals(_reading(mission, clauses))) if with_timelines else None
 
     def read(
         self,
-        session: Session,
+        session: LogSession,
         joined: Joined,
-        given: Mapping[str, Series],
+        given: Mapping[str, SampleSeries],
         first_run: int,
         source: str,
         run_ended: Callable[[Activation], None] = lambda root: None,
@@ -230,7 +230,7 @@ class MissionEvaluation:
         )
         session.remarks.extend(sample_remarks(read, end))
         self.found.add_source(
-            Source(
+            EvidenceFile(
                 file=source,
                 runs=runs,
                 first_run=first_run,

@@ -20,7 +20,7 @@ from btq_lang.workspace.loader import shown
 
 if TYPE_CHECKING:
     from btq_lang.evidence.readers.topics import Clock
-    from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, Report, RequirementVerdict, Violation
+    from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, RequirementVerdict, VerdictReport, Violation
 
     _Found: TypeAlias = tuple[int, MissionVerdicts, RequirementVerdict, ClauseVerdict, Violation]  # the time first
 
@@ -39,7 +39,7 @@ class Events(Record):
     uncounted: int
 
 
-def render(report: Report, name: str, clocks: Mapping[str, Clock]) -> Events:
+def render(report: VerdictReport, name: str, clocks: Mapping[str, Clock]) -> Events:
     """Write the violations in a report into a bag of this name, in the order of their times.
 
     Args:
@@ -74,7 +74,7 @@ def render(report: Report, name: str, clocks: Mapping[str, Clock]) -> Events:
     return Events(data, len(found) - len(placed), counted - len(found))
 
 
-def _found(report: Report) -> tuple[Sequence[_Found], int]:
+def _found(report: VerdictReport) -> tuple[Sequence[_Found], int]:
     """The violations that a report has, with their times in µs since the epoch, and how many it counts."""
     found: list[_Found] = []
     counted = 0

@@ -16,10 +16,10 @@ from btq_lang.catalog.units import Unit
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.explain_run import RunExplainer, ago, part, ran
 from btq_lang.evidence.model import Activation, LoggedTree, Outcome
-from btq_lang.evidence.signals import Signals, Unknown
-from btq_lang.evidence.verdicts import Link
+from btq_lang.evidence.signals import Signals, UnknownValue
+from btq_lang.evidence.verdicts import CauseLink
 from btq_lang.evidence.wording import quantity, took
-from btq_lang.requirements.model import Claim, Condition, Signal, signals_in
+from btq_lang.requirements.model import Condition, ResolvedClaim, ResolvedSignal, signals_in
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     Sums: TypeAlias = dict[int, list[int]]  # by uid: activations, those that failed, µs
 
 
-class Origin(Record):
+class FailureOrigin(Record):
     """Where a failure began: a node that failed although no child of it made it fail, or that has no child.
 
     Attributes:
@@ -54,21 +54,23 @@ class Explainer:
         self._above: Final = {uid: [each for each in tree.above(uid) if each in judged] for uid in tree.nodes}
         self._going_on: Final = {uid for uid, node in tree.nodes.items() if node.kind in _GOES_ON}
         # Of open nodes: the child that ended last, or the first that failed of a node that then goes on.
-        self._last: Final[dict[int, tuple[int, Outcome, Origin | None]]] = {}
-        self._ended: Final[dict[int, tuple[Activation, Sums, Origin | None]]] = {}  # the last of each judged node
+        self._last: Final[dict[int, tuple[int, Outcome, FailureOrigin | None]]] = {}
+        self._ended: Final[
+            dict[int, tuple[Activation, Sums, FailureOrigin | None]]
+        ] = {}  # the last of each judged node
         self._leaves: Final[dict[int, Activation]] = {}  # the last activation of each leaf
         self._failed: Activation | None = None  # the run's last leaf that took time and failed
         self.over_run: Final = RunExplainer(tree, partial(self._samples, is_named=True))
         self._is_over_run: Final = has_clauses_over_runs
 
-    def see(self, activation: Activation) -> Origin | None:
+    def see(self, activation: Activation) -> FailureOrigin | None:
         """Record an activation that has ended; returns where its failure began, if it failed."""
         uid, outcome = activation.uid, activation.outcome
         child, came, origin = self._last.pop(uid, _NO_CHILD)
         if outcome != "F":
             origin = None
         elif came != "F":
-            origin = Origin(uid, child, came)
+            origin = FailureOrigin(uid, child, came)
         if uid in self._below:
             self._ended[uid] = activation, self._below[uid], origin
             self._below[uid] = {}
@@ -96,7 +98,7 @@ class Explainer:
         self._failed = None
         self.over_run.clear()
 
-    def chain(self, claim: Claim, judgement: Judgement, path: str) -> tuple[Link, ...]:
+    def chain(self, claim: ResolvedClaim, judgement: Judgement, path: str) -> tuple[CauseLink, ...]:
         """What led to the violation of a clause by the activation, of the node with this path, that has just ended."""
         if claim.condition is not None:
             return tuple(self._sample(claim.condition, judgement.at, path))
@@ -109,10 +111,12 @@ class Explainer:
                     return (self._levels(claim.signal, judgement.measure.unit, activation), *parts)
                 if parts or not VERBS[claim.verb].limits:
                     return parts
-                return (Link("self", path, ran(activation), activation.seconds, 1, int(activation.outcome == "F")),)
+                return (
+                    CauseLink("self", path, ran(activation), activation.seconds, 1, int(activation.outcome == "F")),
+                )
         return ()
 
-    def _parts(self, activation: Activation, sums: Sums) -> Iterator[Link]:
+    def _parts(self, activation: Activation, sums: Sums) -> Iterator[CauseLink]:
         """Where the time went: the nodes that ran for a twentieth of it, leaves first, then the longest."""
         tree = self._tree
         long = [uid for uid, (_, _, time) in sums.items() if time * 20 >= activation.end - activation.begin and time]
@@ -120,7 +124,7 @@ class Explainer:
             number, failed, time = sums[uid]
             yield part(tree.nodes[uid].path, time, number, failed)
 
-    def _origin(self, activation: Activation, sums: Sums, origin: Origin) -> Link:
+    def _origin(self, activation: Activation, sums: Sums, origin: FailureOrigin) -> CauseLink:
         """Where a failure began."""
         nodes = self._tree.nodes
         path = nodes[origin.uid].path
@@ -128,16 +132,16 @@ class Explainer:
             text = ran(activation)
             if origin.outcome is not None:
                 text = f"its last child {self._came_to(origin, origin.outcome)}"
-            return Link("origin", path, text, activation.seconds, 1, 1)
+            return CauseLink("origin", path, text, activation.seconds, 1, 1)
         number, failed, time = sums.get(origin.uid, (1, 1, 0))
         text = f"it began at {path}"
         if origin.outcome is not None:
             text += f", whose last child {self._came_to(origin, origin.outcome)}"
         elif number > 1:
             text += f", {failed} of its {number} starts failed"
-        return Link("origin", path, text, time / 1e6, number, failed)
+        return CauseLink("origin", path, text, time / 1e6, number, failed)
 
-    def _came_to(self, origin: Origin, outcome: Outcome) -> str:
+    def _came_to(self, origin: FailureOrigin, outcome: Outcome) -> str:
         """How the last child ended, and which port of the node would have made it the result."""
         nodes = self._tree.nodes
         text = f"{nodes[origin.child].path} {_CAME_TO[outcome]}"
@@ -145,23 +149,23 @@ class Explainer:
         port = kind.port_for("wraps") if kind is not None else None
         return f"{text}, which is lost without `{port.name}`" if port is not None else text
 
-    def _levels(self, signal: Signal, unit: Unit | None, activation: Activation) -> Link:
+    def _levels(self, signal: ResolvedSignal, unit: Unit | None, activation: Activation) -> CauseLink:
         """The level of a signal at the start and at the end of an activation that used some of it."""
         levels = [self._signals.reading(signal, time) for time in (activation.begin, activation.end)]
-        first, last = [quantity(float(each), unit) for each in levels if not isinstance(each, Unknown)]
+        first, last = [quantity(float(each), unit) for each in levels if not isinstance(each, UnknownValue)]
         time = took(activation)
         text = f"`{signal.name}` went from {first} to {last} {f'in {time}' if time else 'at once'}"
-        return Link("sample", self._tree.nodes[activation.uid].path, text, activation.seconds, 1, 0)
+        return CauseLink("sample", self._tree.nodes[activation.uid].path, text, activation.seconds, 1, 0)
 
-    def _sample(self, condition: Condition, time: int, judged: str) -> Iterator[Link]:
+    def _sample(self, condition: Condition, time: int, judged: str) -> Iterator[CauseLink]:
         """The samples that a condition read, and the leaf that had failed before."""
         yield from self._samples(condition, time)
         failed = self._failed
         path = self._tree.nodes[failed.uid].path if failed is not None else judged
         if failed is not None and path != judged and failed.end <= time:
-            yield Link("failure", path, f"{path} had failed before in this run", failed.seconds, 1, 1)
+            yield CauseLink("failure", path, f"{path} had failed before in this run", failed.seconds, 1, 1)
 
-    def _samples(self, condition: Condition, time: int, *, is_named: bool = False) -> Iterator[Link]:
+    def _samples(self, condition: Condition, time: int, *, is_named: bool = False) -> Iterator[CauseLink]:
         """The samples that a condition read: their age, and which leaf ran when they were taken."""
         for signal in dict.fromkeys(signals_in(condition)):
             sampled = self._signals.sampled(signal, time)
@@ -174,10 +178,10 @@ class Explainer:
             if ran:
                 path = self._tree.nodes[min(ran, key=lambda each: each.end).uid].path
                 text += f", while {path} ran"
-            yield Link("sample", path, text, age / 1e6, 1, 0)
+            yield CauseLink("sample", path, text, age / 1e6, 1, 0)
 
 
-_NO_CHILD: Final[tuple[int, Outcome | None, Origin | None]] = (0, None, None)
+_NO_CHILD: Final[tuple[int, Outcome | None, FailureOrigin | None]] = (0, None, None)
 # They run other children after one has failed, whose results then do not matter.
 _GOES_ON: Final = frozenset(
     [kind.tag for kind in BUILTINS.values() if kind.flow in ("parallel", "parallel-all", "try")]

@@ -12,9 +12,9 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.over_run import OverRun, target_of
-from btq_lang.evidence.verdicts import Link
+from btq_lang.evidence.verdicts import CauseLink
 from btq_lang.evidence.wording import duration, took
-from btq_lang.requirements.model import Claim, Condition, Event, Span, Total
+from btq_lang.requirements.model import Condition, DurationSum, Interval, ResolvedClaim, ResolvedEvent
 from btq_lang.util.grouping import grouped
 from btq_lang.util.text import counted
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 class RunExplainer:
     """Follows the leaves of a session in the open run."""
 
-    def __init__(self, tree: LoggedTree, samples: Callable[[Condition, int], Iterator[Link]]) -> None:
+    def __init__(self, tree: LoggedTree, samples: Callable[[Condition, int], Iterator[CauseLink]]) -> None:
         """Follow nothing yet; `samples`: gives those that a condition read at a time, in whole sentences."""
         self._tree: Final = tree
         self._samples: Final = samples
@@ -44,11 +44,11 @@ class RunExplainer:
         """Begin another run."""
         self._leaves.clear()
 
-    def chain(self, claim: Claim, judgement: Judgement, over: OverRun, others: Nearby) -> tuple[Link, ...]:
+    def chain(self, claim: ResolvedClaim, judgement: Judgement, over: OverRun, others: Nearby) -> tuple[CauseLink, ...]:
         """What led to a violation in the run that has just ended; `others`: the other nodes that a clause mentions."""
-        if isinstance(claim.subject, Total):
+        if isinstance(claim.subject, DurationSum):
             return tuple(self._shares(judgement.starts))
-        event = claim.subject.last if isinstance(claim.subject, Span) else claim.event
+        event = claim.subject.last if isinstance(claim.subject, Interval) else claim.event
         if judgement.measure is None and event is not None:
             return tuple(self._last(event, judgement.at, others))
         if judgement.starts:
@@ -59,7 +59,7 @@ class RunExplainer:
             return tuple(self._meanwhile(judgement.since, judgement.at, self._leaves))
         return tuple(self._going_on(judgement.since, judgement.at, over.own))
 
-    def _meanwhile(self, begin: int, end: int, leaves: Iterable[int]) -> Iterator[Link]:
+    def _meanwhile(self, begin: int, end: int, leaves: Iterable[int]) -> Iterator[CauseLink]:
         """The leaves that ran for at least a twentieth of a period, the longest first."""
         found: list[tuple[int, int, list[Activation]]] = []
         for uid in leaves:
@@ -72,34 +72,34 @@ class RunExplainer:
         for time, uid, inside in sorted(found, key=lambda each: each[:2]):
             yield part(self._tree.nodes[uid].path, -time, len(inside), _failed(inside))
 
-    def _going_on(self, begin: int, end: int, own: Sequence[Activation]) -> Iterator[Link]:
+    def _going_on(self, begin: int, end: int, own: Sequence[Activation]) -> Iterator[CauseLink]:
         """What ran below a node that did not end; for a leaf, how long it ran."""
         late = next(each for each in own if each.begin <= begin <= each.end >= end)
         if late.uid in self._tree.leaves:
-            yield Link("self", self._path(late), ran(late), late.seconds, 1, _failed([late]))
+            yield CauseLink("self", self._path(late), ran(late), late.seconds, 1, _failed([late]))
         else:
             yield from self._meanwhile(begin, end, range(late.uid + 1, self._tree.last[late.uid] + 1))
 
-    def _shares(self, starts: Sequence[Activation]) -> Iterator[Link]:
+    def _shares(self, starts: Sequence[Activation]) -> Iterator[CauseLink]:
         """How long each node of a sum ran, the longest first."""
         by_node = grouped((each.uid, each) for each in starts)
         times = {uid: sum(each.end - each.begin for each in own) for uid, own in by_node.items()}
         for uid in sorted(by_node, key=lambda uid: (-times[uid], uid)):
             yield part(self._tree.nodes[uid].path, times[uid], len(by_node[uid]), _failed(by_node[uid]))
 
-    def _inside(self, starts: Sequence[Activation]) -> Iterator[Link]:
+    def _inside(self, starts: Sequence[Activation]) -> Iterator[CauseLink]:
         """The leaves that failed during activations of a node, the most frequent first."""
-        found: list[Link] = []
+        found: list[CauseLink] = []
         for uid in range(starts[0].uid + 1, self._tree.last[starts[0].uid] + 1):
             kept = self._leaves.get(uid, [])
             inside = [each for each in kept if starts[0].begin <= each.begin and each.end <= starts[-1].end]
             if failed := _failed(inside):
                 time = sum(each.end - each.begin for each in inside)
                 text = f"{self._path(inside[0])} failed in {failed} of its {counted(len(inside), 'start')}"
-                found.append(Link("failure", self._path(inside[0]), text, time / 1e6, len(inside), failed))
+                found.append(CauseLink("failure", self._path(inside[0]), text, time / 1e6, len(inside), failed))
         return iter(sorted(found, key=lambda each: -each.failed))
 
-    def _last(self, event: Event, time: int, others: Nearby) -> Iterator[Link]:
+    def _last(self, event: ResolvedEvent, time: int, others: Nearby) -> Iterator[CauseLink]:
         """What the node of an event last did instead."""
         if event.condition is not None:
             yield from self._samples(event.condition, time)
@@ -112,16 +112,16 @@ class RunExplainer:
             text = f"{self._path(last)} had started {ago(time - last.begin)}"
             if last.end <= time and last.outcome in _CAME_TO:
                 text = f"{self._path(last)} {_CAME_TO[last.outcome]} {ago(time - last.end)}"
-            yield Link("event", self._path(last), text, last.seconds, len(before), _failed(before))
+            yield CauseLink("event", self._path(last), text, last.seconds, len(before), _failed(before))
         elif isinstance(uids, tuple) and uids:
             path = self._tree.nodes[uids[0]].path
-            yield Link("event", path, f"{path} had not started in the run", 0.0, 0, 0)
+            yield CauseLink("event", path, f"{path} had not started in the run", 0.0, 0, 0)
 
     def _path(self, activation: Activation) -> str:
         return self._tree.nodes[activation.uid].path
 
 
-def part(path: str, time: int, number: int, failed: int) -> Link:
+def part(path: str, time: int, number: int, failed: int) -> CauseLink:
     """A node that took a share of the time; time in µs."""
     text = f"{path} ran {duration(time / 1e6)} of it"
     if number > 1:
@@ -129,7 +129,7 @@ def part(path: str, time: int, number: int, failed: int) -> Link:
         text += f", {failed} of them failed" if failed else ""
     elif failed:
         text += ", and failed"
-    return Link("part", path, text, time / 1e6, number, failed)
+    return CauseLink("part", path, text, time / 1e6, number, failed)
 
 
 def ran(activation: Activation) -> str:
@@ -138,12 +138,12 @@ def ran(activation: Activation) -> str:
     return f"it ran {time}" if time else "it ended at once"
 
 
-def _ends(path: str, starts: Sequence[Activation]) -> Link:
+def _ends(path: str, starts: Sequence[Activation]) -> CauseLink:
     """How activations of a node ended."""
     numbers = {outcome: sum(each.outcome == outcome for each in starts) for outcome in _ENDED}
     came = [f"{number} {_ENDED[outcome]}" for outcome, number in numbers.items() if number]
     time = sum(each.end - each.begin for each in starts)
-    return Link("starts", path, ", ".join(came), time / 1e6, len(starts), _failed(starts))
+    return CauseLink("starts", path, ", ".join(came), time / 1e6, len(starts), _failed(starts))
 
 
 def _failed(activations: Iterable[Activation]) -> int:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Final
 
-from btq_lang.evidence.verdicts import Source
+from btq_lang.evidence.verdicts import EvidenceFile
 from btq_lang.util.grouping import grouped
 from btq_lang.util.record import replace
 from btq_lang.util.text import counted
@@ -21,7 +21,7 @@ def folded(lines: Iterable[str]) -> Iterator[str]:
             yield f"{alike[0]} (and {len(alike) - 1} more like this)"
 
 
-def folded_sources(sources: Sequence[Source]) -> Sequence[Source]:
+def folded_sources(sources: Sequence[EvidenceFile]) -> Sequence[EvidenceFile]:
     """Logs of which many whose nodes were found in the same way are one."""
     if len(sources) <= _MOST:
         return sources
@@ -29,7 +29,7 @@ def folded_sources(sources: Sequence[Source]) -> Sequence[Source]:
     return [one for group in alike for one in (group if len(group) <= _MOST else [_joint(group)])]
 
 
-def _joint(sources: Sequence[Source]) -> Source:
+def _joint(sources: Sequence[EvidenceFile]) -> EvidenceFile:
     first, last = sources[0], sources[-1]
     remarks = [f"{source.file}: {remark}" for source in sources for remark in source.remarks]
     return replace(

@@ -36,7 +36,7 @@ class Guard(Record):
     halts: bool = True
 
 
-class Refusal(Record):
+class RefusedStart(Record):
     """A start that a guard refused because it would have violated a clause."""
 
     uid: int
@@ -74,7 +74,7 @@ class Guards:
         self._shown: Final[dict[int, Moment]] = {}  # of guards that have not ended: when the node inside last began
         self.concerned: Final = {*judged, *names, ROOT}
 
-    def see(self, activation: Activation) -> tuple[list[tuple[Activation, Guard | None]], Refusal | None]:
+    def see(self, activation: Activation) -> tuple[list[tuple[Activation, Guard | None]], RefusedStart | None]:
         """The activations that can be judged now that this one has ended, each with the guard that stopped it or did
         not accept its success; and the start that it refused, if it is a guard.
         """
@@ -116,7 +116,7 @@ class Guards:
         self._shown.pop(uid, None)
         return settled, refusal
 
-    def _refusal(self, activation: Activation) -> Refusal | None:
+    def _refusal(self, activation: Activation) -> RefusedStart | None:
         uid = activation.uid
         at = self._failed.get(uid)
         inside = self._inside.get(uid)
@@ -125,7 +125,7 @@ class Guards:
         if uid in self._shown and self._shown[uid] >= activation.shown:
             return None
         self.last = self._guards[uid].requirement
-        return Refusal(inside, at, self._guards[uid])
+        return RefusedStart(inside, at, self._guards[uid])
 
     def end_run(self) -> None:
         """Begin another run."""

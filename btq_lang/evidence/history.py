@@ -12,8 +12,8 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.model import UNKNOWN_END, Activation, LoggedTree, Moment
-from btq_lang.evidence.signals import Unknown
-from btq_lang.requirements.model import Target
+from btq_lang.evidence.signals import UnknownValue
+from btq_lang.requirements.model import NodeTarget
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Joined
@@ -41,7 +41,7 @@ class History:
         found = [activation for uid in uids for activation in self._by_node[uid]]
         return sorted(found, key=_SHOWN) if len(uids) > 1 else found
 
-    def runs(self, uid: int, moment: Moment, is_early: bool) -> bool | Unknown:
+    def runs(self, uid: int, moment: Moment, is_early: bool) -> bool | UnknownValue:
         """Whether a node is active at a moment, from its start to the row of its end.
 
         Args:
@@ -52,7 +52,7 @@ class History:
         if index < 0 or moment > kept[index].ended:
             return False
         is_known = kept[index].timing != "latest" or moment == kept[index].begun(is_early)
-        return True if is_known else Unknown(UNKNOWN_END)
+        return True if is_known else UnknownValue(UNKNOWN_END)
 
     def clear(self) -> None:
         """Forget the run, which has ended."""
@@ -68,38 +68,38 @@ class Nearby:
         self._uid: Final = uid
         self._joined: Final = joined
         self._history: Final = history
-        self._found: Final[dict[Target, tuple[int, ...] | Unknown]] = {}
+        self._found: Final[dict[NodeTarget, tuple[int, ...] | UnknownValue]] = {}
 
-    def find(self, target: Target) -> tuple[int, ...] | Unknown:
+    def find(self, target: NodeTarget) -> tuple[int, ...] | UnknownValue:
         """The instances of a node, whose activations are kept from now on."""
         instances = self._joined.instances(target)
         lost = next((path for path, uid in instances if uid is None), None)
-        found: tuple[int, ...] | Unknown
+        found: tuple[int, ...] | UnknownValue
         if lost is not None:
-            found = Unknown(self._joined.lost(lost))
+            found = UnknownValue(self._joined.lost(lost))
         else:
             found = near(self._uid, [uid for _, uid in instances if uid is not None], self._joined.tree)
             self._history.watch(found)
         self._found[target] = found
         return found
 
-    def activations(self, target: Target) -> list[Activation]:
+    def activations(self, target: NodeTarget) -> list[Activation]:
         """The activations of a node in the run, in the order of their starts."""
         found = self._found[target]
-        return [] if isinstance(found, Unknown) else self._history.of(found)
+        return [] if isinstance(found, UnknownValue) else self._history.of(found)
 
     def are_begins_known(self) -> bool:
         """Whether the log says when all of these nodes began in the run."""
-        found = (each for each in self._found.values() if not isinstance(each, Unknown))
+        found = (each for each in self._found.values() if not isinstance(each, UnknownValue))
         return all(each.is_begin_known for uids in found for each in self._history.of(uids))
 
-    def runs(self, target: Target, moment: Moment, is_early: bool) -> bool | Unknown:
+    def runs(self, target: NodeTarget, moment: Moment, is_early: bool) -> bool | UnknownValue:
         """Whether a node runs; `is_early`: as of `History.runs`."""
         found = self._found[target]
-        if isinstance(found, Unknown):
+        if isinstance(found, UnknownValue):
             return found
         running = [self._history.runs(uid, moment, is_early) for uid in found]
-        return True in running or next((each for each in running if isinstance(each, Unknown)), False)
+        return True in running or next((each for each in running if isinstance(each, UnknownValue)), False)
 
 
 def near(uid: int, others: Sequence[int], tree: LoggedTree) -> tuple[int, ...]:

@@ -17,11 +17,11 @@ from btq_lang.btcpp.export import is_mission
 from btq_lang.btcpp.instances import Instance
 from btq_lang.btcpp.marks import MARK
 from btq_lang.btcpp.outputs import as_xml
-from btq_lang.btcpp.side_file import Built, RunningTree
+from btq_lang.btcpp.side_file import BuiltFile, RunningTree
 from btq_lang.catalog.versions import VERSIONS
 from btq_lang.evidence.model import LoggedTree
 from btq_lang.evidence.readers.tree import delay_of, kind_of
-from btq_lang.requirements.model import Target
+from btq_lang.requirements.model import NodeTarget
 from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.util.grouping import grouped
 from btq_lang.util.record import Record, replace
@@ -129,7 +129,7 @@ class Joined(Record):
             return f"`{path}` {self.lacking}: {unlike(number, logged, without_number(path))}"
         return f"`{path}` {self.lacking}"
 
-    def instances(self, target: Target) -> list[tuple[str, int | None]]:
+    def instances(self, target: NodeTarget) -> list[tuple[str, int | None]]:
         """The paths of the instances of a written node, each with its uid in the log; None if it is not there."""
         uids = [(each, self.uids.get(_number(each))) for each in self.build.running.instances(target)]
         return [(self.tree.nodes[uid].path if uid is not None else each.path, uid) for each, uid in uids]
@@ -156,7 +156,7 @@ class _Made(Record):
     """
 
     how: str
-    built: Built
+    built: BuiltFile
     main: str
     trees: tuple[str, ...]
 
@@ -288,7 +288,7 @@ def _made(mission: Candidate) -> Iterator[_Made]:
                 yield _Made(how if is_enforced else f"{how} with --no-enforce", built, main, tuple(trees))
 
 
-def _built(mission: Candidate, workspace: Workspace, is_enforced: bool) -> Built | None:
+def _built(mission: Candidate, workspace: Workspace, is_enforced: bool) -> BuiltFile | None:
     """What `btq build` writes; None if the mission cannot be built."""
     path = mission.path
     exports = [
@@ -298,7 +298,7 @@ def _built(mission: Candidate, workspace: Workspace, is_enforced: bool) -> Built
     if any(each.problems for each in exports):
         return None
     elements = {key: element for each in exports for key, element in each.elements.items()}
-    return Built(path, path, "", tuple(each.document for each in exports), elements)
+    return BuiltFile(path, path, "", tuple(each.document for each in exports), elements)
 
 
 def _number(instance: Instance) -> int:

@@ -13,13 +13,13 @@ from btq_lang.workspace.loader import shown
 if TYPE_CHECKING:
     from btq_lang.evidence.verdicts import (
         ClauseVerdict,
+        EvidenceFile,
         Foreign,
         Measures,
         MissionVerdicts,
-        Report,
         RequirementVerdict,
         RunValue,
-        Source,
+        VerdictReport,
     )
 
     Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
@@ -28,7 +28,7 @@ FORMAT: Final = "btq-verdicts"
 VERSION: Final = 2
 
 
-def render(report: Report) -> str:
+def render(report: VerdictReport) -> str:
     """Write the report as JSON."""
     sources = [_source(source, mission) for mission in report.missions for source in mission.sources]
     sources += [
@@ -49,7 +49,7 @@ def render(report: Report) -> str:
     return json.dumps(document, indent=1, allow_nan=False) + "\n"
 
 
-def _source(source: Source, mission: MissionVerdicts) -> Json:
+def _source(source: EvidenceFile, mission: MissionVerdicts) -> Json:
     return {
         "file": source.file,
         "mission": mission.name,
@@ -66,7 +66,7 @@ def _source(source: Source, mission: MissionVerdicts) -> Json:
     }
 
 
-def _unjoined(source: Source | Foreign) -> dict[str, Json]:
+def _unjoined(source: EvidenceFile | Foreign) -> dict[str, Json]:
     return {"unjoined": list(source.unjoined)} if source.unjoined else {}
 
 

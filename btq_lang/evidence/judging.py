@@ -11,9 +11,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.evaluate import Findings, MissionEvaluation
+from btq_lang.evidence.evaluate import LogFindings, MissionEvaluation
 from btq_lang.evidence.identity import Candidate, difference
-from btq_lang.evidence.model import ROOT, Series, Session, Transition
+from btq_lang.evidence.model import ROOT, LogSession, SampleSeries, Transition
 from btq_lang.evidence.named_runs import joined_sessions
 from btq_lang.evidence.odds import Limits
 from btq_lang.evidence.readers import NotALog, read
@@ -21,7 +21,7 @@ from btq_lang.evidence.repeats import LoggedRows, LoggedRuns
 from btq_lang.evidence.runs import activations
 from btq_lang.evidence.signal_sources import Declared
 from btq_lang.evidence.signals import by_signal
-from btq_lang.evidence.verdicts import Foreign, Report
+from btq_lang.evidence.verdicts import Foreign, VerdictReport
 from btq_lang.evidence.wording import first_of
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import counted
@@ -30,7 +30,7 @@ from btq_lang.workspace.loader import shown
 if TYPE_CHECKING:
     from btq_lang.evidence.store.sets import Draft, Keeping
     from btq_lang.evidence.watching import Watched
-NO_SERIES: Final[Mapping[str, Series]] = {}
+NO_SERIES: Final[Mapping[str, SampleSeries]] = {}
 NOTHING_DECLARED: Final = Declared()
 NOTHING: Final[Mapping[tuple[str, int], Sequence[tuple[int, int, int]]]] = {}
 
@@ -53,9 +53,9 @@ class Means(Record):
     """
 
     missions: Sequence[Candidate]
-    samples: Mapping[str, Series] = NO_SERIES
+    samples: Mapping[str, SampleSeries] = NO_SERIES
     declared: Declared = NOTHING_DECLARED
-    of_bags: Mapping[str, Series] = NO_SERIES
+    of_bags: Mapping[str, SampleSeries] = NO_SERIES
     remarks: Sequence[str] = ()
     with_timelines: bool = False
     with_measures: bool = False
@@ -78,7 +78,7 @@ class JudgedLog(Record):
     """
 
     runs: int
-    findings: tuple[tuple[str, Findings], ...]
+    findings: tuple[tuple[str, LogFindings], ...]
     foreign: tuple[Foreign, ...]
     problems: tuple[str, ...]
     renamed: tuple[str, ...] = ()
@@ -173,7 +173,7 @@ def _judged(
     return JudgedLog(runs, findings, tuple(foreign.values()), problems, sessions=tuple(logged))
 
 
-def _without(session: Session, runs: Sequence[tuple[int, int, int]]) -> Session:
+def _without(session: LogSession, runs: Sequence[tuple[int, int, int]]) -> LogSession:
     """The session without the rows of some runs; samples in them remain."""
 
     def others() -> Iterator[Transition]:
@@ -185,7 +185,7 @@ def _without(session: Session, runs: Sequence[tuple[int, int, int]]) -> Session:
             if not first <= number <= last:
                 yield row
 
-    return Session(session.tree, others(), session.samples, session.remarks, session.signals, session.robot)
+    return LogSession(session.tree, others(), session.samples, session.remarks, session.signals, session.robot)
 
 
 def rows_of(log: str, means: Means) -> Sequence[LoggedRows]:
@@ -224,12 +224,12 @@ class Judging:
         self._problems.extend(log.problems)
         self._renamed.update(log.renamed)
 
-    def report(self) -> Report:
+    def report(self) -> VerdictReport:
         """All that was found."""
         missions = [each.result() for each in self._evaluations.values()]
         found = tuple(each for each in missions if each.sources)
         renamed = tuple(f"{counted(number, 'log')} had {what}" for what, number in self._renamed.items())
-        return Report(found, tuple(self._foreign.values()), tuple(self._problems), renamed)
+        return VerdictReport(found, tuple(self._foreign.values()), tuple(self._problems), renamed)
 
 
 _NONE: Final = (0, 1 << 63, 1 << 63)  # a run after all rows

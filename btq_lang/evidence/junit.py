@@ -16,19 +16,19 @@ from btq_lang.evidence.verdicts import (
     VIOLATED,
     ClauseVerdict,
     MissionVerdicts,
-    Report,
     RequirementVerdict,
+    VerdictReport,
 )
 from btq_lang.evidence.wording import timestamp
 from btq_lang.render.junit import escaped
 
 
-def render(report: Report) -> str:
+def render(report: VerdictReport) -> str:
     """The document: a violated requirement is a failure, one neither violated nor satisfied is skipped."""
     return "".join(f"{line}\n" for line in _lines(report))
 
 
-def _lines(report: Report) -> Iterator[str]:
+def _lines(report: VerdictReport) -> Iterator[str]:
     yield '<?xml version="1.0" encoding="UTF-8"?>'
     every = [requirement for mission in report.missions for requirement in mission.requirements]
     yield f'<testsuites name="btq verify" {_numbers(every)}>'

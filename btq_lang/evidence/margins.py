@@ -29,7 +29,7 @@ class Counts(NamedTuple):
     cut_off: int
 
 
-class Step(NamedTuple):
+class CountStep(NamedTuple):
     """A step of the counts.
 
     Attributes:
@@ -54,7 +54,7 @@ class Margins:
         self.is_exact = True
         self._of_runs: Final = of_runs
         self._base = Counts(0, 0, 0, 0)  # with a bound that all keep
-        self._steps: list[Step] = []
+        self._steps: list[CountStep] = []
         self._open: Final[list[_Judged]] = []  # of the open run
         self._worst: tuple[float, int] | None = None  # of those that keep some bound, with its run
         self._furthest: tuple[float, int] | None = None  # of those that break some bound
@@ -90,7 +90,7 @@ class Margins:
                 self._base = _sum(self._base, _UNITS[within])
                 before = within
                 for value, kind in changes:
-                    self._steps.append(Step(value, value, _difference(_UNITS[kind], _UNITS[before])))
+                    self._steps.append(CountStep(value, value, _difference(_UNITS[kind], _UNITS[before])))
                     before = kind
         self._open.clear()
         if len(self._steps) > 4 * MOST_STEPS:
@@ -111,7 +111,7 @@ class Margins:
             now[later] += 1
             after = _of_run(now)
             if after != before:
-                self._steps.append(Step(value, value, _difference(after, before)))
+                self._steps.append(CountStep(value, value, _difference(after, before)))
                 before = after
 
     def add_all(self, other: Margins, runs: int) -> None:
@@ -157,7 +157,7 @@ class Margins:
         """The margins that `written` gave."""
         made = cls(of_runs=False)
         made._base = Counts(*found["base"])
-        made._steps = [Step(low, high, Counts(*change)) for low, high, *change in found["steps"]]
+        made._steps = [CountStep(low, high, Counts(*change)) for low, high, *change in found["steps"]]
         made._worst, made._furthest = (tuple(each) if each else None for each in (found["worst"], found["furthest"]))
         return made
 
@@ -168,13 +168,13 @@ def _of_run(counts: list[int]) -> Counts:
     return _sum(_UNITS[of_run], Counts(0, 0, 0, counts[CUT_OFF]))
 
 
-def _compacted(steps: Iterable[Step]) -> list[Step]:
+def _compacted(steps: Iterable[CountStep]) -> list[CountStep]:
     """The same in order of the values, equal values as one step, and no more steps than are kept."""
-    found: list[Step] = []
+    found: list[CountStep] = []
     for step in sorted(steps):
         if found and step.low <= found[-1].high:
             last = found[-1]
-            found[-1] = Step(last.low, max(last.high, step.high), _sum(last.change, step.change))
+            found[-1] = CountStep(last.low, max(last.high, step.high), _sum(last.change, step.change))
         else:
             found.append(step)
     if len(found) <= MOST_STEPS:
@@ -184,13 +184,13 @@ def _compacted(steps: Iterable[Step]) -> list[Step]:
     for step in found[1:]:
         last = merged[-1]
         if _weight(last) + _weight(step) <= heaviest:
-            merged[-1] = Step(last.low, step.high, _sum(last.change, step.change))
+            merged[-1] = CountStep(last.low, step.high, _sum(last.change, step.change))
         else:
             merged.append(step)
     return merged
 
 
-def _weight(step: Step) -> int:
+def _weight(step: CountStep) -> int:
     return max(sum(map(abs, step.change)), 1)
 
 

@@ -7,12 +7,12 @@ from collections.abc import Iterator
 from btq_lang.evidence.folding import folded_sources
 from btq_lang.evidence.node_rows import node_rows
 from btq_lang.evidence.sentences import headline, result
-from btq_lang.evidence.verdicts import WORST_FIRST, MissionVerdicts, Report
+from btq_lang.evidence.verdicts import WORST_FIRST, MissionVerdicts, VerdictReport
 from btq_lang.render.gfm import code, escaped, table
 from btq_lang.util.text import counted
 
 
-def render(report: Report) -> str:
+def render(report: VerdictReport) -> str:
     """The verdicts of each mission, and what to look at."""
     return "\n\n".join("\n".join(_lines(mission)) for mission in report.missions) + "\n"
 

@@ -39,13 +39,13 @@ ENOUGH: Final = 0.01  # of a measure: what is known to this is known well enough
 ROOT: Final = 1  # the uid of the node whose activations are the runs
 
 
-class Mark(int):
+class LiveMark(int):
     """A uid that no node has: what is known of a running robot between two of its transitions."""
 
 
-GAP: Final = Mark(-1)  # transitions before this one were not seen
-PAUSE: Final = Mark(-2)  # for a while there has been none
-UNTIL: Final = Mark(-3)  # up to this time there has been no other
+GAP: Final = LiveMark(-1)  # transitions before this one were not seen
+PAUSE: Final = LiveMark(-2)  # for a while there has been none
+UNTIL: Final = LiveMark(-3)  # up to this time there has been no other
 
 
 class LoggedNode(Record):
@@ -172,7 +172,7 @@ class Activation:
         return f"<{self.uid} {self.begin}..{self.end} {self.outcome} {self.timing}>"
 
 
-class Series:
+class SampleSeries:
     """The samples of one signal, in the order of their times; `unit`: of the values; None: the signal's own."""
 
     def __init__(self, unit: Unit | None = None) -> None:
@@ -220,7 +220,7 @@ def by_entry(boards: Mapping[Any, Mapping[Any, T]], main: str | None) -> dict[An
     return {**alone, **boards.get(main, {})}
 
 
-class Session:
+class LogSession:
     """What one logger object wrote: a tree and its transitions, which can be read once.
 
     Attributes:
@@ -238,16 +238,16 @@ class Session:
         self,
         tree: LoggedTree,
         transitions: Iterator[Transition],
-        samples: dict[str, Series] | None = None,
+        samples: dict[str, SampleSeries] | None = None,
         remarks: list[str] | None = None,
-        signals: Mapping[str, Series] | None = None,
+        signals: Mapping[str, SampleSeries] | None = None,
         robot: str = "",
     ) -> None:
         self.tree: Final = tree
         self.robot: Final = robot
         self.transitions: Final = transitions
         self.samples: Final = {} if samples is None else samples
-        self.signals: Final[Mapping[str, Series]] = {} if signals is None else signals
+        self.signals: Final[Mapping[str, SampleSeries]] = {} if signals is None else signals
         self.keeping: Final[set[int]] = set()
         self.unlike: Sequence[str] = ()
         self.remarks: Final = [] if remarks is None else remarks
@@ -273,7 +273,7 @@ class NamedLog(Record):
     changed: array[int]
     statuses: array[int]
     trees: Sequence[LoggedTree]
-    signals: Mapping[str, Series]
+    signals: Mapping[str, SampleSeries]
     remarks: Sequence[str]
 
 

@@ -15,7 +15,7 @@ from functools import cached_property
 from typing import Final
 
 from btq_lang.evidence.identity import Build, Candidate, Joined, join, join_build, unlike
-from btq_lang.evidence.model import FAILURE, IDLE, ROOT, RUNNING, SUCCESS, LoggedTree, NamedLog, Session, Transition
+from btq_lang.evidence.model import FAILURE, IDLE, ROOT, RUNNING, SUCCESS, LoggedTree, LogSession, NamedLog, Transition
 from btq_lang.evidence.runs import ONE_COMPLETION
 from btq_lang.util.grouping import grouped
 from btq_lang.util.record import replace
@@ -25,22 +25,22 @@ SEVERAL: Final = "of one of several missions"
 
 
 def joined_sessions(
-    read: Iterable[Session | NamedLog], missions: Sequence[Candidate], source: str
-) -> Iterator[tuple[str, Session, Joined | str]]:
+    read: Iterable[LogSession | NamedLog], missions: Sequence[Candidate], source: str
+) -> Iterator[tuple[str, LogSession, Joined | str]]:
     """The sessions of a log, each with its joined mission, or with a description of what it belongs to instead.
 
     Args:
         source: the file, as people read it; returned with each session, with the topic if there are several.
     """
     for each in read:
-        if isinstance(each, Session):
+        if isinstance(each, LogSession):
             yield source, each, join(missions, each.tree) or OTHER
         else:
             name = f"{source} {each.topic}" if each.topic else source
             yield from ((name, session, joined) for session, joined in _sessions(each, missions))
 
 
-def _sessions(log: NamedLog, missions: Sequence[Candidate]) -> Iterator[tuple[Session, Joined | str]]:
+def _sessions(log: NamedLog, missions: Sequence[Candidate]) -> Iterator[tuple[LogSession, Joined | str]]:
     trees = _Trees(log, missions)
     pieces = [(*piece, frozenset(log.changed[slice(*piece)])) for piece in _pieces(log, trees.roots)]
     joined_by = trees.joined({nodes for *_, nodes in pieces})
@@ -58,7 +58,7 @@ def _sessions(log: NamedLog, missions: Sequence[Candidate]) -> Iterator[tuple[Se
         else:
             uids = trees.uids(joined.tree)
             tree = joined.tree
-        session = Session(tree, _transitions(log, begin, end, uids), {}, [*log.remarks], log.signals, log.robot)
+        session = LogSession(tree, _transitions(log, begin, end, uids), {}, [*log.remarks], log.signals, log.robot)
         session.unlike = trees.unlike(nodes) if joined is OTHER else ()
         yield session, joined
 

@@ -16,8 +16,8 @@ from btq_lang.workspace.loader import shown
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate
-    from btq_lang.evidence.model import Series
-    from btq_lang.evidence.verdicts import Report
+    from btq_lang.evidence.model import SampleSeries
+    from btq_lang.evidence.verdicts import VerdictReport
 
 
 def ignored_columns(path: str, samples: Iterable[str], missions: Sequence[Candidate]) -> Iterator[str]:
@@ -33,7 +33,7 @@ def ignored_columns(path: str, samples: Iterable[str], missions: Sequence[Candid
             yield f"{path}: column `{name}` is ignored, because no signal or entry has this name{meant}"
 
 
-def other_times(read_from: Iterable[tuple[str, Series]], report: Report) -> Iterator[str]:
+def other_times(read_from: Iterable[tuple[str, SampleSeries]], report: VerdictReport) -> Iterator[str]:
     """Reports files whose samples are long before or after all runs, as when their times are not seconds since the
     epoch.
 
@@ -55,7 +55,7 @@ def other_times(read_from: Iterable[tuple[str, Series]], report: Report) -> Iter
             )
 
 
-def missions_with_errors(report: Report, missions: Sequence[Candidate]) -> Iterator[str]:
+def missions_with_errors(report: VerdictReport, missions: Sequence[Candidate]) -> Iterator[str]:
     """Reports missions with errors, of which clauses may be missing."""
     judged = {mission.file for mission in report.missions}
     for mission in missions:
@@ -67,7 +67,7 @@ def missions_with_errors(report: Report, missions: Sequence[Candidate]) -> Itera
                 yield f"{shown(mission.path)} has errors, so clauses may be missing; run btq check"
 
 
-def missing_verdicts(report: Report, requested: Sequence[str]) -> Iterator[str]:
+def missing_verdicts(report: VerdictReport, requested: Sequence[str]) -> Iterator[str]:
     """Explains why there are no verdicts at all; `requested`: the missions on the command line."""
     if not report.missions and not report.problems:
         differences = dict.fromkeys(each.difference for each in report.foreign if requested and each.difference)
@@ -81,7 +81,7 @@ def missing_verdicts(report: Report, requested: Sequence[str]) -> Iterator[str]:
         yield "no run in any log, so there is nothing to judge"
 
 
-def foreign_runs(report: Report) -> Iterator[str]:
+def foreign_runs(report: VerdictReport) -> Iterator[str]:
     """Reports runs that belong to other missions."""
     for each in report.foreign:
         yield f"{each.file}: {counted(each.runs, 'run')} {each.of}, not judged"

@@ -10,8 +10,8 @@ from math import fsum, sqrt
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.model import UNKNOWN_END, Activation, Moment, SampleValue
-from btq_lang.evidence.signals import Signals, Unknown
-from btq_lang.requirements.model import InContext, Read, Running, Signal, parts_in
+from btq_lang.evidence.signals import Signals, UnknownValue
+from btq_lang.requirements.model import InContext, ResolvedSignal, Running, SignalRead, parts_in
 
 if TYPE_CHECKING:
     from btq_lang.evidence.history import Nearby
@@ -56,7 +56,7 @@ class Observed:
         self.reads_initial: Final = reads_initial
         self._in_scope: Observed | None = None
         self.nodes: Final = nodes
-        self._contexts: dict[tuple[str, Moment], bool | Unknown] | None = None
+        self._contexts: dict[tuple[str, Moment], bool | UnknownValue] | None = None
         self.begin: Final = begin
         self.end: Final = end
         self.is_end_known: Final = is_end_known
@@ -86,21 +86,23 @@ class Observed:
         """The observations from one moment to another, within these."""
         return Observed(self.signals, self.nodes, begin, end, is_early=self.is_early)
 
-    def reading(self, signal: Signal, moment: Moment) -> SampleValue | Unknown:
+    def reading(self, signal: ResolvedSignal, moment: Moment) -> SampleValue | UnknownValue:
         """The value of a signal at a moment."""
         return self.signals.reading(signal, moment[0], self.reads_initial)
 
-    def summary(self, function: str, signal: Signal) -> float | Unknown:
+    def summary(self, function: str, signal: ResolvedSignal) -> float | UnknownValue:
         """An aggregate of the samples from beginning to end, including the value at the beginning."""
         begin, end = self.begin[0], self.end[0]
         if not self.is_end_known and self.signals.changes(signal, begin, end):
-            return Unknown(UNKNOWN_END)
+            return UnknownValue(UNKNOWN_END)
         if function == "count":
             return self.signals.number(signal, begin, end)
         values = self.signals.values(signal, begin, end)
-        return values if isinstance(values, Unknown) else _FUNCTIONS[function](values)
+        return values if isinstance(values, UnknownValue) else _FUNCTIONS[function](values)
 
-    def holds(self, context: InContext, moment: Moment, truth: Callable[[], bool | Unknown]) -> bool | Unknown:
+    def holds(
+        self, context: InContext, moment: Moment, truth: Callable[[], bool | UnknownValue]
+    ) -> bool | UnknownValue:
         """Whether a context holds, cached: else contexts that name others twice would take exponential time."""
         if self._contexts is None:
             self._contexts = {}
@@ -115,7 +117,7 @@ class Observed:
         begin, end = self.begin, self.end
         for part in parts:
             for each in parts_in(part):
-                if isinstance(each, Read):
+                if isinstance(each, SignalRead):
                     found.update([(time, 0) for time in self.signals.changes(each.signal, begin[0], end[0])])
                 elif isinstance(each, Running):
                     for activation in self.nodes.activations(each.target):

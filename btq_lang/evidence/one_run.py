@@ -15,7 +15,7 @@ from btq_lang.evidence.wording import timestamp, took
 from btq_lang.util.record import Record
 
 
-class Step(Record):
+class RunStep(Record):
     """Something that happened to a node.
 
     Attributes:
@@ -45,7 +45,7 @@ class OneRun(Record):
     start: str
     outcome: str
     outline: str
-    steps: tuple[Step, ...]
+    steps: tuple[RunStep, ...]
     left_out: int
 
 
@@ -75,7 +75,9 @@ def one_run(log: str, mission: Candidate, number: int) -> OneRun | None:
     return None
 
 
-def _steps(found: Sequence[Activation], start: int, written: dict[int, int], paths: dict[int, str]) -> tuple[Step, ...]:
+def _steps(
+    found: Sequence[Activation], start: int, written: dict[int, int], paths: dict[int, str]
+) -> tuple[RunStep, ...]:
     """The beginnings and the ends of activations in the order of the log's rows; parents begin before their children,
     and end after them.
     """
@@ -83,7 +85,7 @@ def _steps(found: Sequence[Activation], start: int, written: dict[int, int], pat
     events += [(each.ended, -each.uid, True, each) for each in found]
     events.sort(key=lambda event: event[:3])
     return tuple(
-        Step(
+        RunStep(
             (at[0] - start) / 1e6,
             written[each.uid],
             paths[each.uid],

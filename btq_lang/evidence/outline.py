@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.requirements.model import Applied, Claim, Requirement, Target
+from btq_lang.requirements.model import Applied, NodeTarget, ResolvedClaim, ResolvedRequirement
 from btq_lang.util.fields import fields_of
 from btq_lang.util.record import Record
 from btq_lang.workspace.resolved import ResolvedNode, ResolvedTree
@@ -25,8 +25,8 @@ class Demand(Record):
             text are at such a node before it.
     """
 
-    requirement: Requirement
-    claim: Claim
+    requirement: ResolvedRequirement
+    claim: ResolvedClaim
     applied: Applied | None
     place: str
 
@@ -69,7 +69,7 @@ def _place(applied: Applied) -> str:
     node = applied.node
     if node is None:
         return ""
-    through = applied.subject.through if isinstance(applied.subject, Target) else ()
+    through = applied.subject.through if isinstance(applied.subject, NodeTarget) else ()
     return "/".join((*through, node.tree or "", node.shown))
 
 

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.evidence.conditions import truth
 from btq_lang.evidence.model import UNKNOWN_END, Activation, Moment
 from btq_lang.evidence.scopes import in_scope
-from btq_lang.evidence.signals import Unknown
-from btq_lang.requirements.model import All, Condition, Event, Mission, Scope, Target
+from btq_lang.evidence.signals import UnknownValue
+from btq_lang.requirements.model import All, Condition, MissionRun, NodeTarget, ResolvedEvent, ResolvedScope
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.guards import Refusal
+    from btq_lang.evidence.guards import RefusedStart
     from btq_lang.evidence.observed import Observed
 
 
@@ -77,11 +77,11 @@ class OverRun(Record):
     """
 
     verb: str
-    scopes: Sequence[Scope]
+    scopes: Sequence[ResolvedScope]
     root: Activation
     own: Sequence[Activation]
     observed: Observed
-    refused: Sequence[Refusal]
+    refused: Sequence[RefusedStart]
     stopped: Sequence[Activation]
     missed: list[Moment]
 
@@ -90,22 +90,22 @@ class OverRun(Record):
         """Whether the log ends before the run does."""
         return self.root.outcome == "O"
 
-    def counts(self, begin: Moment, end: Moment) -> bool | Unknown:
+    def counts(self, begin: Moment, end: Moment) -> bool | UnknownValue:
         """Whether the scopes include a period."""
         return not self.scopes or in_scope(self.scopes, self.verb, self.observed.between(begin, end))
 
-    def counts_one(self, activation: Activation) -> bool | Unknown:
+    def counts_one(self, activation: Activation) -> bool | UnknownValue:
         """Whether the scopes include an activation."""
         if not self.scopes:
             return True
         return in_scope(self.scopes, self.verb, self.observed.during(activation))
 
-    def begins(self, event: Event) -> list[Moment]:
+    def begins(self, event: ResolvedEvent) -> list[Moment]:
         """When the clause's nodes began, to be compared with an event: a moment, or the row of another node."""
         is_by_row = event.condition is None
         return [each.shown if is_by_row else each.begun(self.observed.is_early) for each in self.own]
 
-    def starts(self) -> list[tuple[Activation, bool | Unknown]]:
+    def starts(self) -> list[tuple[Activation, bool | UnknownValue]]:
         """The activations of the clause's nodes that count or may count."""
         found = [(each, self.counts_one(each)) for each in self.own]
         return [each for each in found if each[1] is not False]
@@ -122,20 +122,20 @@ class OverRun(Record):
         observed = self.observed.in_scope
         found: list[Stretch] = []
         begin = observed.begin
-        before: bool | Unknown = False
+        before: bool | UnknownValue = False
         for moment in (*observed.moments(condition), None):
             now = truth(condition, observed, moment) if moment is not None else False
-            is_like = now is before or (isinstance(now, Unknown) and isinstance(before, Unknown))
+            is_like = now is before or (isinstance(now, UnknownValue) and isinstance(before, UnknownValue))
             if moment is not None and is_like:
                 continue
             end = moment if moment is not None else observed.end
             if before is not False:
-                found.append(Stretch(begin, end, before.why if isinstance(before, Unknown) else ""))
+                found.append(Stretch(begin, end, before.why if isinstance(before, UnknownValue) else ""))
             begin, before = end, now
         return found
 
     def happenings(
-        self, event: Event, of: Sequence[Activation] | None = None, is_by_row: bool = True
+        self, event: ResolvedEvent, of: Sequence[Activation] | None = None, is_by_row: bool = True
     ) -> list[Happening]:
         """The certain and possible occurrences of an event, in order.
 
@@ -164,12 +164,12 @@ class OverRun(Record):
         return sorted(found, key=lambda each: each.first)
 
 
-def target_of(event: Event) -> Target:
+def target_of(event: ResolvedEvent) -> NodeTarget:
     """The node of an event."""
     subject = event.subject
-    if isinstance(subject, Mission):
+    if isinstance(subject, MissionRun):
         assert subject.node is not None, "an event of an unknown mission is not judged"
-        return Target(subject.node)
+        return NodeTarget(subject.node)
     assert subject is not None, "only `when` has no subject"
     return subject
 

@@ -9,9 +9,9 @@ from typing import Final
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.importing import import_xml
 from btq_lang.btcpp.logged import as_written
-from btq_lang.btcpp.side_file import Built, RunningTree
+from btq_lang.btcpp.side_file import BuiltFile, RunningTree
 from btq_lang.evidence.identity import Build, Candidate
-from btq_lang.evidence.model import LoggedTree, Session
+from btq_lang.evidence.model import LoggedTree, LogSession
 from btq_lang.workspace.workspace import Workspace
 
 NO_MISSION: Final = (
@@ -40,7 +40,7 @@ class OwnTree(Candidate):
         yield from super().builds(tree)
         main = self._document.root.get("main_tree_to_execute") or ""
         if tree in ("", main):
-            built = Built(self.path, self.path, "", (self._document,), {})
+            built = BuiltFile(self.path, self.path, "", (self._document,), {})
             yield Build(self.origin, RunningTree(built, self.requirements.nodes, main), main, True)
 
 
@@ -55,7 +55,7 @@ class OwnTrees:
         self.missions: Final[list[OwnTree]] = []
         self._known: Final[set[tuple[tuple[int, str, str], ...]]] = set()
 
-    def of(self, sessions: Iterator[Session], address: str) -> Iterator[Session]:
+    def of(self, sessions: Iterator[LogSession], address: str) -> Iterator[LogSession]:
         """The sessions of a running robot, with a mission for each when it begins."""
         for session in sessions:
             self.add([session.tree], address)

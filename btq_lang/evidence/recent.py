@@ -15,16 +15,16 @@ from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.verbs import Judgement
-    from btq_lang.evidence.verdicts import Link
-    from btq_lang.requirements.model import Odds, Window
+    from btq_lang.evidence.verdicts import CauseLink
+    from btq_lang.requirements.model import ResolvedOdds, ResolvedWindow
 
-    _Entry: TypeAlias = tuple[Judgement, str, int, tuple[Link, ...]]
+    _Entry: TypeAlias = tuple[Judgement, str, int, tuple[CauseLink, ...]]
 
 
 class Recent:
     """Counts the last activations, the last runs with a judgement, or a last period; what is cut off, in all logs."""
 
-    def __init__(self, window: Window, odds: Odds | None, confidence: float | None) -> None:
+    def __init__(self, window: ResolvedWindow, odds: ResolvedOdds | None, confidence: float | None) -> None:
         self.cut_off = 0
         self._window: Final = window
         self._odds: Final = odds
@@ -33,7 +33,7 @@ class Recent:
         self._kept: Final[list[tuple[Run, list[_Entry]]]] = []  # the earliest run first
         self._end = 0  # of the last run
 
-    def add(self, judgement: Judgement, path: str, end: int, chain: tuple[Link, ...]) -> None:
+    def add(self, judgement: Judgement, path: str, end: int, chain: tuple[CauseLink, ...]) -> None:
         """Count a judgement in the open run, as `Tally.add`."""
         self._now.append((judgement, path, end, chain))
 

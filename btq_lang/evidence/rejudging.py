@@ -24,7 +24,7 @@ from btq_lang.evidence.verdicts import (
     Worst,
 )
 from btq_lang.evidence.wording import measured
-from btq_lang.requirements.model import Target
+from btq_lang.requirements.model import NodeTarget
 from btq_lang.util.grouping import grouped
 from btq_lang.util.record import Record, replace
 
@@ -74,7 +74,7 @@ def shown_now(found: Requirements, judged: Iterable[RequirementVerdict]) -> Iter
 
 def _is_named(clause: ClauseVerdict, subject: Subject | None) -> bool:
     """Whether a clause was judged at a node of that name; also where it is about no single node."""
-    if not isinstance(subject, Target):
+    if not isinstance(subject, NodeTarget):
         return True
     name, kind, head = subject.node.node.name, subject.node.kind, subject.node.node.head
     wanted = name.text if name is not None else kind.tag if kind is not None else head.text

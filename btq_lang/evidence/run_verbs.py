@@ -18,23 +18,23 @@ from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.conditions import Measure, compared
 from btq_lang.evidence.model import UNKNOWN_BEGIN, UNKNOWN_END, Activation
 from btq_lang.evidence.over_run import Happening, OverRun, Stretch
-from btq_lang.evidence.signals import Unknown
+from btq_lang.evidence.signals import UnknownValue
 from btq_lang.evidence.verbs import OUT, Judgement, between, is_same
-from btq_lang.requirements.model import Claim, Span, Subject, Target, Total, Value
+from btq_lang.requirements.model import DurationSum, Interval, NodeTarget, Quantity, ResolvedClaim, Subject
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.guards import Refusal
+    from btq_lang.evidence.guards import RefusedStart
     from btq_lang.evidence.observed import Observed
 
 Judgements: TypeAlias = Iterator[Judgement | None]
-RunJudge: TypeAlias = Callable[[Claim, OverRun], Judgements]
+RunJudge: TypeAlias = Callable[[ResolvedClaim, OverRun], Judgements]
 
 
-def run_judge(claim: Claim, subject: Subject | None) -> RunJudge | None:
+def run_judge(claim: ResolvedClaim, subject: Subject | None) -> RunJudge | None:
     """The function that judges a clause for a subject when a run has ended; None: none does."""
-    if isinstance(subject, Span | Total):
-        of_several = _span if isinstance(subject, Span) else _total
+    if isinstance(subject, Interval | DurationSum):
+        of_several = _span if isinstance(subject, Interval) else _total
         return of_several if VERBS[claim.verb].limits == "completion" else None
     return JUDGES.get(claim.verb)
 
@@ -42,7 +42,7 @@ def run_judge(claim: Claim, subject: Subject | None) -> RunJudge | None:
 # ---- reactions to events ----
 
 
-def _starts(claim: Claim, run: OverRun) -> Judgements:
+def _starts(claim: ResolvedClaim, run: OverRun) -> Judgements:
     """`starts within d after ev`: for each event, whether the next start comes in time."""
     assert claim.event is not None, "the clause names one"
     moments = run.begins(claim.event)
@@ -52,7 +52,7 @@ def _starts(claim: Claim, run: OverRun) -> Judgements:
         yield from _answered(claim, run, event, answer, "had not started")
 
 
-def _ends(claim: Claim, run: OverRun) -> Judgements:
+def _ends(claim: ResolvedClaim, run: OverRun) -> Judgements:
     """`ends within d after ev`: for each event that happens while the node is active, whether it ends in time."""
     assert claim.event is not None, "the clause names one"
     moments = run.begins(claim.event)
@@ -68,7 +68,9 @@ def _ends(claim: Claim, run: OverRun) -> Judgements:
         yield from _answered(claim, run, event, answer, "had not ended")
 
 
-def _answered(claim: Claim, run: OverRun, event: Happening, answer: Happening | None, missing: str) -> Judgements:
+def _answered(
+    claim: ResolvedClaim, run: OverRun, event: Happening, answer: Happening | None, missing: str
+) -> Judgements:
     """The judgement of an event and its answer; None: the log ends before the deadline.
 
     Args:
@@ -79,7 +81,7 @@ def _answered(claim: Claim, run: OverRun, event: Happening, answer: Happening | 
     until = end.read
     times = _between_limits(claim, run.observed, event, end)
     deadline = until
-    if not isinstance(times, Unknown):
+    if not isinstance(times, UnknownValue):
         deadline = min(until, (event.read[0] + round(times[1].bound.si * 1e6), until[1]))
     time = deadline[0]
     if event.why:  # whether it is in scope is unknown, too
@@ -89,13 +91,13 @@ def _answered(claim: Claim, run: OverRun, event: Happening, answer: Happening | 
     if counts is False:
         yield OUT
         return
-    if isinstance(times, Unknown):
+    if isinstance(times, UnknownValue):
         yield Judgement(None, time, times.why)
         return
     least, most = times
     if answer is None and least.holds and run.is_cut_off:
         yield None if most.holds else Judgement(None, time, UNKNOWN_BEGIN)
-    elif isinstance(counts, Unknown):
+    elif isinstance(counts, UnknownValue):
         yield Judgement(None, time, counts.why)
     elif answer is None:
         late = f"{missing} after {{}}" if not least.holds else f"{missing} when the run ended"
@@ -107,17 +109,17 @@ def _answered(claim: Claim, run: OverRun, event: Happening, answer: Happening | 
 
 
 def _between_limits(
-    claim: Claim, observed: Observed, first: Happening, last: Happening
-) -> tuple[Measure, Measure] | Unknown:
+    claim: ResolvedClaim, observed: Observed, first: Happening, last: Happening
+) -> tuple[Measure, Measure] | UnknownValue:
     """The shortest and the longest time from one event to another, compared with the bound of a claim."""
     shortest = compared(claim, max(last.at[0] - first.until[0], 0) / 1e6, observed, first.read)
     longest = compared(claim, (last.until[0] - first.at[0]) / 1e6, observed, first.read)
-    if isinstance(shortest, Unknown):
+    if isinstance(shortest, UnknownValue):
         return shortest
-    return longest if isinstance(longest, Unknown) else (shortest, longest)
+    return longest if isinstance(longest, UnknownValue) else (shortest, longest)
 
 
-def _timed(claim: Claim, times: tuple[Measure, Measure], at: int, since: int, said: str = "") -> Judgement:
+def _timed(claim: ResolvedClaim, times: tuple[Measure, Measure], at: int, since: int, said: str = "") -> Judgement:
     """The judgement of a time that lies between two; unknown unless both come to the same."""
     least, most = times
     sentence = said or VERBS[claim.verb].said
@@ -132,7 +134,7 @@ def _begin(activation: Activation, run: OverRun) -> Happening:
     return Happening(activation.begun(True), activation.started, judged=activation.begun(run.observed.is_early))
 
 
-def _follows(claim: Claim, run: OverRun) -> Judgements:
+def _follows(claim: ResolvedClaim, run: OverRun) -> Judgements:
     """`follows ev`: for each start, whether the event has happened in the run since the start before it."""
     assert claim.event is not None, "the clause names one"
     events = run.happenings(claim.event)
@@ -147,7 +149,7 @@ def _follows(claim: Claim, run: OverRun) -> Judgements:
         if counts is False:
             yield OUT
             continue
-        unclear = counts.why if isinstance(counts, Unknown) else between[0].why if between and not is_sure else ""
+        unclear = counts.why if isinstance(counts, UnknownValue) else between[0].why if between and not is_sure else ""
         if is_sure and start.outcome == "O":
             yield None
         elif unclear:
@@ -160,13 +162,13 @@ def _follows(claim: Claim, run: OverRun) -> Judgements:
 # ---- numbers of starts ----
 
 
-def _tries(claim: Claim, run: OverRun) -> Judgements:
+def _tries(claim: ResolvedClaim, run: OverRun) -> Judgements:
     """`tries at most m per P`: how often a node starts in each activation of another; without `per`, in the run."""
     assert claim.limit is not None, "a number of tries has a bound"
     is_upper = claim.limit.relation in ("<=", "<")
     starts = run.starts()
     moments = [each.shown for each, _ in starts]
-    periods = run.observed.nodes.activations(claim.per) if isinstance(claim.per, Target) else [run.root]
+    periods = run.observed.nodes.activations(claim.per) if isinstance(claim.per, NodeTarget) else [run.root]
     for refusal in run.refused:
         if not any(period.shown <= refusal.at <= period.ended for period in periods):
             yield Judgement(False, refusal.at[0], f"its start was refused by its guard at {refusal.guard.path}")
@@ -178,7 +180,7 @@ def _tries(claim: Claim, run: OverRun) -> Judgements:
             continue
         least = _number(claim, run, period, [each for each, counts in inside if counts is True], refused)
         most = _number(claim, run, period, [each for each, _ in inside], refused)
-        reasons = [counts.why for _, counts in inside if isinstance(counts, Unknown)]
+        reasons = [counts.why for _, counts in inside if isinstance(counts, UnknownValue)]
         has_none = is_upper and not refused and len(reasons) == len(inside)  # perhaps: then the period does not count
         is_open = least is None or most is None or least.holds is most.holds
         if has_none or (least is None and most is not None) or not is_open:
@@ -188,7 +190,11 @@ def _tries(claim: Claim, run: OverRun) -> Judgements:
 
 
 def _number(
-    claim: Claim, run: OverRun, period: Activation, starts: Sequence[Activation], refused: Sequence[Refusal]
+    claim: ResolvedClaim,
+    run: OverRun,
+    period: Activation,
+    starts: Sequence[Activation],
+    refused: Sequence[RefusedStart],
 ) -> Judgement | None:
     """The judgement of a number of starts; None: undecided, because there may have been more.
 
@@ -198,7 +204,7 @@ def _number(
     assert claim.limit is not None, "a number of tries has a bound"
     number = len(starts) + len(refused)
     tried = compared(claim, float(number), run.observed.during(period), period.started)
-    if isinstance(tried, Unknown):
+    if isinstance(tried, UnknownValue):
         return Judgement(None, period.end, tried.why)
     holds = tried.kept(period.outcome in ("S", "F"))
     if refused:
@@ -219,7 +225,7 @@ def _number(
     return Judgement(holds is not False, at, sentence, tried, period.begin, starts)
 
 
-def _runs(claim: Claim, run: OverRun) -> Judgements:
+def _runs(claim: ResolvedClaim, run: OverRun) -> Judgements:
     """`runs every d` and `runs at least m per d`: how a node's starts are spread over the time in scope, in each time
     between two starts, or in each period.
     """
@@ -227,7 +233,7 @@ def _runs(claim: Claim, run: OverRun) -> Judgements:
     for stretch in run.stretches():
         is_early = run.observed.is_early
         inside = [(each, counts) for each, counts in starts if stretch.begin <= each.begun(is_early) <= stretch.end]
-        unclear = [counts.why for _, counts in inside if isinstance(counts, Unknown)]
+        unclear = [counts.why for _, counts in inside if isinstance(counts, UnknownValue)]
         if stretch.why or unclear:
             yield Judgement(None, stretch.begin[0], stretch.why or unclear[0])
             continue
@@ -236,7 +242,9 @@ def _runs(claim: Claim, run: OverRun) -> Judgements:
         yield from (_between if claim.every else _in_windows)(claim, run, stretch, counted_starts, is_open)
 
 
-def _between(claim: Claim, run: OverRun, stretch: Stretch, starts: Sequence[Activation], is_open: bool) -> Judgements:
+def _between(
+    claim: ResolvedClaim, run: OverRun, stretch: Stretch, starts: Sequence[Activation], is_open: bool
+) -> Judgements:
     """Judge the times from each start to the next, and from the last to the end of the stretch."""
     said = VERBS[claim.verb].said.replace("{}", "{} after its last start")
     moments = [_begin(each, run) for each in starts]
@@ -244,7 +252,7 @@ def _between(claim: Claim, run: OverRun, stretch: Stretch, starts: Sequence[Acti
         is_last = start is moments[-1]
         until = after.until[0]
         times = _between_limits(claim, run.observed, start, after)
-        if isinstance(times, Unknown):
+        if isinstance(times, UnknownValue):
             yield Judgement(None, until, times.why)
         elif is_last and is_open and times[0].holds:
             yield None
@@ -254,10 +262,10 @@ def _between(claim: Claim, run: OverRun, stretch: Stretch, starts: Sequence[Acti
 
 
 def _in_windows(
-    claim: Claim, run: OverRun, stretch: Stretch, starts: Sequence[Activation], is_open: bool
+    claim: ResolvedClaim, run: OverRun, stretch: Stretch, starts: Sequence[Activation], is_open: bool
 ) -> Judgements:
     """Judge the windows with the fewest and the most starts; a stretch shorter than a window has none."""
-    assert isinstance(claim.per, Value), "the starts are counted in a time"
+    assert isinstance(claim.per, Quantity), "the starts are counted in a time"
     length = round(claim.per.si * 1e6)
     begin, last = stretch.begin[0], stretch.end[0] - length  # when the first and the last window begin
     if begin > last:
@@ -276,7 +284,7 @@ def _in_windows(
     measures: list[tuple[Measure, int]] = []
     for window in (fewest, fullest):
         reading = compared(claim, float(number(window)), run.observed, stretch.begin)
-        if isinstance(reading, Unknown):
+        if isinstance(reading, UnknownValue):
             yield Judgement(None, stretch.begin[0], reading.why)
             return
         measures.append((reading, window))
@@ -295,10 +303,10 @@ def _in_windows(
 # ---- the time between events, and sums ----
 
 
-def _span(claim: Claim, run: OverRun) -> Judgements:
+def _span(claim: ResolvedClaim, run: OverRun) -> Judgements:
     """`from e₁ to e₂ takes at most d`: the time from each first event to the next last event in the run."""
     span = claim.subject
-    assert isinstance(span, Span), "the time between two events"
+    assert isinstance(span, Interval), "the time between two events"
     first = span.first
     is_by_row = first.condition is None and span.last.condition is None
     lasts = run.happenings(span.last, is_by_row=is_by_row)
@@ -319,7 +327,7 @@ def _span(claim: Claim, run: OverRun) -> Judgements:
         yield from _ended(claim, run, event, last, unclear)
 
 
-def _ended(claim: Claim, run: OverRun, first: Happening, last: Happening | None, unclear: str) -> Judgements:
+def _ended(claim: ResolvedClaim, run: OverRun, first: Happening, last: Happening | None, unclear: str) -> Judgements:
     """The judgement of a span; None: the log ends before it does.
 
     Args:
@@ -337,7 +345,7 @@ def _ended(claim: Claim, run: OverRun, first: Happening, last: Happening | None,
         yield OUT
         return
     times = _between_limits(claim, run.observed, first, end)
-    if isinstance(times, Unknown):
+    if isinstance(times, UnknownValue):
         yield Judgement(None, until[0], times.why)
         return
     least, most = times
@@ -347,7 +355,7 @@ def _ended(claim: Claim, run: OverRun, first: Happening, last: Happening | None,
         yield Judgement(None, until[0], unclear)
     elif last is None and not is_late and run.is_cut_off:
         yield None if most.holds or not most.is_upper else Judgement(None, until[0], UNKNOWN_BEGIN)
-    elif isinstance(counts, Unknown):
+    elif isinstance(counts, UnknownValue):
         yield Judgement(None, until[0], counts.why)
     elif last is not None:
         yield _timed(claim, times, until[0], first.until[0])
@@ -357,14 +365,14 @@ def _ended(claim: Claim, run: OverRun, first: Happening, last: Happening | None,
         yield Judgement(False, until[0], "its last event did not happen before the run ended")
 
 
-def _total(claim: Claim, run: OverRun) -> Judgements:
+def _total(claim: ResolvedClaim, run: OverRun) -> Judgements:
     """`sum of X, Y takes at most d`: the durations of some nodes in a run, added up."""
     starts = run.starts()
     if not starts:
         return
     every = [each for each, _ in starts]
     sure = [each for each, counts in starts if counts is True and each.timing == "exact"]
-    reasons = [counts.why for _, counts in starts if isinstance(counts, Unknown)]
+    reasons = [counts.why for _, counts in starts if isinstance(counts, UnknownValue)]
     if len(reasons) == len(starts):  # perhaps none counts
         yield Judgement(None, run.root.end, reasons[0])
         return
@@ -379,10 +387,10 @@ def _total(claim: Claim, run: OverRun) -> Judgements:
         yield Judgement(None, run.root.end, unclear)
 
 
-def _sum(claim: Claim, run: OverRun, starts: Sequence[Activation], total: int) -> Judgement | None:
+def _sum(claim: ResolvedClaim, run: OverRun, starts: Sequence[Activation], total: int) -> Judgement | None:
     """The judgement of a sum of durations, in µs; None: undecided, because the log ends before the run does."""
     summed = compared(claim, total / 1e6, run.observed, run.observed.begin)
-    if isinstance(summed, Unknown):
+    if isinstance(summed, UnknownValue):
         return Judgement(None, run.root.end, summed.why)
     holds = summed.kept(not run.is_cut_off)
     sentence = VERBS[claim.verb].said.replace("{}", "{} together")

@@ -30,9 +30,9 @@ from btq_lang.evidence.model import (
     SUCCESS,
     UNTIL,
     Activation,
+    LiveMark,
     LoggedTree,
-    Mark,
-    Session,
+    LogSession,
 )
 from btq_lang.evidence.wording import timestamp
 
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.model import Moment, Outcome, Timing
 
 
-def activations(session: Session) -> Iterator[Activation]:
+def activations(session: LogSession) -> Iterator[Activation]:
     """The activations of a session, each as it ends; those of the root are the runs."""
     tree = session.tree
     begins = Begins(tree)
@@ -58,7 +58,7 @@ def activations(session: Session) -> Iterator[Activation]:
     for number, (time, uid, status) in enumerate(session.transitions, 1):
         row = number * PLACES
         if uid not in parent or status not in _STATUSES:
-            if isinstance(uid, Mark):
+            if isinstance(uid, LiveMark):
                 if idle is not None:
                     yield from nodes.end(*idle, "H")
                     idle = None

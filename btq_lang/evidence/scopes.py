@@ -11,31 +11,31 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.conditions import truth
 from btq_lang.evidence.model import UNKNOWN_END
-from btq_lang.evidence.signals import Unknown
-from btq_lang.requirements.model import Any, Claim, Not, Scope
+from btq_lang.evidence.signals import UnknownValue
+from btq_lang.requirements.model import Any, Negation, ResolvedClaim, ResolvedScope
 from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.observed import Observed
 
 
-def within(claim: Claim, scopes: Sequence[Scope]) -> Claim:
+def within(claim: ResolvedClaim, scopes: Sequence[ResolvedScope]) -> ResolvedClaim:
     """The claim with `while C` folded into its condition, which is then about a whole activation."""
     for scope in scopes:
         condition = claim.condition
         if scope.word == "while" and condition is not None and claim.verb == "keeps":
-            claim = replace(claim, condition=Any((Not(scope), condition)))
+            claim = replace(claim, condition=Any((Negation(scope), condition)))
         elif scope.word == "while" and condition is not None and claim.verb == "never":
-            claim = replace(claim, condition=Not(Any((Not(scope), Not(condition)))))
+            claim = replace(claim, condition=Negation(Any((Negation(scope), Negation(condition)))))
     return claim
 
 
-def in_scope(scopes: Sequence[Scope], verb: str, observed: Observed) -> bool | Unknown:
+def in_scope(scopes: Sequence[ResolvedScope], verb: str, observed: Observed) -> bool | UnknownValue:
     """Whether an observed activation, or time between two events, is in scope."""
     if not scopes:
         return True
     observed = observed.in_scope
-    result: bool | Unknown = True
+    result: bool | UnknownValue = True
     for scope in scopes:
         if scope.word == "while" and VERBS[verb].operand == "rate":  # it is time that counts, not activations
             continue
@@ -43,8 +43,8 @@ def in_scope(scopes: Sequence[Scope], verb: str, observed: Observed) -> bool | U
         found = [truth(scope.condition, observed, moment) for moment in moments]
         is_some_enough = scope.word == "while" and VERBS[verb].judged == "while it runs"  # a part of its time is enough
         if not observed.is_end_known:  # except at its start, it may have been halted already
-            found[1:] = [Unknown(UNKNOWN_END) if each is is_some_enough else each for each in found[1:]]
-        unknown = next((each for each in found if isinstance(each, Unknown)), None)
+            found[1:] = [UnknownValue(UNKNOWN_END) if each is is_some_enough else each for each in found[1:]]
+        unknown = next((each for each in found if isinstance(each, UnknownValue)), None)
         if is_some_enough:
             if True in found:
                 continue
@@ -53,5 +53,5 @@ def in_scope(scopes: Sequence[Scope], verb: str, observed: Observed) -> bool | U
             counts = False if False in found else unknown or True
         if counts is False:
             return False
-        result = counts if isinstance(counts, Unknown) else result
+        result = counts if isinstance(counts, UnknownValue) else result
     return result

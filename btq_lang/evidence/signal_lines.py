@@ -10,25 +10,25 @@ from collections.abc import Iterable, Iterator, Mapping
 from itertools import groupby, islice
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from btq_lang.evidence.signals import Signals, Unknown
+from btq_lang.evidence.signals import Signals, UnknownValue
 from btq_lang.evidence.verdicts import SignalLine
-from btq_lang.requirements.model import Aggregate, Compare, Read, Signal, Value, parts_in, signals_in
+from btq_lang.requirements.model import Aggregate, Compare, Quantity, ResolvedSignal, SignalRead, parts_in, signals_in
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import SampleValue
 
     # The numbers that a signal is compared with, each with the name of the requirement or the context that does.
-    Bounds: TypeAlias = tuple[tuple[str, Value], ...]
+    Bounds: TypeAlias = tuple[tuple[str, Quantity], ...]
     Point: TypeAlias = tuple[float, SampleValue | None]
 
 
-def read_signals(parts: Iterable[tuple[str, object]]) -> dict[Signal, Bounds]:
+def read_signals(parts: Iterable[tuple[str, object]]) -> dict[ResolvedSignal, Bounds]:
     """The signals that requirements and contexts read, with the numbers that each is compared with.
 
     Args:
         parts: of the model, each with the name of its requirement or context.
     """
-    read: dict[Signal, dict[tuple[str, Value], None]] = {}
+    read: dict[ResolvedSignal, dict[tuple[str, Quantity], None]] = {}
     for name, part in parts:
         for signal in signals_in(part):
             read.setdefault(signal, {})
@@ -38,7 +38,9 @@ def read_signals(parts: Iterable[tuple[str, object]]) -> dict[Signal, Bounds]:
     return {signal: tuple(bounds) for signal, bounds in read.items()}
 
 
-def signal_lines(read: Mapping[Signal, Bounds], signals: Signals, begin: int, end: int) -> tuple[SignalLine, ...]:
+def signal_lines(
+    read: Mapping[ResolvedSignal, Bounds], signals: Signals, begin: int, end: int
+) -> tuple[SignalLine, ...]:
     """The lines of those signals of which a value is known in a run, from its begin to its end in µs."""
     lines = []
     for signal, bounds in read.items():
@@ -48,21 +50,23 @@ def signal_lines(read: Mapping[Signal, Bounds], signals: Signals, begin: int, en
     return tuple(lines)
 
 
-def _compared(part: object) -> Iterator[tuple[Signal, Value]]:
+def _compared(part: object) -> Iterator[tuple[ResolvedSignal, Quantity]]:
     """The signals that a comparison compares with numbers of their own scale."""
     if isinstance(part, Compare):
         for pair in zip(part.operands, part.operands[1:], strict=False):
             for each, other in (pair, pair[::-1]):
-                is_of_scale = isinstance(each, Read) or (isinstance(each, Aggregate) and each.function in _OF_SCALE)
-                if is_of_scale and isinstance(each, Read | Aggregate) and isinstance(other, Value):
+                is_of_scale = isinstance(each, SignalRead) or (
+                    isinstance(each, Aggregate) and each.function in _OF_SCALE
+                )
+                if is_of_scale and isinstance(each, SignalRead | Aggregate) and isinstance(other, Quantity):
                     yield each.signal, other
 
 
-def _points(signal: Signal, signals: Signals, begin: int, end: int) -> tuple[tuple[Point, ...], int]:
+def _points(signal: ResolvedSignal, signals: Signals, begin: int, end: int) -> tuple[tuple[Point, ...], int]:
     """The points of a line, and how many changes are left out."""
     times = dict.fromkeys((begin, *sorted(signals.changes(signal, begin, end))))
     values = ((time, signals.reading(signal, time)) for time in times)
-    points = _changes(((time - begin) / 1e6, None if isinstance(each, Unknown) else each) for time, each in values)
+    points = _changes(((time - begin) / 1e6, None if isinstance(each, UnknownValue) else each) for time, each in values)
     if signal.sort == "number" and len(times) > _MOST:
         return tuple(_thinned(points, (end - begin) / 1e6)), 0
     kept = tuple(islice(points, _MOST))

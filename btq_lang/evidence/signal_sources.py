@@ -15,12 +15,12 @@ from btq_lang.workspace.loader import find_project, shown
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate
-    from btq_lang.evidence.model import Series
-    from btq_lang.requirements.model import Signal
+    from btq_lang.evidence.model import SampleSeries
+    from btq_lang.requirements.model import ResolvedSignal
     from btq_lang.workspace.config import Project
     from btq_lang.workspace.project_evidence import SignalSource
 
-NO_FILES: Final[Mapping[str, Mapping[str, Series]]] = {}
+NO_FILES: Final[Mapping[str, Mapping[str, SampleSeries]]] = {}
 NO_PROBLEMS: Final[Mapping[str, str]] = {}
 
 
@@ -35,7 +35,7 @@ class Declared(Record):
     """
 
     sources: Sequence[SignalSource] = ()
-    of_files: Mapping[str, Mapping[str, Series]] = NO_FILES
+    of_files: Mapping[str, Mapping[str, SampleSeries]] = NO_FILES
     broken: Mapping[str, str] = NO_PROBLEMS
     clashing: frozenset[str] = frozenset()
 
@@ -62,7 +62,7 @@ def signal_sources(missions: Sequence[Candidate], problems: list[str]) -> Declar
     homes = {mission.path: mission.workspace.project for mission in missions}
     projects = {path: home if home.evidence is not None else here.project for path, home in homes.items()}
     by_root = grouped((projects[mission.path].root, mission) for mission in missions)
-    of_files: dict[str, Mapping[str, Series]] = {}
+    of_files: dict[str, Mapping[str, SampleSeries]] = {}
     broken: dict[str, str] = {}
     topics: dict[str, SignalSource] = {}
     sources: list[SignalSource] = []
@@ -83,7 +83,7 @@ def signal_sources(missions: Sequence[Candidate], problems: list[str]) -> Declar
     return Declared(sources, of_files, broken, frozenset(clashing))
 
 
-def _read(project: Project, missions: Sequence[Candidate], problems: list[str]) -> Mapping[str, Series]:
+def _read(project: Project, missions: Sequence[Candidate], problems: list[str]) -> Mapping[str, SampleSeries]:
     """The samples of the sources of a project that are files; errors are appended."""
     sources = project.evidence.signals if project.evidence is not None else ()
     if not sources:
@@ -112,7 +112,7 @@ def _wrong(source: SignalSource, missions: Sequence[Candidate]) -> Iterator[str]
         yield f"no mission has a signal `{name}`{did_you_mean(meant)}"
 
 
-def _wrong_for(source: SignalSource, signal: Signal) -> Iterator[str]:
+def _wrong_for(source: SignalSource, signal: ResolvedSignal) -> Iterator[str]:
     if signal.sort != "number":
         if source.unit is not None or source.scale != 1 or source.offset != 0:
             yield f"`{signal.name}` is a {signal.sort}, so it takes no unit, scale or offset"

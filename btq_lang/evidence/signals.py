@@ -11,12 +11,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
 
 from btq_lang.catalog.units import Unit, to_si
-from btq_lang.evidence.model import SampleValue, Series
-from btq_lang.requirements.model import Signal, Value
+from btq_lang.evidence.model import SampleSeries, SampleValue
+from btq_lang.requirements.model import Quantity, ResolvedSignal
 from btq_lang.util.record import Record
 
 
-class Unknown(Record):
+class UnknownValue(Record):
     """A value that cannot be determined, and why."""
 
     why: str
@@ -25,12 +25,12 @@ class Unknown(Record):
 class Signals:
     """The samples of a session: those given for a signal, else the log's own, by entry."""
 
-    def __init__(self, given: Mapping[str, Series], logged: Mapping[str, Series]) -> None:
+    def __init__(self, given: Mapping[str, SampleSeries], logged: Mapping[str, SampleSeries]) -> None:
         self._given: Final = given
         self.logged: Final = logged
-        self._last: Final[dict[str, tuple[SampleValue, SampleValue | Unknown]]] = {}  # of each signal: read, in SI
+        self._last: Final[dict[str, tuple[SampleValue, SampleValue | UnknownValue]]] = {}  # of each signal: read, in SI
 
-    def reading(self, signal: Signal, time: int, with_initial: bool = False) -> SampleValue | Unknown:
+    def reading(self, signal: ResolvedSignal, time: int, with_initial: bool = False) -> SampleValue | UnknownValue:
         """The value of a signal at a time, in SI.
 
         Args:
@@ -42,20 +42,20 @@ class Signals:
             return _before_samples(signal, bool(series.times), with_initial)
         sampled, value = last_sample
         if value is None:
-            return Unknown(f"`{signal.name}` was not on the blackboard")
+            return UnknownValue(f"`{signal.name}` was not on the blackboard")
         if signal.fresh is not None and time - sampled > round(signal.fresh * 1e6):
-            return Unknown(f"the last sample of `{signal.name}` is too old")
+            return UnknownValue(f"the last sample of `{signal.name}` is too old")
         last = self._last.get(signal.name)
         if last is None or last[0] is not value:
             last = self._last[signal.name] = value, _as_declared(signal, value, series.unit)
         return last[1]
 
-    def sampled(self, signal: Signal, time: int) -> int | None:
+    def sampled(self, signal: ResolvedSignal, time: int) -> int | None:
         """The time of the sample that gives a signal its value at a time."""
         found = self._series(signal).at(time)
         return found[0] if found is not None else None
 
-    def changes(self, signal: Signal, begin: int, end: int) -> list[int]:
+    def changes(self, signal: ResolvedSignal, begin: int, end: int) -> list[int]:
         """The times after `begin`, up to `end`, at which a signal may change: a sample comes or expires."""
         series = self._series(signal)
         times = list(series.between(begin, end))
@@ -66,44 +66,44 @@ class Signals:
             times = [*times, *[time + age for time in sampled if begin < time + age <= end]]
         return times
 
-    def values(self, signal: Signal, begin: int, end: int) -> list[float] | Unknown:
+    def values(self, signal: ResolvedSignal, begin: int, end: int) -> list[float] | UnknownValue:
         """A signal's values from `begin`, if known then, to `end`; unknown if there are none, one is not a number, or
         one expired before the next.
         """
         series = self._series(signal)
         times = list(series.between(begin, end))
-        if not isinstance(self.reading(signal, begin), Unknown):
+        if not isinstance(self.reading(signal, begin), UnknownValue):
             times.insert(0, begin)
         if not times:
-            return Unknown(f"no sample of `{signal.name}` meanwhile" if series.times else _none_of(signal))
+            return UnknownValue(f"no sample of `{signal.name}` meanwhile" if series.times else _none_of(signal))
         checked = [*times, *self.changes(signal, times[0], end)] if signal.fresh is not None else times
         found: list[float] = []
         for time in checked:
             value = self.reading(signal, time)
-            if isinstance(value, Unknown):
+            if isinstance(value, UnknownValue):
                 return value
             found.append(float(value))
         return found[: len(times)]
 
-    def sampled_values(self, signal: Signal, begin: int, end: int) -> list[float] | Unknown:
+    def sampled_values(self, signal: ResolvedSignal, begin: int, end: int) -> list[float] | UnknownValue:
         """A signal's values at its samples after `begin`, up to `end`; unknown if one is not a number."""
         series = self._series(signal)
         at = bisect_right(series.times, begin), bisect_right(series.times, end)
         converted: list[float] = []
         for sample in series.values[slice(*at)]:
             value = _as_declared(signal, sample, series.unit) if sample is not None else None
-            if isinstance(value, Unknown):
+            if isinstance(value, UnknownValue):
                 return value
             if value is not None:
                 converted.append(float(value))
         return converted
 
-    def number(self, signal: Signal, begin: int, end: int) -> float | Unknown:
+    def number(self, signal: ResolvedSignal, begin: int, end: int) -> float | UnknownValue:
         """How many samples of a signal there are from `begin` to `end`."""
         series = self._series(signal)
-        return float(len(series.between(begin - 1, end))) if series.times else Unknown(_none_of(signal))
+        return float(len(series.between(begin - 1, end))) if series.times else UnknownValue(_none_of(signal))
 
-    def sampled_times(self, signal: Signal, begin: int, end: int) -> Sequence[int]:
+    def sampled_times(self, signal: ResolvedSignal, begin: int, end: int) -> Sequence[int]:
         """The times of a signal's samples from `begin` to `end`, as far as they are kept."""
         return self._series(signal).between(begin - 1, end)
 
@@ -112,46 +112,46 @@ class Signals:
         for series in self.logged.values():
             series.forget_before(time)
 
-    def _series(self, signal: Signal) -> Series:
+    def _series(self, signal: ResolvedSignal) -> SampleSeries:
         return self._given.get(signal.name) or self.logged.get(signal.entry) or _EMPTY
 
 
-def _before_samples(signal: Signal, is_sampled: bool, with_initial: bool) -> SampleValue | Unknown:
+def _before_samples(signal: ResolvedSignal, is_sampled: bool, with_initial: bool) -> SampleValue | UnknownValue:
     """The value of a signal before its first sample.  What it has `initially` was not measured: that may say which
     activations a requirement is about, and never that one satisfies it; nor that in a log without any sample.
     """
     if not is_sampled:
-        return Unknown(_none_of(signal))
+        return UnknownValue(_none_of(signal))
     first = signal.initially if with_initial else None
     if first is None:
-        return Unknown(f"no sample of `{signal.name}` before that time")
-    return first.si if isinstance(first, Value) else first.value
+        return UnknownValue(f"no sample of `{signal.name}` before that time")
+    return first.si if isinstance(first, Quantity) else first.value
 
 
-def _none_of(signal: Signal) -> str:
+def _none_of(signal: ResolvedSignal) -> str:
     return f"{NO_SAMPLES} `{signal.name}`"
 
 
-def _as_declared(signal: Signal, value: SampleValue, unit: Unit | None) -> SampleValue | Unknown:
+def _as_declared(signal: ResolvedSignal, value: SampleValue, unit: Unit | None) -> SampleValue | UnknownValue:
     """Convert a sample to its signal's declared type and SI; unit: of the sample, None for the signal's own."""
     if signal.sort == "text":
         return value if isinstance(value, str) else f"{value:g}"
     if signal.sort == "bool":
         if isinstance(value, str):
             return _BOOLS.get(
-                value.strip().lower(), Unknown(f"a sample of `{signal.name}` is `{value}`, which is not a bool")
+                value.strip().lower(), UnknownValue(f"a sample of `{signal.name}` is `{value}`, which is not a bool")
             )
         return bool(value)
     if isinstance(value, str):
-        return Unknown(f"a sample of `{signal.name}` is `{value}`, which is not a number")
+        return UnknownValue(f"a sample of `{signal.name}` is `{value}`, which is not a number")
     unit = unit or signal.unit
     return to_si(value, unit) if unit is not None else float(value)
 
 
-def by_signal(signals: Iterable[Signal], *sources: Mapping[str, Series]) -> dict[str, Series]:
+def by_signal(signals: Iterable[ResolvedSignal], *sources: Mapping[str, SampleSeries]) -> dict[str, SampleSeries]:
     """The samples of signals, each from the first source that has it by its name or its entry."""
     names = {signal.name: (signal.name, signal.entry) for signal in signals}
-    found: dict[str, Series] = {}
+    found: dict[str, SampleSeries] = {}
     for signal, keys in names.items():
         for source in sources:
             if (key := next((key for key in keys if key in source), None)) is not None:
@@ -161,5 +161,5 @@ def by_signal(signals: Iterable[Signal], *sources: Mapping[str, Series]) -> dict
 
 
 NO_SAMPLES: Final = "no samples of"
-_EMPTY: Final = Series()
-_BOOLS: Final[dict[str, SampleValue | Unknown]] = {"true": True, "1": True, "false": False, "0": False}
+_EMPTY: Final = SampleSeries()
+_BOOLS: Final[dict[str, SampleValue | UnknownValue]] = {"true": True, "1": True, "false": False, "0": False}

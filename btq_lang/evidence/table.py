@@ -18,10 +18,10 @@ from btq_lang.render.colour import Paint, painter
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, Report, RequirementVerdict, Verdict
+    from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, RequirementVerdict, Verdict, VerdictReport
 
 
-def render(report: Report, colour: bool = False, verbose: bool = False, width: int | None = None) -> str:
+def render(report: VerdictReport, colour: bool = False, verbose: bool = False, width: int | None = None) -> str:
     """The verdicts of all missions, the worst first.
 
     Args:

@@ -19,7 +19,7 @@ from btq_lang.evidence.verdicts import (
     UNKNOWN,
     VIOLATED,
     Bounded,
-    Link,
+    CauseLink,
     RunValue,
     Verdict,
     Violation,
@@ -31,7 +31,7 @@ from btq_lang.util.record import Record, replace
 if TYPE_CHECKING:
     from btq_lang.evidence.conditions import Measure
     from btq_lang.evidence.verbs import Judgement
-    from btq_lang.requirements.model import Odds
+    from btq_lang.requirements.model import ResolvedOdds
 
 
 class Run(Record):
@@ -54,7 +54,7 @@ class Tally:
     """
 
     def __init__(
-        self, odds: Odds | None, confidence: float | None, limits: Limits = "one look", most: int | None = None
+        self, odds: ResolvedOdds | None, confidence: float | None, limits: Limits = "one look", most: int | None = None
     ) -> None:
         """Count nothing yet; `most`: the maximum that count; None: all."""
         self.counted = 0
@@ -73,11 +73,11 @@ class Tally:
         self._confidence: Final = confidence
         self._most: Final = most
         self._worst_excess = float("-inf")
-        self._broken: Final[list[tuple[Judgement, str, tuple[Link, ...]]]] = []  # of the open run
+        self._broken: Final[list[tuple[Judgement, str, tuple[CauseLink, ...]]]] = []  # of the open run
         self._kept = self._unclear = 0  # likewise
         self._worst_now: Measure | None = None  # likewise
 
-    def add(self, judgement: Judgement, path: str, end: int, chain: tuple[Link, ...]) -> None:
+    def add(self, judgement: Judgement, path: str, end: int, chain: tuple[CauseLink, ...]) -> None:
         """Count the judgement of an activation in the open run, or of the run.
 
         Args:
@@ -251,7 +251,7 @@ class Tally:
         return VIOLATED if upper_limit(k, n, self._confidence, self.limits) < wanted else UNDECIDED
 
 
-def _violation(judgement: Judgement, path: str, chain: tuple[Link, ...], run: Run) -> Violation:
+def _violation(judgement: Judgement, path: str, chain: tuple[CauseLink, ...], run: Run) -> Violation:
     measure = judgement.measure
     value = measured(measure.si, measure.unit, measure.bound.si) if measure is not None else ""
     bound = measure.bound.text if measure is not None else ""

@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     from btq_lang.evidence.signal_lines import Bounds
     from btq_lang.evidence.signals import Signals
     from btq_lang.evidence.tally import Run
-    from btq_lang.requirements.model import Signal
+    from btq_lang.requirements.model import ResolvedSignal
 
 
 class OpenRun:
     """The activations of the open run."""
 
-    def __init__(self, read: Mapping[Signal, Bounds]) -> None:
+    def __init__(self, read: Mapping[ResolvedSignal, Bounds]) -> None:
         """See nothing yet; `read`: the signals to be drawn, with the numbers that they are compared with."""
         self._read: Final = read
         self._seen: Final[list[Activation]] = []

@@ -12,12 +12,12 @@ from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.conditions import Measure, bound_at, compared, measure_of, truth
 from btq_lang.evidence.model import CLOCK_SET_BACK, ENOUGH, UNKNOWN_BEGIN, UNKNOWN_END, Activation, Moment
 from btq_lang.evidence.observed import Observed
-from btq_lang.evidence.signals import Unknown
+from btq_lang.evidence.signals import UnknownValue
 from btq_lang.evidence.use import fallen, risen
 from btq_lang.evidence.wording import quantity
-from btq_lang.requirements.model import Aggregate, Claim, Condition, Not, parts_in, signals_in
+from btq_lang.requirements.model import Aggregate, Condition, Negation, ResolvedClaim, parts_in, signals_in
 
-Judge: TypeAlias = Callable[[Claim, Activation, Observed], "Judgement | None"]
+Judge: TypeAlias = Callable[[ResolvedClaim, Activation, Observed], "Judgement | None"]
 
 
 class Judgement(NamedTuple):  # not a Record for the same reason as Measure
@@ -84,19 +84,19 @@ def is_same(one: Judgement, other: Judgement) -> bool:
 # ---- durations and results ----
 
 
-def takes(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
+def takes(claim: ResolvedClaim, activation: Activation, observed: Observed) -> Judgement | None:
     """`takes at most d`: how long an activation lasts."""
     return judged(claim, duration(claim, activation, observed), activation)
 
 
-def succeeds(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
+def succeeds(claim: ResolvedClaim, activation: Activation, observed: Observed) -> Judgement | None:
     """`succeeds [within d]`: its result, and how long it takes; halted or cut off before, it does not count."""
     outcome, at = activation.outcome, activation.end
     if outcome == "F" or claim.limit is None:
         said = {"S": "succeeded", "F": "failed"}
         return Judgement(outcome == "S", at, said[outcome]) if outcome in said else None
     found = duration(claim, activation, observed)
-    if isinstance(found, Unknown):
+    if isinstance(found, UnknownValue):
         return Judgement(None, at, found.why)
     if not found.holds and activation.timing == "latest":
         return Judgement(None, at, UNKNOWN_END, found)
@@ -105,17 +105,17 @@ def succeeds(claim: Claim, activation: Activation, observed: Observed) -> Judgem
     return Judgement(found.holds, at, "succeeded after {}" if outcome == "S" else "had not succeeded after {}", found)
 
 
-def uses(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
+def uses(claim: ResolvedClaim, activation: Activation, observed: Observed) -> Judgement | None:
     """`uses at most x of k`: how much a level falls, or a counter rises, during an activation."""
     used = _used(claim, activation, observed)
-    if isinstance(used, Unknown):
+    if isinstance(used, UnknownValue):
         return judged(claim, used, activation)
     amount, note = used
     judgement = judged(claim, compared(claim, amount, observed, activation.started), activation)
     return judgement._replace(note=note) if judgement is not None else None
 
 
-def judged(claim: Claim, found: Measure | Unknown, activation: Activation) -> Judgement | None:
+def judged(claim: ResolvedClaim, found: Measure | UnknownValue, activation: Activation) -> Judgement | None:
     """The judgement of a measure that grows during an activation.
 
     An upper bound is violated as soon as it is exceeded, however the activation ends; a lower bound is judged only if
@@ -123,7 +123,7 @@ def judged(claim: Claim, found: Measure | Unknown, activation: Activation) -> Ju
     """
     assert claim.limit is not None, "it is compared with a bound"
     is_complete = activation.outcome in ("S", "F")
-    if isinstance(found, Unknown):
+    if isinstance(found, UnknownValue):
         can_fail = is_complete or claim.limit.relation not in (">=", ">")
         return Judgement(None, activation.end, found.why) if can_fail else None
     holds = found.kept(is_complete)
@@ -134,33 +134,33 @@ def judged(claim: Claim, found: Measure | Unknown, activation: Activation) -> Ju
     return Judgement(holds, activation.end, VERBS[claim.verb].said, found)
 
 
-def duration(claim: Claim, activation: Activation, observed: Observed) -> Measure | Unknown:
+def duration(claim: ResolvedClaim, activation: Activation, observed: Observed) -> Measure | UnknownValue:
     """The duration of an activation, compared with the bound of a claim; unknown if either is."""
     if activation.timing == "broken":
-        return Unknown(CLOCK_SET_BACK)
+        return UnknownValue(CLOCK_SET_BACK)
     return compared(claim, activation.seconds, observed, activation.started)
 
 
-def _used(claim: Claim, activation: Activation, observed: Observed) -> tuple[float, str] | Unknown:
+def _used(claim: ResolvedClaim, activation: Activation, observed: Observed) -> tuple[float, str] | UnknownValue:
     """How much was used, and a note if the signal was recharged or restarted meanwhile."""
     signal, limit = claim.signal, claim.limit
     assert signal is not None, "the clause names what is used"
     assert limit is not None, "and how much at most"
     if activation.timing == "broken":
-        return Unknown(CLOCK_SET_BACK)
+        return UnknownValue(CLOCK_SET_BACK)
     if signal.behaviour == "gauge":
-        return Unknown(f"`{signal.name}` is neither a level nor a counter")
+        return UnknownValue(f"`{signal.name}` is neither a level nor a counter")
     ends: list[float] = []
     for moment in (activation.started, activation.ended):
         value = observed.reading(signal, moment)
-        if isinstance(value, Unknown):
+        if isinstance(value, UnknownValue):
             return value
         ends.append(float(value))
     values = observed.signals.sampled_values(signal, activation.begin, activation.end)
-    if isinstance(values, Unknown):
+    if isinstance(values, UnknownValue):
         return values
     bound = bound_at(limit.upper or limit.value, observed, activation.started)
-    if isinstance(bound, Unknown):
+    if isinstance(bound, UnknownValue):
         return bound
     if signal.behaviour == "level":
         amount, number = fallen([ends[0], *values], bound.si)
@@ -172,13 +172,13 @@ def _used(claim: Claim, activation: Activation, observed: Observed) -> tuple[flo
 # ---- conditions ----
 
 
-def needs(claim: Claim, activation: Activation, observed: Observed) -> Judgement:
+def needs(claim: ResolvedClaim, activation: Activation, observed: Observed) -> Judgement:
     """`needs φ`: a condition at the start of an activation, however it ends."""
     assert claim.condition is not None, "it needs a condition"
     return _of(_result(claim.condition, activation.started, observed), activation.started, claim, observed)
 
 
-def leaves(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
+def leaves(claim: ResolvedClaim, activation: Activation, observed: Observed) -> Judgement | None:
     """`leaves φ`: a condition at the end of an activation that succeeded."""
     assert claim.condition is not None, "it leaves a condition"
     if activation.outcome != "S":
@@ -186,19 +186,19 @@ def leaves(claim: Claim, activation: Activation, observed: Observed) -> Judgemen
     return _of(_result(claim.condition, activation.ended, observed), activation.ended, claim, observed)
 
 
-def keeps(claim: Claim, activation: Activation, observed: Observed) -> Judgement:
+def keeps(claim: ResolvedClaim, activation: Activation, observed: Observed) -> Judgement:
     """`keeps φ`: a condition from the start of an activation to its end, at each moment at which it may change.
 
     The first violation decides, else a moment at which it is unknown, else the moment closest to a violation.
     """
     assert claim.condition is not None, "something is kept"
-    condition = Not(claim.condition) if claim.verb == "never" else claim.condition
-    unknown: tuple[Unknown, Moment] | None = None
+    condition = Negation(claim.condition) if claim.verb == "never" else claim.condition
+    unknown: tuple[UnknownValue, Moment] | None = None
     closest: tuple[Measure | bool, Moment] | None = None
     most = float("-inf")
     for moment in observed.moments(condition):
         found = _result(condition, moment, observed)
-        if isinstance(found, Unknown):
+        if isinstance(found, UnknownValue):
             unknown = unknown or (found, moment)
         elif found is False or (isinstance(found, Measure) and not found.holds):
             if activation.timing != "exact" and moment != observed.begin:
@@ -215,16 +215,16 @@ def keeps(claim: Claim, activation: Activation, observed: Observed) -> Judgement
     return _of(said, moment, claim, observed)
 
 
-def _result(condition: Condition, moment: Moment, observed: Observed) -> Measure | bool | Unknown:
+def _result(condition: Condition, moment: Moment, observed: Observed) -> Measure | bool | UnknownValue:
     """Whether a condition holds at a moment, as a measure if it compares a signal with a bound."""
     measure = measure_of(condition, observed, moment)
     return measure if measure is not None else truth(condition, observed, moment)
 
 
-def _of(result: Measure | bool | Unknown, moment: Moment, claim: Claim, observed: Observed) -> Judgement:
+def _of(result: Measure | bool | UnknownValue, moment: Moment, claim: ResolvedClaim, observed: Observed) -> Judgement:
     """The judgement of a condition evaluated at a moment."""
     time = moment[0]
-    if isinstance(result, Unknown):
+    if isinstance(result, UnknownValue):
         return Judgement(None, time, result.why)
     sentence = VERBS[claim.verb].said
     if isinstance(result, Measure):
@@ -235,20 +235,20 @@ def _of(result: Measure | bool | Unknown, moment: Moment, claim: Claim, observed
     )
 
 
-def _held(claim: Claim) -> str:
+def _held(claim: ResolvedClaim) -> str:
     """What was the case, for a violation."""
     condition = claim.text.partition(f"{claim.verb} ")[2]
     return f"`{condition}` {'held' if claim.verb == 'never' else 'did not hold'}"
 
 
-def _read(claim: Claim, moment: Moment, observed: Observed) -> str:
+def _read(claim: ResolvedClaim, moment: Moment, observed: Observed) -> str:
     """The values that a condition read."""
     values: list[str] = []
     for signal in dict.fromkeys(signals_in(claim.condition)):
         value = observed.reading(signal, moment)
         if isinstance(value, str):
             values.append(f'{signal.name} was "{value}"')
-        elif not isinstance(value, Unknown):
+        elif not isinstance(value, UnknownValue):
             shown = str(value).lower() if isinstance(value, bool) else quantity(value, signal.unit)
             values.append(f"{signal.name} was {shown}")
     return f": {', '.join(values)}" if values else ""

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.margins import Margins
     from btq_lang.evidence.model import Outcome, SampleValue
     from btq_lang.evidence.odds import Limits
-    from btq_lang.requirements.model import Sort, Value
+    from btq_lang.requirements.model import Quantity, Sort
     from btq_lang.workspace.resolved import ResolvedNode
 
 Verdict: TypeAlias = Literal["violated", "unknown", "undecided", "satisfied", "never exercised", "open"]
@@ -29,7 +29,7 @@ WORST_FIRST: Final[tuple[Verdict, ...]] = (VIOLATED, UNKNOWN, UNDECIDED, SATISFI
 OUTCOMES: Final[dict[Outcome, str]] = {"S": "succeeded", "F": "failed", "H": "halted", "O": "interrupted"}
 
 
-class Link(Record):
+class CauseLink(Record):
     """Something that led to a violation.
 
     Attributes:
@@ -74,7 +74,7 @@ class Violation(Record):
     measured: str
     bound: str
     why: str
-    chain: tuple[Link, ...]
+    chain: tuple[CauseLink, ...]
     passed: float | None = None
 
 
@@ -128,7 +128,7 @@ class Histogram(Record):
     low: float
     step: float
     counts: tuple[int, ...]
-    marks: Mapping[str, Value]
+    marks: Mapping[str, Quantity]
     unit: Unit | None
 
 
@@ -163,7 +163,7 @@ class SignalLine(Record):
     unit: Unit | None
     sort: Sort
     points: tuple[tuple[float, SampleValue | None], ...]
-    bounds: tuple[tuple[str, Value], ...]
+    bounds: tuple[tuple[str, Quantity], ...]
     left_out: int
 
 
@@ -271,7 +271,7 @@ class RequirementVerdict(Record):
     clauses: tuple[ClauseVerdict, ...]
 
 
-class Source(Record):
+class EvidenceFile(Record):
     """What was read from a file.
 
     Attributes:
@@ -363,7 +363,7 @@ class MissionVerdicts(Record):
 
     name: str
     file: str
-    sources: tuple[Source, ...]
+    sources: tuple[EvidenceFile, ...]
     requirements: tuple[RequirementVerdict, ...]
     outcomes: tuple[tuple[str, int], ...]
     nodes: tuple[NodeSummary, ...]
@@ -400,7 +400,7 @@ class Foreign(Record):
     unjoined: tuple[str, ...] = ()
 
 
-class Report(Record):
+class VerdictReport(Record):
     """All that `btq verify` found.
 
     Attributes:

@@ -26,7 +26,7 @@ from btq_lang.util.record import Record, replace
 from btq_lang.workspace.loader import IS_SPECIAL, absolute, collect, is_special, shown
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.verdicts import Report
+    from btq_lang.evidence.verdicts import VerdictReport
     from btq_lang.evidence.watching import Watched
     from btq_lang.workspace.config import Project
     from btq_lang.workspace.workspace import Workspace
@@ -40,7 +40,7 @@ class Verification(Record):
         problems: why they may be incomplete: logs that cannot be read, missions with errors.
     """
 
-    report: Report
+    report: VerdictReport
     problems: tuple[str, ...]
 
     def write(self, form: str = "table", *, colour: bool = False, verbose: bool = False) -> str:
@@ -136,7 +136,7 @@ def verify(
     means: Means,
     jobs: int = 1,
     progress: Callable[[int, int], None] = lambda files, runs: None,
-) -> Report:
+) -> VerdictReport:
     """Judge missions by logs, of which one that cannot be read is a problem of the report.
 
     Args:
@@ -200,7 +200,7 @@ def judged_live(running: Watched, address: str, means: Means, requested: Sequenc
     return _with_problems(report, means.missions, requested)
 
 
-def _with_problems(report: Report, missions: Sequence[Candidate], requested: Sequence[str]) -> Verification:
+def _with_problems(report: VerdictReport, missions: Sequence[Candidate], requested: Sequence[str]) -> Verification:
     """The report with what makes its verdicts incomplete."""
     written = [each for each in missions if not isinstance(each, OwnTree)]
     if len(written) < len(missions):

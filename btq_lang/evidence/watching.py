@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.clause import JudgedClause
 from btq_lang.evidence.clause_findings import verdict_of
-from btq_lang.evidence.model import GAP, PLACES, RUNNING, Activation, Moment, NamedLog, Session, Transition
+from btq_lang.evidence.model import GAP, PLACES, RUNNING, Activation, LogSession, Moment, NamedLog, Transition
 from btq_lang.evidence.sentences import result
 from btq_lang.evidence.tally import Run
 from btq_lang.evidence.verbs import Judgement
@@ -50,7 +50,7 @@ class Watched:
         outcomes: how many runs ended in which way.
     """
 
-    def __init__(self, sessions: Iterable[Session | NamedLog], address: str, tell: Callable[[News], None]) -> None:
+    def __init__(self, sessions: Iterable[LogSession | NamedLog], address: str, tell: Callable[[News], None]) -> None:
         self.id: Final = secrets.token_hex(32)
         self.sessions: Final = map(self._followed, sessions)
         self.mission = ""
@@ -95,15 +95,15 @@ class Watched:
         for evaluation, listener in self._missions:
             yield evaluation.verdicts(listener.open_run())
 
-    def _followed(self, session: Session | NamedLog) -> Session | NamedLog:
+    def _followed(self, session: LogSession | NamedLog) -> LogSession | NamedLog:
         """The session, with transitions that are noted while they are read."""
-        if not isinstance(session, Session):
+        if not isinstance(session, LogSession):
             return session
         self._listener = None
         noted = self._noted(session)
-        return Session(session.tree, noted, session.samples, session.remarks, session.signals, session.robot)
+        return LogSession(session.tree, noted, session.samples, session.remarks, session.signals, session.robot)
 
-    def _noted(self, session: Session) -> Iterator[Transition]:
+    def _noted(self, session: LogSession) -> Iterator[Transition]:
         last, latest = session.tree.last, 0
         self._open.clear()
         for number, row in enumerate(session.transitions, 1):

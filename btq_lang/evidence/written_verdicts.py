@@ -9,8 +9,8 @@ from btq_lang.evidence.json_document import FORMAT, VERSION
 from btq_lang.evidence.margins import Margins
 from btq_lang.evidence.verdicts import (
     Bounded,
+    CauseLink,
     ClauseVerdict,
-    Link,
     Measures,
     RequirementVerdict,
     RunValue,
@@ -120,7 +120,7 @@ def _measures(found: dict[str, Any]) -> Measures:
 
 def _violation(found: dict[str, Any]) -> Violation:
     words = {"measured": found["measured"] or "", "bound": found["bound"] or "", "start": time_of(found["start"])}
-    return Violation(**{**found, **words, "chain": tuple(Link(**each) for each in found["chain"])})
+    return Violation(**{**found, **words, "chain": tuple(CauseLink(**each) for each in found["chain"])})
 
 
 _VERSIONS: Final = range(1, VERSION + 1)  # what an older one has, this one has too

@@ -37,8 +37,8 @@ from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.formatter.alignment import align
 from btq_lang.formatter.clauses import sections
-from btq_lang.formatter.layout import FormatOptions, Row, laid_out
-from btq_lang.formatter.lines import Line, Remark, logical_lines
+from btq_lang.formatter.layout import FormatOptions, PhysicalLine, laid_out
+from btq_lang.formatter.lines import CommentLines, LogicalLine, logical_lines
 from btq_lang.formatter.marks import Marks
 from btq_lang.parser import Parsed, parse
 from btq_lang.util.record import Part, Record
@@ -150,9 +150,9 @@ def _line_end(text: str) -> str:
     return "\r\n" if first is not None and first[0] == "\r\n" else "\n"
 
 
-def _part_items(lines: Sequence[Line], items: Container[int]) -> None:
+def _part_items(lines: Sequence[LogicalLine], items: Container[int]) -> None:
     """Put a blank line before and after each item with a block, above the comments that precede the item."""
-    previous: Line | None = None
+    previous: LogicalLine | None = None
     was_block = False
     for line, below in pairwise(lines):
         if line.words[0].start not in items:
@@ -161,7 +161,7 @@ def _part_items(lines: Sequence[Line], items: Container[int]) -> None:
         if previous is not None and (
             line.level < previous.level or (line.level == previous.level and (is_block or was_block))
         ):
-            gaps: list[Remark | Line] = [*line.lead, line]
+            gaps: list[CommentLines | LogicalLine] = [*line.lead, line]
             gaps[0].blank = gaps[0].blank or not any(gap.blank for gap in gaps)
         previous, was_block = line, is_block
 
@@ -172,10 +172,10 @@ class _Part(Record):
     level: int
     blank: bool
     is_moved: bool
-    rows: list[Row]
+    rows: list[PhysicalLine]
 
 
-def _written(line: Line, marks: Marks, options: FormatOptions) -> Iterator[_Part]:
+def _written(line: LogicalLine, marks: Marks, options: FormatOptions) -> Iterator[_Part]:
     """A line with the comment lines above and below it."""
     for remark in line.lead:
         yield _remark(remark, options)
@@ -186,9 +186,9 @@ def _written(line: Line, marks: Marks, options: FormatOptions) -> Iterator[_Part
         yield _remark(remark, options)
 
 
-def _remark(remark: Remark, options: FormatOptions) -> _Part:
+def _remark(remark: CommentLines, options: FormatOptions) -> _Part:
     indent = " " * (remark.depth * options.indent)
-    return _Part(remark.depth, remark.blank, remark.blanks != indent, [Row(indent + remark.text)])
+    return _Part(remark.depth, remark.blank, remark.blanks != indent, [PhysicalLine(indent + remark.text)])
 
 
 # ---- edits ----------------------------------------------------------------------------------------------------------

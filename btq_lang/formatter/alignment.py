@@ -8,16 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from btq_lang.formatter.layout import Row
+from btq_lang.formatter.layout import PhysicalLine
 from btq_lang.util.text import LineIndex
 
 
-def align(old: str, rows: Iterable[Row]) -> None:
+def align(old: str, rows: Iterable[PhysicalLine]) -> None:
     """Align the comments of rows that follow each other with those that were in the same column of the old text."""
     lines = LineIndex(old)
-    run: list[Row] = []
+    run: list[PhysicalLine] = []
     shared = -1  # the column of its comments
-    for row in (*rows, Row("")):
+    for row in (*rows, PhysicalLine("")):
         column = _column(old, row.at, lines.position(row.at).column) if row.comment else -1
         if column != shared or "\n" in row.code or any("\n" in above.comment for above in run[-1:]):
             ends = [len(each.code) - each.code.rfind("\n") for each in run]

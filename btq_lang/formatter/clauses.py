@@ -10,15 +10,17 @@ from collections.abc import Iterator, Sequence
 from typing import TypeAlias
 
 from btq_lang.formatter.layout import FormatOptions, fits
-from btq_lang.formatter.lines import Line
+from btq_lang.formatter.lines import LogicalLine
 from btq_lang.formatter.marks import Clauses, Marks
 from btq_lang.syntax.tokens import NAME
 from btq_lang.util.text import Span
 
-Section: TypeAlias = tuple[Span, tuple[Line, ...]]  # lines written together, and the span of the file they come from
+Section: TypeAlias = tuple[
+    Span, tuple[LogicalLine, ...]
+]  # lines written together, and the span of the file they come from
 
 
-def sections(lines: Sequence[Line], marks: Marks, options: FormatOptions) -> Iterator[Section]:
+def sections(lines: Sequence[LogicalLine], marks: Marks, options: FormatOptions) -> Iterator[Section]:
     """The lines in order: each is a section of its own, but the block of a requirement is one section.
 
     The clauses of a block are sorted if the requirement has no more than one claim: with two of them, a reader may take
@@ -33,7 +35,7 @@ def sections(lines: Sequence[Line], marks: Marks, options: FormatOptions) -> Ite
         head = lines[index]
         clauses = found.get(index)
         index += 1
-        block: list[Line] = []
+        block: list[LogicalLine] = []
         if clauses is not None and max(clauses.ranks) >= head.end:
             while lines[index].level > head.level:
                 block.append(lines[index])
@@ -48,7 +50,7 @@ def sections(lines: Sequence[Line], marks: Marks, options: FormatOptions) -> Ite
                 yield Span(middle, end), _arranged(block, clauses)
 
 
-def _is_too_long(head: Line, clauses: Clauses, marks: Marks, options: FormatOptions) -> bool:
+def _is_too_long(head: LogicalLine, clauses: Clauses, marks: Marks, options: FormatOptions) -> bool:
     """Whether a line ends in clauses that do not fit it, of a requirement that would own a block below the line."""
     words = head.words
     first, last = words[0], words[-1]
@@ -59,21 +61,21 @@ def _is_too_long(head: Line, clauses: Clauses, marks: Marks, options: FormatOpti
     )
 
 
-def _parted(head: Line, clauses: Clauses) -> tuple[Line, Line]:
+def _parted(head: LogicalLine, clauses: Clauses) -> tuple[LogicalLine, LogicalLine]:
     """A head without its trailing clauses, and those as a line of its block; a comment at the end stays with
     the head.
     """
     pieces = head.pieces
     begin = next(index for index, piece in enumerate(pieces) if piece.start in clauses.ranks)
     end = pieces.index(head.words[-1]) + 1
-    short = Line(head.level, head.blanks, head.blank, [*pieces[:begin], *pieces[end:]])
+    short = LogicalLine(head.level, head.blanks, head.blank, [*pieces[:begin], *pieces[end:]])
     short.lead = head.lead
-    trailing = Line(head.level + 1, head.blanks, False, pieces[begin:end])
+    trailing = LogicalLine(head.level + 1, head.blanks, False, pieces[begin:end])
     trailing.tail = head.tail
     return short, trailing
 
 
-def _arranged(block: Sequence[Line], clauses: Clauses) -> tuple[Line, ...]:
+def _arranged(block: Sequence[LogicalLine], clauses: Clauses) -> tuple[LogicalLine, ...]:
     """A line for each clause of a block, in order."""
     lines = [part for line in block for part in _cut(line, clauses)]
     last = lines[-1]
@@ -86,12 +88,12 @@ def _arranged(block: Sequence[Line], clauses: Clauses) -> tuple[Line, ...]:
     return tuple(lines)
 
 
-def _cut(line: Line, clauses: Clauses) -> list[Line]:
+def _cut(line: LogicalLine, clauses: Clauses) -> list[LogicalLine]:
     """A line for each clause of a line."""
     begins = [index for index, piece in enumerate(line.pieces) if piece.start in clauses.ranks]
     begins[0] = 0  # a comment before the first clause is the clause's
     pieces = [line.pieces[begin:end] for begin, end in zip(begins, [*begins[1:], None], strict=True)]
-    parts = [Line(line.level, line.blanks, line.blank, pieces[0])]
-    parts += [Line(line.level, line.blanks, False, others) for others in pieces[1:]]
+    parts = [LogicalLine(line.level, line.blanks, line.blank, pieces[0])]
+    parts += [LogicalLine(line.level, line.blanks, False, others) for others in pieces[1:]]
     parts[0].lead, parts[-1].tail = line.lead, line.tail
     return parts

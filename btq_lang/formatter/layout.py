@@ -23,7 +23,7 @@ class FormatOptions(Record):
     indent: int = 4
 
 
-class Row:
+class PhysicalLine:
     """A physical line without its line end; its strings and comments may have some.
 
     Attributes:
@@ -44,7 +44,7 @@ class Row:
         return f"{self.code}  {self.comment.lstrip(' ')}" if self.comment else self.code
 
 
-def laid_out(pieces: Sequence[Piece], level: int, marks: Marks, options: FormatOptions) -> list[Row]:
+def laid_out(pieces: Sequence[Piece], level: int, marks: Marks, options: FormatOptions) -> list[PhysicalLine]:
     """The rows of a logical line."""
     writer = _Writer(pieces, level * options.indent, marks, options)
     for index in range(len(pieces)):
@@ -97,7 +97,7 @@ class _Writer:
         self.options: Final = options
         self.closing: Final = _closing(pieces)
         self.groups: Final[list[_Group]] = []
-        self.rows: Final = [Row(" " * indent)]
+        self.rows: Final = [PhysicalLine(" " * indent)]
         self.indent = indent  # of the current row
         self.next_word = -1  # the first piece after the current comments that is not a comment
 
@@ -108,7 +108,7 @@ class _Writer:
         if indent is not None:
             group = self.groups[-1]
             is_blank = piece.blank and group.has_lines and piece.kind != CLOSE
-            self.rows.append(Row("\n" * is_blank + " " * indent))
+            self.rows.append(PhysicalLine("\n" * is_blank + " " * indent))
             self.indent = indent
             group.has_lines = True
         row = self.rows[-1]

@@ -41,7 +41,7 @@ class Piece:
         return self.kind == COMMENT and not self.text.startswith("/*")
 
 
-class Remark:
+class CommentLines:
     """Comments on a line of their own.
 
     Attributes:
@@ -65,7 +65,7 @@ class Remark:
         return " ".join(piece.text for piece in self.pieces)
 
 
-class Line:
+class LogicalLine:
     """A logical line, with all lines that brackets join.
 
     Attributes:
@@ -85,8 +85,8 @@ class Line:
         self.blanks: Final = blanks
         self.blank = blank
         self.pieces = pieces
-        self.lead: list[Remark] = []
-        self.tail: list[Remark] = []
+        self.lead: list[CommentLines] = []
+        self.tail: list[CommentLines] = []
         self.start = self.end = 0
 
     @property
@@ -95,15 +95,15 @@ class Line:
         return [piece for piece in self.pieces if piece.kind != COMMENT]
 
 
-def logical_lines(text: str, tokens: Iterable[Token], atoms: Mapping[int, int]) -> list[Line]:
+def logical_lines(text: str, tokens: Iterable[Token], atoms: Mapping[int, int]) -> list[LogicalLine]:
     """The lines of a file; the last one is its end.
 
     Args:
         tokens: all tokens of the text.
         atoms: start and end of what is kept verbatim though it is several tokens: units and types.
     """
-    lines: list[Line] = []
-    open_lines: list[Line] = []  # the previous line and the lines whose blocks contain it
+    lines: list[LogicalLine] = []
+    open_lines: list[LogicalLine] = []  # the previous line and the lines whose blocks contain it
     for remarks, line in _gathered(text, tokens, atoms):
         for remark in remarks:
             owner = block_of(remark.blanks, open_lines, line.level)
@@ -121,10 +121,12 @@ def logical_lines(text: str, tokens: Iterable[Token], atoms: Mapping[int, int]) 
     return lines
 
 
-def _gathered(text: str, tokens: Iterable[Token], atoms: Mapping[int, int]) -> Iterator[tuple[list[Remark], Line]]:
+def _gathered(
+    text: str, tokens: Iterable[Token], atoms: Mapping[int, int]
+) -> Iterator[tuple[list[CommentLines], LogicalLine]]:
     """Each line with the comment lines above it."""
-    remarks: list[Remark] = []
-    line: Line | None = None
+    remarks: list[CommentLines] = []
+    line: LogicalLine | None = None
     level = line_ends = written = 0
     blanks = ""
     for token in tokens:
@@ -151,16 +153,16 @@ def _gathered(text: str, tokens: Iterable[Token], atoms: Mapping[int, int]) -> I
             line.pieces.append(piece)
         elif kind == COMMENT:
             if line_ends or not remarks:
-                remarks.append(Remark(blanks, line_ends > 1))
+                remarks.append(CommentLines(blanks, line_ends > 1))
             remarks[-1].pieces.append(piece)
             remarks[-1].end = token.end
         elif remarks and not line_ends:  # after a comment: the line begins there
             before = remarks.pop()
-            line = Line(level, before.blanks, before.blank, [*before.pieces, piece])
+            line = LogicalLine(level, before.blanks, before.blank, [*before.pieces, piece])
         else:
-            line = Line(level, blanks, line_ends > 1, [piece])
+            line = LogicalLine(level, blanks, line_ends > 1, [piece])
         line_ends = 0
-    end = Line(0, "", line_ends > 1, [])
+    end = LogicalLine(0, "", line_ends > 1, [])
     end.end = len(text)
     yield remarks, end
 

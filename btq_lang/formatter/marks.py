@@ -83,7 +83,7 @@ class Marks:
                     self._mark_atom(part.type, base)
             case syntax.Satisfices() | syntax.Satisfies() | syntax.Tags():
                 self.elements.add(base + part.start)
-            case syntax.Quality():
+            case syntax.SatisficedQuality():
                 self._mark_bracket(self.attributes, self._path_end(part.path, base))
                 self.elements.update(base + requirement.start for requirement in part.requirements)
             case syntax.QualityPath():
@@ -160,7 +160,7 @@ class Marks:
 # The order of clauses in a block: what is demanded, where and how often, what follows, why, and how it is verified.
 _ORDER: Final = (
     syntax.Claim,
-    syntax.Scope,
+    syntax.ScopeClause,
     syntax.Odds,
     syntax.Confidence,
     syntax.Window,

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix, write_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, replace_fix, write_fix
 from btq_lang.grammar.cursor import VALUES, shown
 from btq_lang.grammar.requirements import RequirementParser
 from btq_lang.syntax.suggestions import CHILDREN, value_meant
@@ -25,7 +25,17 @@ from btq_lang.syntax.tokens import (
     STRING,
     SYMBOL,
 )
-from btq_lang.syntax.tree import NodeClause, Pair, Quality, ReqRef, Requirement, Satisfices, Satisfies, Tags, Word
+from btq_lang.syntax.tree import (
+    NodeClause,
+    Pair,
+    ReqRef,
+    Requirement,
+    SatisficedQuality,
+    Satisfices,
+    Satisfies,
+    Tags,
+    Word,
+)
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 
@@ -113,7 +123,7 @@ class AttributeParser(RequirementParser):
             return ()
         before = Span(self.starts[0] + len(self.raws[0]), self.here().start)
         after = Span(self.here().end, self.starts[at + 1] + len(self.raws[at + 1]))
-        return (Fix("Remove the brackets", (Change(Place(before), " "), Change(Place(after), ""))),)
+        return (Fix("Remove the brackets", (FixEdit(Place(before), " "), FixEdit(Place(after), ""))),)
 
     def classic_quality(self, clauses: list[NodeClause]) -> tuple[Fix, ...]:
         """The fix for `satisfices performance (QualityReq …)`, which lacks `Quality =` before the quality."""
@@ -153,7 +163,7 @@ class AttributeParser(RequirementParser):
             self.complain(Span(span.start, end), _PUT_TOGETHER, notes=(_LITERAL_OR_ENTRY,))
             self.recover()
             return Word(NAME, word.start, self.text[span.start : end])
-        fix = Fix(f"Put {self.raw[0]} before it", (Change(Place(Span(span.start, span.start)), self.raw[0]),))
+        fix = Fix(f"Put {self.raw[0]} before it", (FixEdit(Place(Span(span.start, span.start)), self.raw[0]),))
         at = self.starts[self.index]
         unclosed = [problem for problem in self.lexer.problems[self.known :] if problem.span.start == at]
         message = f"missing quote before `{word.raw}`"
@@ -234,7 +244,7 @@ class AttributeParser(RequirementParser):
         names = self.listed(lambda: self.name("a tag"), self.list_goes_on)
         return Tags(start, self.last_end(), names)
 
-    def satisfices(self) -> tuple[Quality, ...]:
+    def satisfices(self) -> tuple[SatisficedQuality, ...]:
         """Quality { "," Quality };  classic files omit the commas"""
         self.skip_sign(":")
         return self.listed(self.quality, lambda: self.at_quality() or self.list_goes_on(qualities=True))
@@ -242,7 +252,7 @@ class AttributeParser(RequirementParser):
     def at_quality(self) -> bool:
         return self.kind == NAME and self.raw == "Quality" and self.is_operator(self.index + 1, "=")
 
-    def quality(self) -> Quality | None:
+    def quality(self) -> SatisficedQuality | None:
         """ "Quality" "=" QualityPath [ "(" Requirement { [ "," ] Requirement } ")" ] | QualityPath"""
         classic = self.at_quality()
         if classic:
@@ -261,7 +271,7 @@ class AttributeParser(RequirementParser):
         if path is None:
             return None
         if not classic or self.kind != OPEN:
-            return Quality(path)
+            return SatisficedQuality(path)
         self.advance()
         self.group += 1
         requirements: list[Requirement] = []
@@ -269,7 +279,7 @@ class AttributeParser(RequirementParser):
             requirements.append(self.requirement())
             self.accept(",")
         self.close_group("QualityReq or `)`")
-        return Quality(path, tuple(requirements))
+        return SatisficedQuality(path, tuple(requirements))
 
     def names_follow(self, index: int) -> bool:
         """Whether a quality's name follows, so that `Quality` before it lacks its `=`."""

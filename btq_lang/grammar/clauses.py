@@ -8,13 +8,25 @@ from __future__ import annotations
 from typing import Final
 
 from btq_lang.catalog.measured import measured
-from btq_lang.diagnostics.model import Change, Fix, Place, replace_fix, write_fix
+from btq_lang.diagnostics.model import Fix, FixEdit, Place, replace_fix, write_fix
 from btq_lang.grammar.claims import QUALITY_IN_HEAD, VERB_WORDS, ClaimParser, is_time
 from btq_lang.grammar.conditions import HEADS, SUBJECT_HEADS
 from btq_lang.syntax.scan import line_end, line_start
 from btq_lang.syntax.suggestions import unknown_unit
 from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPERATOR, QUANTITY, STRING
-from btq_lang.syntax.tree import Because, Clause, Confidence, Goal, How, Odds, OnViolation, Scope, Window, Word, quote
+from btq_lang.syntax.tree import (
+    Because,
+    Clause,
+    Confidence,
+    Goal,
+    How,
+    Odds,
+    OnViolation,
+    ScopeClause,
+    Window,
+    Word,
+    quote,
+)
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 
@@ -95,20 +107,20 @@ class ClauseParser(ClaimParser):
         if nearest == _BECAUSE and self.kinds[value] == STRING:
             fixes = (replace_fix("Write `because`", Span(at.start, self.starts[value]), "because "),)
         elif nearest == _TITLE and self.title_at >= 0 and self.index == 0 and self.kinds[value : value + 2] == _STRING:
-            moved = Change(Place(Span(self.title_at, self.title_at)), f" {self.raws[value]}")
+            moved = FixEdit(Place(Span(self.title_at, self.title_at)), f" {self.raws[value]}")
             line = Span(line_start(self.text, 0, at.start), self.lexer.position)
-            fixes = (Fix("Move it after the name", (moved, Change(Place(line), ""))),)
+            fixes = (Fix("Move it after the name", (moved, FixEdit(Place(line), ""))),)
         elif nearest == _COMMENT and self.index == 0:
             fixes = (replace_fix("Write it as a comment", Span(at.start, at.start), "# "),)
         self.complain(at, f"`{self.raw}` is not in btq; nearest is {nearest}", *fixes)
         self.recover()
 
-    def scope(self) -> Scope:
+    def scope(self) -> ScopeClause:
         """Scope = ( "while" | "when" ) Cond"""
         word = self.take()
         self.skip_sign(":")
         condition = self.cond()
-        return Scope(word.start, self.last_end(), word, condition)
+        return ScopeClause(word.start, self.last_end(), word, condition)
 
     def odds(self) -> Odds:
         """ "in" "at" "least" QUANTITY "of" Experiments | "with" "probability" ( ">=" | ">" ) QUANTITY [ "of" … ]"""

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix, write_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, replace_fix, write_fix
 from btq_lang.grammar.attributes import AttributeParser, meant_clause
 from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import COMPARISONS, HEADS
@@ -50,7 +50,7 @@ from btq_lang.util.record import replace
 from btq_lang.util.text import Span
 
 
-class Block:
+class OpenBlock:
     """The open block of a node, or of the tree itself, with what has been parsed so far."""
 
     __slots__ = ("children", "clauses", "level", "node")
@@ -82,7 +82,7 @@ class NodeParser(AttributeParser):
         """INDENT { Port } { ClauseLine } { Node } DEDENT"""
         lexer = self.lexer
         ports: list[Port] = []
-        block = Block(level, None)
+        block = OpenBlock(level, None)
         blocks = [block]
         is_too_deep_reported = False
         while self.more and lexer.level > level:
@@ -104,13 +104,13 @@ class NodeParser(AttributeParser):
                 continue
             block.children.append(node)
             if self.more and lexer.level > inner:
-                block = Block(inner, node)
+                block = OpenBlock(inner, node)
                 blocks.append(block)
         for open_block in blocks:
             open_block.close()
         return tuple(ports), tuple(blocks[0].clauses), tuple(blocks[0].children)
 
-    def other_line(self, level: int, blocks: list[Block], ports: list[Port]) -> bool:
+    def other_line(self, level: int, blocks: list[OpenBlock], ports: list[Port]) -> bool:
         """ClauseLine | Port | Verbatim, into the last of the open blocks; False where the current word begins a node"""
         block = blocks[-1]
         word = self.raw
@@ -391,9 +391,9 @@ class NodeParser(AttributeParser):
             self.expected("the end of the line", ("a node has one label, before its brackets",))
             return
         gone = Span(self.last_end() + self.base, self.here().end)
-        changes = (Change(Place(Span(opened, opened)), f"{self.raw} "), Change(Place(gone), ""))
+        changes = (FixEdit(Place(Span(opened, opened)), f"{self.raw} "), FixEdit(Place(gone), ""))
         if self.text[opened - 1] not in " \t":
-            changes = (Change(Place(Span(opened, opened)), f" {self.raw} "), changes[1])
+            changes = (FixEdit(Place(Span(opened, opened)), f" {self.raw} "), changes[1])
         fix = Fix(f"Move `{shown(self.raw)}` before the brackets", changes)
         self.complain(self.here(), "a node's label goes before its brackets", fix, notes=(CHILD,))
 
@@ -410,15 +410,15 @@ class NodeParser(AttributeParser):
         rest = range(self.index, len(self.kinds))
         plain = self.index > 1
         plain = plain and not any(self.kinds[index] == OPEN or self.raws[index] in NODE_CLAUSES for index in rest)
-        changes: tuple[Change, ...] = (Change(Place(Span(start, start)), "("),)
+        changes: tuple[FixEdit, ...] = (FixEdit(Place(Span(start, start)), "("),)
         for index in rest:
             if self.is_operator(index, ":"):
                 sign = self.starts[index]
                 written = "=" if self.text[sign - 1] in " \t" else " ="
-                changes += (Change(Place(Span(sign, sign + 1)), written),)
+                changes += (FixEdit(Place(Span(sign, sign + 1)), written),)
         closing = [problem for problem in lexer.problems[self.known :] if self.is_stray_bracket(problem)]
         if not closing:  # else the `(` is missing
-            changes += (Change(Place(Span(end, end)), ")"),)
+            changes += (FixEdit(Place(Span(end, end)), ")"),)
         safe = plain and not closing and are_plain_pairs(self.text[start:end])
         fixes = (Fix("Put brackets around them", changes, safe),) if plain or closing else ()
         message = "attributes go in brackets: `(key = value)`"
@@ -455,8 +455,8 @@ class NodeParser(AttributeParser):
             first = children[0].start + self.base
             first = line_start(self.text, min(self.base, first), first)
             changes = (
-                Change(Place(Span(first, first)), moved if self.raws[-1] else f"{moved}\n"),
-                Change(Place(Span(start, end)), ""),
+                FixEdit(Place(Span(first, first)), moved if self.raws[-1] else f"{moved}\n"),
+                FixEdit(Place(Span(start, end)), ""),
             )
             fixes: tuple[Fix, ...] = (Fix("Move it before the children", changes),)
             last = children[-1]
@@ -558,7 +558,7 @@ class NodeParser(AttributeParser):
             line = line_end(self.text, self.starts[closing])
             below = _NEXT_MARGIN.match(self.text, line)
             step = below[1] if below else "    "
-            gone = Change(Place(Span(self.last_end() + self.base, self.starts[closing] + 1)), "")
+            gone = FixEdit(Place(Span(self.last_end() + self.base, self.starts[closing] + 1)), "")
             lines = [
                 f"\n{step}{port['direction'] or 'input'} {port['name']}{f' : {type_}' if type_ else ''}"
                 for port in ports
@@ -567,7 +567,7 @@ class NodeParser(AttributeParser):
             ]
             if len(lines) == len(ports):
                 fixes = (
-                    Fix("Put them on lines of their own", (gone, Change(Place(Span(line, line)), "".join(lines)))),
+                    Fix("Put them on lines of their own", (gone, FixEdit(Place(Span(line, line)), "".join(lines)))),
                 )
         self.complain(at, "ports do not go in brackets", *fixes, notes=(note,))
         self.go_to(len(self.kinds) - 1)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix, write_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, replace_fix, write_fix
 from btq_lang.grammar.claims import MEANT, VERB_WORDS
 from btq_lang.grammar.clauses import ENDS_CLAUSES, ClauseParser
 from btq_lang.grammar.conditions import HEADS, RELATIONS
@@ -62,7 +62,7 @@ class RequirementParser(ClauseParser):
         if self.raws[closing] != ")" or OPEN in self.kinds[self.index + 1 : closing]:
             return
         ends = self.here(), Span(self.starts[closing], self.starts[closing] + 1)
-        fix = Fix("Remove the brackets", tuple([Change(Place(end), "") for end in ends]), safe=True)
+        fix = Fix("Remove the brackets", tuple([FixEdit(Place(end), "") for end in ends]), safe=True)
         self.complain(self.here(), message, fix)
         for index in (closing, self.index):
             del self.kinds[index], self.starts[index], self.raws[index]
@@ -211,11 +211,11 @@ class RequirementParser(ClauseParser):
 
     def no_equals(self, keys: list[int]) -> None:
         """Report that the `=` after some words of the classic form is missing."""
-        changes: list[Change] = []
+        changes: list[FixEdit] = []
         for key in keys:
             end = self.starts[key] + len(self.raws[key])
             sign = self.starts[key + 1] + 1 if self.is_operator(key + 1, ":") else end
-            changes.append(Change(Place(Span(end, sign)), " ="))
+            changes.append(FixEdit(Place(Span(end, sign)), " ="))
         span = Span(self.starts[keys[0]], self.starts[keys[0]] + len(self.raws[keys[0]]))
         self.complain(span, f"expected `=` after `{self.raws[keys[0]]}`", Fix("Write `=`", tuple(changes), safe=True))
 

@@ -16,7 +16,7 @@ from btq_lang.util.record import Record
 Outline: TypeAlias = Literal["control", "action", "condition", "decorator", "subtree", "unknown"]
 
 
-class Measured(Record):
+class MeasuredClause(Record):
     """What logs show of a clause.
 
     Attributes:
@@ -58,7 +58,7 @@ class Note(Record):
     text: str = ""
     state: str = ""
     link: str = ""
-    measured: tuple[Measured, ...] = ()
+    measured: tuple[MeasuredClause, ...] = ()
 
 
 class Box(Record):

@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Final, TypeAlias
 
 from btq_lang.graph import draw
-from btq_lang.graph.figure import Box, Figure, Measured, Note, Outline
-from btq_lang.requirements.model import Applied, Claim, Span, Total
+from btq_lang.graph.figure import Box, Figure, MeasuredClause, Note, Outline
+from btq_lang.requirements.model import Applied, DurationSum, Interval, ResolvedClaim
 from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.syntax.tree import Node, NodeClause, QualityPath, Satisfices
 from btq_lang.util.grouping import grouped
@@ -18,7 +18,7 @@ from btq_lang.workspace.node_names import is_placeholder
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
-MeasuredBy: TypeAlias = Callable[[Applied], tuple[Measured, ...]]
+MeasuredBy: TypeAlias = Callable[[Applied], tuple[MeasuredClause, ...]]
 
 
 def draw_tree(
@@ -132,7 +132,7 @@ def clauses_in_words(applied: Applied) -> tuple[str, ...]:
     requirement without clauses.
     """
     requirement = applied.requirement
-    is_of_several = isinstance(applied.subject, Span | Total)
+    is_of_several = isinstance(applied.subject, Interval | DurationSum)
     lines = [claim.text if is_of_several else _predicate(claim) for claim in requirement.claims]
     lines += [scope.text for scope in requirement.scopes]
     if requirement.odds is not None:
@@ -142,13 +142,13 @@ def clauses_in_words(applied: Applied) -> tuple[str, ...]:
     return tuple(lines) or ((" ".join(requirement.title.split()),) if requirement.title else ())
 
 
-def _predicate(claim: Claim) -> str:
+def _predicate(claim: ResolvedClaim) -> str:
     """`takes at most 30 s` of `BatteryCheck/MoveBase takes at most 30 s`."""
     _, verb, after = f" {claim.text} ".partition(f" {claim.verb} ")
     return (verb + after).strip() if claim.subject is not None and verb else claim.text
 
 
-def requirement_note(key: str, applied: Applied, measured: tuple[Measured, ...], state: str = "") -> Note:
+def requirement_note(key: str, applied: Applied, measured: tuple[MeasuredClause, ...], state: str = "") -> Note:
     """The note of a requirement at what it applies to; with what logs show of it, it has its title, too.
 
     Args:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Final, TypeAlias
 
-from btq_lang.graph.figure import Box, Figure, Measured, Note
+from btq_lang.graph.figure import Box, Figure, MeasuredClause, Note
 from btq_lang.graph.layout import Size, layout
 from btq_lang.graph.widths import shortened, width, wrapped
 from btq_lang.util.record import Record
@@ -45,7 +45,7 @@ class PlacedNote(Record):
     note: Note
     at: Rectangle
     lines: tuple[tuple[int, str], ...]
-    sparklines: tuple[tuple[Rectangle, Measured], ...]
+    sparklines: tuple[tuple[Rectangle, MeasuredClause], ...]
 
 
 class PlacedBox(Record):
@@ -95,7 +95,7 @@ def note_lines(note: Note) -> tuple[str, ...]:
     return tuple(line for lines, _ in _sections(note) for line in lines)
 
 
-def _sections(note: Note) -> list[tuple[tuple[str, ...], Measured | None]]:
+def _sections(note: Note) -> list[tuple[tuple[str, ...], MeasuredClause | None]]:
     """The lines of a note, broken to fit; those of what a clause measured with its sparkline below them."""
     title = note.title
     if note.kind == "quality" and width(title, SMALL, bold=True) > _NOTE_ROOM:
@@ -201,7 +201,7 @@ def _note_height(note: Note) -> int:
 
 def _placed_note(note: Note, at: Rectangle) -> PlacedNote:
     lines: list[tuple[int, str]] = []
-    sparklines: list[tuple[Rectangle, Measured]] = []
+    sparklines: list[tuple[Rectangle, MeasuredClause]] = []
     top = at.y
     for texts, measured in _sections(note):
         lines += [(top + 15 + number * LEADING, text) for number, text in enumerate(texts)]

@@ -10,11 +10,11 @@ from collections.abc import Iterator
 from html import escape
 from itertools import groupby
 
-from btq_lang.graph.figure import Measured
+from btq_lang.graph.figure import MeasuredClause
 from btq_lang.graph.placing import Rectangle
 
 
-def sparkline(measured: Measured, at: Rectangle) -> Iterator[str]:
+def sparkline(measured: MeasuredClause, at: Rectangle) -> Iterator[str]:
     """The elements of a sparkline of at least one value that fills a rectangle."""
     numbers = [value for value, _ in measured.values if value is not None]
     low, high = min((*numbers, *measured.bounds)), max((*numbers, *measured.bounds))

@@ -18,7 +18,7 @@ from btq_lang.workspace.file import File
 STEP = "    "
 
 
-class Block(Record):
+class NodeLines(Record):
     """The lines of a node.
 
     Attributes:
@@ -48,22 +48,22 @@ def nodes_at(file: File, entry: Entry, offset: int) -> tuple[Node, ...]:
     return ()
 
 
-def block_of(file: File, entry: Entry, node: Node) -> Block:
+def block_of(file: File, entry: Entry, node: Node) -> NodeLines:
     """The lines of a node and all below it."""
     start = entry.start + node.start
     blanks = blanks_before(file.text, start)
     span = Span(start, line_end(file.text, entry.start + node.block_end))
-    return Block(span, blanks, start == line_start(file.text, 0, start) + len(blanks))
+    return NodeLines(span, blanks, start == line_start(file.text, 0, start) + len(blanks))
 
 
-def moved(file: File, block: Block, blanks: str) -> str:
+def moved(file: File, block: NodeLines, blanks: str) -> str:
     """The text of a block, reindented so that its first line has other blanks; the first line's own are left out."""
     start, end = block.span
     inside = (edit for edit in shifts(file, block, blanks) if edit.span.start > start)
     return apply_edits(file.text[start:end], (Edit(edit.span.shifted(-start), edit.text) for edit in inside))
 
 
-def shifts(file: File, block: Block, blanks: str) -> Iterator[Edit]:
+def shifts(file: File, block: NodeLines, blanks: str) -> Iterator[Edit]:
     """The edits that reindent a block in place, its first line too."""
     text = file.text
     first = block.span.start - len(block.blanks)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.ide.meaning import Found, Subject, at, definition, entry_at, everywhere, home_of, subject
+from btq_lang.ide.meaning import ReferenceAt, Subject, at, definition, entry_at, everywhere, home_of, subject
 from btq_lang.syntax.tree import Tree
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
@@ -21,7 +21,7 @@ class TreeItem(Record):
     name_span: Span
 
 
-class Call(Record):
+class TreeCall(Record):
     """A tree that runs another, or is run by one.  places: the SubTrees, in the caller's file."""
 
     tree: TreeItem
@@ -40,10 +40,10 @@ def prepare_calls(workspace: Workspace, path: str, offset: int) -> TreeItem | No
     return None
 
 
-def callers(workspace: Workspace, tree: TreeItem) -> tuple[Call, ...]:
+def callers(workspace: Workspace, tree: TreeItem) -> tuple[TreeCall, ...]:
     """The trees that run a tree."""
     wanted = Subject(What.TREE, tree.name, f"{tree.path}:{tree.name_span.start}")
-    found: dict[tuple[str, int], list[Found]] = {}
+    found: dict[tuple[str, int], list[ReferenceAt]] = {}
     for one in everywhere(workspace, wanted):
         if one.mention.node is not None and one.entry is not None:
             found.setdefault((one.path, one.entry.start), []).append(one)
@@ -53,11 +53,11 @@ def callers(workspace: Workspace, tree: TreeItem) -> tuple[Call, ...]:
         trees = (each for each in defined if each.symbol.kind is Kind.TREE and each.entry is places[0].entry)
         caller = next(trees, None)
         if caller is not None:
-            calls.append(Call(_item(caller), caller.path, tuple(one.span for one in places)))
+            calls.append(TreeCall(_item(caller), caller.path, tuple(one.span for one in places)))
     return tuple(calls)
 
 
-def called(workspace: Workspace, tree: TreeItem) -> tuple[Call, ...]:
+def called(workspace: Workspace, tree: TreeItem) -> tuple[TreeCall, ...]:
     """The trees that a tree runs, in the order of their first call."""
     start = tree.name_span.start
     entry = entry_at(workspace, tree.path, start) if tree.path in workspace.files else None
@@ -70,7 +70,7 @@ def called(workspace: Workspace, tree: TreeItem) -> tuple[Call, ...]:
         place = workspace.scope(tree.path).find(Kind.TREE, mention.name) if is_run else None
         if place is not None:
             found.setdefault(home_of(place), (place, []))[1].append(mention.span.shifted(entry.start))
-    return tuple(Call(_item(place), tree.path, tuple(spans)) for place, spans in found.values())
+    return tuple(TreeCall(_item(place), tree.path, tuple(spans)) for place, spans in found.values())
 
 
 def _item(place: Definition) -> TreeItem:

@@ -21,7 +21,7 @@ from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
 
 
-class Part(Record):
+class EncodedTokens(Record):
     """The encoded tokens of an item and of the text after it.
 
     Attributes:
@@ -57,7 +57,7 @@ class Colours(Record):
         return f"[{','.join([f'{first}{others}' for first, _, others in self.parts])}]"
 
 
-class Change(Record):
+class TokenEdit(Record):
     """An edit of `data`: its start, the number of integers to delete, and those to insert; offsets count before any
     other edit."""
 
@@ -93,21 +93,21 @@ def making(workspace: Workspace, path: str, encoding: Encoding) -> Iterator[None
             yield
 
 
-def _parts(store: Store[Workspace], path: str, encoding: Encoding) -> tuple[Part, ...]:
+def _parts(store: Store[Workspace], path: str, encoding: Encoding) -> tuple[EncodedTokens, ...]:
     """The parts of the items of a file."""
     return tuple([store.ask(_part, path, encoding, item) for item in store.ask(_items, path)])
 
 
-def _part(store: Store[Workspace], path: str, encoding: Encoding, item: Facts | None) -> Part:
+def _part(store: Store[Workspace], path: str, encoding: Encoding, item: Facts | None) -> EncodedTokens:
     text = store.ask(inputs.text, path, item) if item is not None else store.ask(_beginning, path)
     tokens, line = encoded(store, path, item, text, encoding)
     return part_of(tokens, (len(LINE_END.findall(text)) if "\r" in text else text.count("\n")) - line)
 
 
-def part_of(tokens: list[str], rest: int) -> Part:
+def part_of(tokens: list[str], rest: int) -> EncodedTokens:
     """The part of some tokens, of which the start of the last one precedes so many line ends."""
     first, _, others = ",".join(tokens).partition(",")
-    return Part(int(first), f",{others}", rest) if tokens else Part(0, "", rest)
+    return EncodedTokens(int(first), f",{others}", rest) if tokens else EncodedTokens(0, "", rest)
 
 
 @inputs.of_viewpoint
@@ -123,7 +123,7 @@ def _beginning(workspace: Workspace, path: str) -> str:
     return file.text[: file.parsed.entries[0].start] if file.parsed.entries else file.text
 
 
-def delta(before: Colours, after: Colours) -> list[Change]:
+def delta(before: Colours, after: Colours) -> list[TokenEdit]:
     """The edits that turn the data of `before` into that of `after`, in the order of the text: one at most between two
     parts that are the same."""
     places = {part: place for place, part in enumerate(before.parts)}
@@ -131,17 +131,17 @@ def delta(before: Colours, after: Colours) -> list[Change]:
     for other, part in enumerate(after.parts):
         if (place := places.get(part, -1)) > same[-1][0]:
             same.append((place, other))
-    changes: list[Change] = []
+    changes: list[TokenEdit] = []
     at = 0
     for (start, other_start), (end, other_end) in pairwise((*same, (len(before.parts), len(after.parts)))):
         gone, come = Colours(before.parts[start + 1 : end]), Colours(after.parts[other_start + 1 : other_end])
         if (gone.parts or come.parts) and (made := difference(gone.data, come.data)):
-            changes.append(Change(at + made.start, made.gone, made.come))
+            changes.append(TokenEdit(at + made.start, made.gone, made.come))
         at += sum([others.count(",") + 1 for _, _, others in before.parts[start + 1 : end + 1]])
     return changes
 
 
-def difference(before: Sequence[int], after: Sequence[int]) -> Change | None:
+def difference(before: Sequence[int], after: Sequence[int]) -> TokenEdit | None:
     """The one change that turns the first into the second, in whole tokens; None if they are equal."""
     shorter = min(len(before), len(after))
     start = alike(before, after)
@@ -150,7 +150,7 @@ def difference(before: Sequence[int], after: Sequence[int]) -> Change | None:
     start -= start % 5
     end = min(alike(before[::-1], after[::-1]), shorter - start)
     end -= end % 5
-    return Change(start, len(before) - end - start, list(after[start : len(after) - end]))
+    return TokenEdit(start, len(before) - end - start, list(after[start : len(after) - end]))
 
 
 def encoded_within(workspace: Workspace, path: str, within: Span, encoding: Encoding) -> list[int]:

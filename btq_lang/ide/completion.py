@@ -20,8 +20,8 @@ from btq_lang.ide import proposals as offer
 from btq_lang.ide.clause_words import Expected, expected, is_count, is_window
 from btq_lang.ide.completion_list import listed
 from btq_lang.ide.meaning import entry_at
-from btq_lang.ide.measures import Measured, measured_at
-from btq_lang.ide.place import Place, item_tokens, open_brace, place_at, word_text
+from btq_lang.ide.measures import MeasuredValue, measured_at
+from btq_lang.ide.place import CursorPlace, item_tokens, open_brace, place_at, word_text
 from btq_lang.ide.proposals import Proposal
 from btq_lang.ide.snippets import snippets_for
 from btq_lang.ide.xml_completion import complete_in_xml
@@ -79,7 +79,7 @@ def complete(
     return Completion(found.span, listed(proposals, text[found.span.start : offset], asked))
 
 
-def _ends_something(place: Place, before: str, trigger: str) -> bool:
+def _ends_something(place: CursorPlace, before: str, trigger: str) -> bool:
     """Whether a typed character closes a string or belongs to a number, so that nothing begins after it."""
     return (trigger == '"' and place.inside != "string") or (trigger == "." and before[-2:-1].isdecimal())
 
@@ -114,7 +114,7 @@ def _is_elsewhere(file: File, span: Span, name: str) -> bool:
     return any(place.start < span.start or place.end > span.end for place in places)
 
 
-def _complete(workspace: Workspace, path: str, place: Place, offset: int) -> Completion:
+def _complete(workspace: Workspace, path: str, place: CursorPlace, offset: int) -> Completion:
     text = workspace.files[path].text
     special = _in_comment(place, offset) or _in_braces(workspace, path, place, text, offset)
     special = special or _in_string(workspace, path, place, text, offset) or _unit(workspace, path, place, text, offset)
@@ -140,7 +140,7 @@ def _unique(found: Iterable[Proposal]) -> tuple[Proposal, ...]:
 # ---- inside comments, braces, strings, and after numbers ----
 
 
-def _in_comment(place: Place, offset: int) -> Completion | None:
+def _in_comment(place: CursorPlace, offset: int) -> Completion | None:
     if place.inside != "comment":
         return None
     listed = re.search(r"btq:\s*ignore\s*\[(?:[^\]]*,)?\s*([\w-]*)$", place.text)
@@ -151,7 +151,7 @@ def _in_comment(place: Place, offset: int) -> Completion | None:
     return Completion(Span(offset - len(begun[1]) if begun else offset, offset), (ignore,) if begun else ())
 
 
-def _in_braces(workspace: Workspace, path: str, place: Place, text: str, offset: int) -> Completion | None:
+def _in_braces(workspace: Workspace, path: str, place: CursorPlace, text: str, offset: int) -> Completion | None:
     """`{` and what may follow: entries of the blackboard; after `{@` those of the root's."""
     begun = open_brace(text, offset)
     if begun is None or place.inside == "comment":
@@ -163,7 +163,7 @@ def _in_braces(workspace: Workspace, path: str, place: Place, text: str, offset:
     return Completion(begun.span, tuple(replace(one, insert=f"{one.insert}{begun.closing}") for one in keys))
 
 
-def _in_string(workspace: Workspace, path: str, place: Place, text: str, offset: int) -> Completion | None:
+def _in_string(workspace: Workspace, path: str, place: CursorPlace, text: str, offset: int) -> Completion | None:
     if place.inside != "string":
         return None
     if place.words and place.words[0].text == "include":
@@ -182,7 +182,7 @@ def _in_string(workspace: Workspace, path: str, place: Place, text: str, offset:
     return Completion(whole, ())
 
 
-def _unit(workspace: Workspace, path: str, place: Place, text: str, offset: int) -> Completion | None:
+def _unit(workspace: Workspace, path: str, place: CursorPlace, text: str, offset: int) -> Completion | None:
     """Units after a number; those that fit the port, signal or verb come first.  After a count none; after the number
     of a window, what it may count comes first."""
     line = text[line_start(text, 0, offset) : offset]
@@ -198,7 +198,7 @@ def _unit(workspace: Workspace, path: str, place: Place, text: str, offset: int)
     in_brackets = place.depth > 0 and place.node is not None
     if in_brackets and not (place.last == "=" or (place.group and place.group[-1].kind in (NUMBER, QUANTITY))):
         return None
-    wanted = Measured()
+    wanted = MeasuredValue()
     if in_brackets and place.node is not None:
         before = [word.text for word in place.group if word.kind in (NAME, STRING, OPERATOR)]
         key = (
@@ -207,7 +207,7 @@ def _unit(workspace: Workspace, path: str, place: Place, text: str, offset: int)
             else place.key or (before[-2] if len(before) > 1 else "")
         )
         unit = of_nodes.port_unit(workspace, path, place.node, key)
-        wanted = Measured("s" if unit == "ms" else unit, is_certain=True)  # btq adds the milliseconds
+        wanted = MeasuredValue("s" if unit == "ms" else unit, is_certain=True)  # btq adds the milliseconds
         if begun[1] and wanted.unit is None:
             return None  # `num_attempts = 6 |`: the next attribute
     else:
@@ -221,7 +221,7 @@ def _unit(workspace: Workspace, path: str, place: Place, text: str, offset: int)
     return Completion(Span(offset - len(begun[2]), offset), proposals)
 
 
-def _before_unit(place: Place) -> Place:
+def _before_unit(place: CursorPlace) -> CursorPlace:
     """The place as it would be without the unit of its last number."""
     if not place.words or place.words[-1].kind != QUANTITY:
         return place
@@ -238,7 +238,7 @@ _BEGUN_UNIT = r"(?:[^\W\d_]+|%|1(?=/))(?:[*/^][^\W_]*)*"
 # ---- in code ----
 
 
-def _in_code(workspace: Workspace, path: str, place: Place, offset: int) -> Iterator[Proposal]:
+def _in_code(workspace: Workspace, path: str, place: CursorPlace, offset: int) -> Iterator[Proposal]:
     words = place.words
     if not words:
         yield from _line_heads(workspace, path, place)
@@ -258,7 +258,7 @@ def _in_code(workspace: Workspace, path: str, place: Place, offset: int) -> Iter
         yield from _in_node(workspace, path, place, first)
 
 
-def _line_heads(workspace: Workspace, path: str, place: Place) -> Iterator[Proposal]:
+def _line_heads(workspace: Workspace, path: str, place: CursorPlace) -> Iterator[Proposal]:
     """What a line may begin with."""
     if place.block == "items":
         yield from offer.item_words(workspace, path)
@@ -276,7 +276,7 @@ def _line_heads(workspace: Workspace, path: str, place: Place) -> Iterator[Propo
     yield from snippets_for(place.block)
 
 
-def _in_item(workspace: Workspace, path: str, place: Place, first: str) -> Iterator[Proposal]:
+def _in_item(workspace: Workspace, path: str, place: CursorPlace, first: str) -> Iterator[Proposal]:
     last = place.last
     if len(place.words) == 1 and first in _DECLARED:
         yield from offer.undeclared(workspace, path, *_DECLARED[first])
@@ -301,13 +301,13 @@ def _in_item(workspace: Workspace, path: str, place: Place, first: str) -> Itera
         yield from of_nodes.unknown_nodes(workspace, path)
 
 
-def _others(found: Iterable[Proposal], place: Place) -> Iterator[Proposal]:
+def _others(found: Iterable[Proposal], place: CursorPlace) -> Iterator[Proposal]:
     """All but the quality or the context that the line defines."""
     own = [word_text(word) for word in place.words[1:2]]
     yield from (one for one in found if one.label not in own or one.kind not in ("quality", "context"))
 
 
-def _in_signal(place: Place, last: str) -> Iterator[Proposal]:
+def _in_signal(place: CursorPlace, last: str) -> Iterator[Proposal]:
     if last == ":":
         yield from offer.units_of_names()
     elif len(place.words) >= 4 and last not in ("/", "*", "^"):
@@ -316,7 +316,7 @@ def _in_signal(place: Place, last: str) -> Iterator[Proposal]:
         yield from offer.words((word for word in wanted if word.split()[0] not in given), "keyword")
 
 
-def _in_apply(workspace: Workspace, path: str, place: Place) -> Iterator[Proposal]:
+def _in_apply(workspace: Workspace, path: str, place: CursorPlace) -> Iterator[Proposal]:
     words = [word.text for word in place.words]
     if place.depth:
         yield from offer.parameters(workspace, path, place.callee) if place.last != "=" else ()
@@ -336,7 +336,7 @@ def _in_apply(workspace: Workspace, path: str, place: Place) -> Iterator[Proposa
         yield from offer.words(("under", "except"), "keyword")
 
 
-def _in_requirement(workspace: Workspace, path: str, place: Place) -> Iterator[Proposal]:
+def _in_requirement(workspace: Workspace, path: str, place: CursorPlace) -> Iterator[Proposal]:
     """What may follow `QualityReq` on its line, in brackets, or in its block."""
     words = place.group
     at = next((index for index in reversed(range(len(words))) if words[index].text == "QualityReq"), None)
@@ -358,11 +358,11 @@ def _in_requirement(workspace: Workspace, path: str, place: Place) -> Iterator[P
     yield from _clause_words(workspace, path, expected(words), place)
 
 
-def _clause_words(workspace: Workspace, path: str, wanted: Expected, place: Place) -> Iterator[Proposal]:
+def _clause_words(workspace: Workspace, path: str, wanted: Expected, place: CursorPlace) -> Iterator[Proposal]:
     """What the grammar of clauses expects."""
     yield from offer.words(wanted.words, "keyword")
     if wanted.condition:
-        yield from offer.operands(workspace, path, place, Measured())
+        yield from offer.operands(workspace, path, place, MeasuredValue())
         yield from offer.words(("not", "node", *_FUNCTIONS), "keyword")
     elif wanted.operand or wanted.value:
         yield from offer.operands(workspace, path, place, measured_at(workspace, path, place), contexts=False)
@@ -378,14 +378,14 @@ def _clause_words(workspace: Workspace, path: str, wanted: Expected, place: Plac
         yield from offer.node_names(workspace, path)
 
 
-def _lacks_unit(workspace: Workspace, path: str, place: Place) -> bool:
+def _lacks_unit(workspace: Workspace, path: str, place: CursorPlace) -> bool:
     """Whether the number before the cursor needs a unit, without which no clause can follow."""
     if not place.group or place.group[-1].kind != NUMBER or is_count([word.text for word in place.group]):
         return False
     return measured_at(workspace, path, place).unit != "1"
 
 
-def _in_node(workspace: Workspace, path: str, place: Place, first: str) -> Iterator[Proposal]:
+def _in_node(workspace: Workspace, path: str, place: CursorPlace, first: str) -> Iterator[Proposal]:
     if place.depth == 0 and len(place.words) == 1 and first in CATEGORIES:
         yield from of_nodes.of_category(workspace, path, first)
         return
@@ -419,7 +419,7 @@ def _in_node(workspace: Workspace, path: str, place: Place, first: str) -> Itera
         )
 
 
-def _open_list(place: Place) -> str | None:
+def _open_list(place: CursorPlace) -> str | None:
     """The list of qualities, requirements or tags that goes on here: after its word, a comma, a `.` or `Quality =`."""
     words = place.group
     if not words or words[-1].kind == CLOSE:
@@ -432,7 +432,7 @@ def _open_list(place: Place) -> str | None:
     return next((word.text for word in reversed(words) if word.kind == NAME and word.text in NODE_CLAUSES), None)
 
 
-def _in_list(workspace: Workspace, path: str, place: Place, word: str) -> Iterator[Proposal]:
+def _in_list(workspace: Workspace, path: str, place: CursorPlace, word: str) -> Iterator[Proposal]:
     if word == "satisfices":
         yield from offer.qualities(workspace, path, place)
     elif word == "satisfies":

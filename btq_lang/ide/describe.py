@@ -14,7 +14,7 @@ from btq_lang.checks.lookups import head
 from btq_lang.diagnostics.rules import RULES, page
 from btq_lang.ide.meaning import (
     ROOT_BLACKBOARD,
-    Found,
+    ReferenceAt,
     Subject,
     everywhere,
     home_of,
@@ -145,7 +145,7 @@ def used(workspace: Workspace, wanted: Subject, heading: str) -> str:
     return "\n".join([f"{heading}:", *lines]) if lines else ""
 
 
-def place_of(workspace: Workspace, found: Found) -> str:
+def place_of(workspace: Workspace, found: ReferenceAt) -> str:
     """The place of a reference: `` `MoveBase ToWard` in `Deliver` (deliver.btq) ``, or the `apply` that it is in."""
     node, entry = found.mention.node, found.entry
     item = entry.item if entry is not None else None
@@ -188,7 +188,7 @@ def declared(workspace: Workspace, found: Definition) -> str:
     return f"```btq\n{text}\n```\n\n_{workspace.project.shown(found.path)}_"
 
 
-def key(workspace: Workspace, wanted: Subject, writes: Iterable[Found], reads: Iterable[Found]) -> str:
+def key(workspace: Workspace, wanted: Subject, writes: Iterable[ReferenceAt], reads: Iterable[ReferenceAt]) -> str:
     """An entry of the blackboard: what writes it, and what reads it."""
     where = "of the root blackboard" if wanted.home.startswith(ROOT_BLACKBOARD) else "of this tree's blackboard"
     lines = [f"**{wanted.name}** · entry {where}"]

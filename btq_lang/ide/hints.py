@@ -10,7 +10,7 @@ from btq_lang.btcpp.side_file import side_path
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.ide import describe
 from btq_lang.ide.clause_enforcement import MOST_MISSIONS, missions_of
-from btq_lang.ide.meaning import Found, Subject, definition, everywhere, home_of, is_main, quality_of, subject
+from btq_lang.ide.meaning import ReferenceAt, Subject, definition, everywhere, home_of, is_main, quality_of, subject
 from btq_lang.ide.outline import requirement_detail
 from btq_lang.ide.ports import port_of
 from btq_lang.requirements.resolve import requirements
@@ -24,7 +24,7 @@ from btq_lang.workspace.symbols import names_subject
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
-    from btq_lang.ide.verdicts import Evidence
+    from btq_lang.ide.verdicts import ProjectVerdicts
 
 _COUNTED = {Kind.REQUIREMENT: What.REQUIREMENT, Kind.TREE: What.TREE}
 
@@ -56,7 +56,7 @@ def inlay_hints(workspace: Workspace, path: str, within: Span) -> tuple[Hint, ..
             if span.end < within.start or span.start > within.end:
                 continue
             if mention.what is What.REQUIREMENT and not mention.defines:
-                wanted = subject(workspace, Found(path, entry, mention))
+                wanted = subject(workspace, ReferenceAt(path, entry, mention))
                 place = definition(workspace, path, wanted)
                 item = place.symbol.target if place is not None and wanted.home else None
                 quality = quality_of(place) if place is not None else None
@@ -72,7 +72,7 @@ def inlay_hints(workspace: Workspace, path: str, within: Span) -> tuple[Hint, ..
 
 
 def code_lenses(
-    workspace: Workspace, path: str, side: str | None = None, evidence: Evidence | None = None
+    workspace: Workspace, path: str, side: str | None = None, evidence: ProjectVerdicts | None = None
 ) -> tuple[Lens, ...]:
     """How many places use a requirement, how many nodes it names itself, how many nodes call a tree; the main tree; and
     what logs show of a requirement.
@@ -116,7 +116,7 @@ def code_lenses(
     return (*found, *_seen(workspace, path, evidence), *_built(workspace, path, side))
 
 
-def _seen(workspace: Workspace, path: str, evidence: Evidence | None) -> Iterator[Lens]:
+def _seen(workspace: Workspace, path: str, evidence: ProjectVerdicts | None) -> Iterator[Lens]:
     """The worst verdict on each requirement."""
     if evidence is None:
         return

@@ -8,7 +8,7 @@ from btq_lang.btcpp.side_elements import said_in_xml
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.language import phrase_at
 from btq_lang.ide import describe
-from btq_lang.ide.meaning import Found, Subject, at, definition, everywhere, quality_match, subject
+from btq_lang.ide.meaning import ReferenceAt, Subject, at, definition, everywhere, quality_match, subject
 from btq_lang.ide.navigation import writes
 from btq_lang.ide.place import item_tokens, place_at
 from btq_lang.ide.ports import cpp_link, port_of, ports_of_kind, ports_of_tree, signature
@@ -20,7 +20,7 @@ from btq_lang.workspace.references import What
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
-    from btq_lang.ide.verdicts import Evidence
+    from btq_lang.ide.verdicts import ProjectVerdicts
 
 
 class Hover(Record):
@@ -31,7 +31,7 @@ class Hover(Record):
 
 
 def hover(
-    workspace: Workspace, path: str, offset: int, side: str | None = None, evidence: Evidence | None = None
+    workspace: Workspace, path: str, offset: int, side: str | None = None, evidence: ProjectVerdicts | None = None
 ) -> Hover | None:
     """The hover at a place: a node with its ports and semantics, a requirement with its text and its nodes, a quality
     with its definition, an entry with its readers and writers, a quantity in SI units, a rule's page, a word of the
@@ -51,7 +51,7 @@ def hover(
     return Hover(found.span, both) if both else None
 
 
-def _built(workspace: Workspace, found: Found, side: str | None) -> str:
+def _built(workspace: Workspace, found: ReferenceAt, side: str | None) -> str:
     """The requirements and qualities of an element of XML by its build."""
     file = workspace.files[found.path]
     if file.origin is None:
@@ -61,7 +61,7 @@ def _built(workspace: Workspace, found: Found, side: str | None) -> str:
     return "\n".join(("Written by `btq build`:\n", *(f"* {line}" for line in lines))) if lines else ""
 
 
-def _explained(workspace: Workspace, found: Found, wanted: Subject) -> str | None:
+def _explained(workspace: Workspace, found: ReferenceAt, wanted: Subject) -> str | None:
     path, mention = found.path, found.mention
     node = mention.node
     if wanted.what is What.NODE:
@@ -124,7 +124,7 @@ def _key(workspace: Workspace, wanted: Subject) -> str:
     return describe.key(workspace, wanted, writing, [one for one in places if one not in writing])
 
 
-def _port(workspace: Workspace, found: Found) -> str | None:
+def _port(workspace: Workspace, found: ReferenceAt) -> str | None:
     node = found.mention.node
     port = port_of(workspace, found.path, node, found.mention.name) if node is not None else None
     if node is None or port is None:
@@ -133,7 +133,7 @@ def _port(workspace: Workspace, found: Found) -> str | None:
     return "\n\n".join(filter(None, (describe.port(port), link)))
 
 
-class Parameter(Record):
+class PortLabel(Record):
     """A port: its label is a part of the signature's."""
 
     label: str
@@ -145,7 +145,7 @@ class Signature(Record):
     port."""
 
     label: str
-    parameters: tuple[Parameter, ...]
+    parameters: tuple[PortLabel, ...]
     active: int | None
 
 
@@ -161,7 +161,7 @@ def signature_help(workspace: Workspace, path: str, offset: int) -> Signature | 
         ports = ports_of_kind(workspace, path, node.name, node.quoted)
     if not ports:
         return None
-    parameters = tuple(Parameter(signature(port), describe.port(port)) for port in ports)
+    parameters = tuple(PortLabel(signature(port), describe.port(port)) for port in ports)
     label = f"{node.name} ({', '.join(parameter.label for parameter in parameters)})"
     names = [port.name for port in ports]
     missing = [name for name in names if name not in place.given] if place.key is None else [place.key]

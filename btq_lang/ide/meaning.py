@@ -42,7 +42,7 @@ class Subject(Record):
     home: str = ""
 
 
-class Found(Record):
+class ReferenceAt(Record):
     """A reference in a file; `entry`: around it, None in a comment."""
 
     path: str
@@ -55,7 +55,7 @@ class Found(Record):
         return self.mention.span.shifted(self.entry.start if self.entry else 0)
 
 
-def at(workspace: Workspace, path: str, offset: int) -> Found | None:
+def at(workspace: Workspace, path: str, offset: int) -> ReferenceAt | None:
     """The reference that an offset is in, or that ends there.
 
     Raises:
@@ -70,7 +70,7 @@ def at(workspace: Workspace, path: str, offset: int) -> Found | None:
                 touching.append(mention)
     if touching:  # of two that touch, like `{a}` and the word after it, the one that begins here
         best = min(touching, key=lambda mention: (mention.span.end == inside, -mention.span.start))
-        return Found(path, entry, best)
+        return ReferenceAt(path, entry, best)
     return _rule_at(workspace, path, offset)
 
 
@@ -81,7 +81,7 @@ def entry_at(workspace: Workspace, path: str, offset: int) -> Entry | None:
     return entries[index - 1] if index else None
 
 
-def subject(workspace: Workspace, found: Found) -> Subject:
+def subject(workspace: Workspace, found: ReferenceAt) -> Subject:
     """What a reference means."""
     path, entry, mention = found.path, found.entry, found.mention
     if mention.what in (What.RULE, What.EDITION, What.TAG, What.QUANTITY, What.UNIT, What.ATTRIBUTE) or entry is None:
@@ -127,7 +127,7 @@ def home_of(found: Definition) -> str:
     return f"{found.path}:{found.span.start}"
 
 
-def everywhere(workspace: Workspace, wanted: Subject, paths: tuple[str, ...] | None = None) -> Iterator[Found]:
+def everywhere(workspace: Workspace, wanted: Subject, paths: tuple[str, ...] | None = None) -> Iterator[ReferenceAt]:
     """Every reference to a subject in some files, or in all, file by file, in the order of their texts."""
     words = _spellings(wanted)
     for path in paths if paths is not None else _paths(workspace, wanted):
@@ -135,12 +135,12 @@ def everywhere(workspace: Workspace, wanted: Subject, paths: tuple[str, ...] | N
         if words and not any(word in file.text for word in words):
             continue  # that is known without parsing it
         if words:
-            found = [Found(path, *one) for word in words for one in file.mentioned(word)]
+            found = [ReferenceAt(path, *one) for word in words for one in file.mentioned(word)]
             if len(words) > 1:
                 found.sort(key=lambda one: one.span)
         else:
             found = [
-                Found(path, entry, one)
+                ReferenceAt(path, entry, one)
                 for entry in file.parsed.entries
                 for one in file.mentions_of(entry)
                 if _may_mean(wanted, one)
@@ -279,7 +279,7 @@ def _place(workspace: Workspace, path: str, name: str) -> Subject:
     return Subject(What.INSTANCE, name, label) if label else Subject(What.NODE, name)
 
 
-def _port(workspace: Workspace, found: Found) -> Subject:
+def _port(workspace: Workspace, found: ReferenceAt) -> Subject:
     mention = found.mention
     if mention.defines:
         if (tree := _modelled_tree(workspace, found.path, mention)) is not None:
@@ -320,7 +320,7 @@ def is_main(workspace: Workspace, path: str, entry: Entry) -> bool:
     return bool(workspace.files[path].of_type(Root)) or path not in workspace.included_files
 
 
-def _rule_at(workspace: Workspace, path: str, offset: int) -> Found | None:
+def _rule_at(workspace: Workspace, path: str, offset: int) -> ReferenceAt | None:
     """The name of a rule in `# btq: ignore[rule, …]`."""
     file = workspace.files[path]
     if not file.has_directives:
@@ -331,7 +331,7 @@ def _rule_at(workspace: Workspace, path: str, offset: int) -> Found | None:
             for name in _RULE_NAME.finditer(listed[1]) if listed else ():
                 span = Span(*name.span()).shifted(token.start + (listed.start(1) if listed else 0))
                 if span.start <= offset <= span.end:
-                    return Found(path, None, Mention(What.RULE, name[0], span, Word(NAME, span.start, name[0])))
+                    return ReferenceAt(path, None, Mention(What.RULE, name[0], span, Word(NAME, span.start, name[0])))
     return None
 
 

@@ -8,14 +8,14 @@ from btq_lang.catalog.units import parse_unit
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.ide.clause_words import is_window, last_index
 from btq_lang.ide.meaning import entry_at
-from btq_lang.ide.place import Place
+from btq_lang.ide.place import CursorPlace
 from btq_lang.syntax.tokens import NAME
 from btq_lang.syntax.tree import Claim, Requirement, Signal, is_name
 from btq_lang.util.record import Record
 from btq_lang.workspace.workspace import Workspace
 
 
-class Measured(Record):
+class MeasuredValue(Record):
     """What a value measures.
 
     Attributes:
@@ -34,27 +34,27 @@ class Measured(Record):
         return self.unit == unit if wanted is None or given is None else wanted.dimension == given.dimension
 
 
-def measured_at(workspace: Workspace, path: str, place: Place) -> Measured:
+def measured_at(workspace: Workspace, path: str, place: CursorPlace) -> MeasuredValue:
     """What a value measures at a place of a clause, of a signal, or of a requirement's argument."""
     declared = _of_argument(workspace, path, place) or _of_first_value(workspace, path, place)
     if declared is not None:
-        return Measured(declared, is_certain=True)
+        return MeasuredValue(declared, is_certain=True)
     words = [word.text for word in place.words]
     if words[-1:] == ["goal"] or words[-2:-1] == ["goal"]:
         return _of_goal(workspace, path, place)
     unit = "s" if is_window(words) else measured(words)
     if unit is not None:
-        return Measured(unit, is_certain=True)
+        return MeasuredValue(unit, is_certain=True)
     parameters = parameters_at(place)
     for word in reversed(place.words):
         if word.text in ("*", "/", "and", "or"):
-            return Measured()
+            return MeasuredValue()
         if word.kind == NAME and (unit := parameters.get(word.text) or _signal_unit(workspace, path, word.text)):
-            return Measured(unit)
-    return Measured()
+            return MeasuredValue(unit)
+    return MeasuredValue()
 
 
-def parameters_at(place: Place) -> dict[str, str]:
+def parameters_at(place: CursorPlace) -> dict[str, str]:
     """The parameters of the requirement around a place, with their units: `QualityReq slow(limit : m/s)`."""
     line = next((line for line in (place.words, place.parent) if any(word.text == "QualityReq" for word in line)), ())
     texts = [word.text for word in line]
@@ -68,7 +68,7 @@ def parameters_at(place: Place) -> dict[str, str]:
     return found
 
 
-def _of_argument(workspace: Workspace, path: str, place: Place) -> str | None:
+def _of_argument(workspace: Workspace, path: str, place: CursorPlace) -> str | None:
     """The unit of the parameter whose argument or default is being written."""
     words = [word.text for word in place.group] if place.callee else []
     at = last_index(words, "=")
@@ -81,7 +81,7 @@ def _of_argument(workspace: Workspace, path: str, place: Place) -> str | None:
     return next((one.unit.text for one in parameters if one.unit and one.name.text == words[at - 1]), None)
 
 
-def _of_first_value(workspace: Workspace, path: str, place: Place) -> str | None:
+def _of_first_value(workspace: Workspace, path: str, place: CursorPlace) -> str | None:
     """The unit of the signal whose value before the first reading is being written."""
     words = place.words
     if len(words) < 2 or words[0].text != "signal" or "initially" not in (words[-1].text, words[-2].text):
@@ -89,13 +89,13 @@ def _of_first_value(workspace: Workspace, path: str, place: Place) -> str | None
     return _signal_unit(workspace, path, words[1].text)
 
 
-def _of_goal(workspace: Workspace, path: str, place: Place) -> Measured:
+def _of_goal(workspace: Workspace, path: str, place: CursorPlace) -> MeasuredValue:
     """The unit of a goal: that of the bound of its claim, perhaps on another line."""
     entry = entry_at(workspace, path, place.span.start)
     clauses = entry.item.clauses if entry is not None and isinstance(entry.item, Requirement) else ()
     verbs = {clause.verb.raw for clause in clauses if isinstance(clause, Claim)} | {word.text for word in place.words}
     is_of_time = any(verb in VERBS and VERBS[verb].limits for verb in verbs)
-    return Measured("s", is_certain=True) if is_of_time else Measured()
+    return MeasuredValue("s", is_certain=True) if is_of_time else MeasuredValue()
 
 
 def _signal_unit(workspace: Workspace, path: str, name: str) -> str | None:

@@ -6,7 +6,17 @@ from collections.abc import Iterable
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.ide.block import nodes_at
-from btq_lang.ide.meaning import Found, Subject, at, definition, entry_at, everywhere, own_quality, quality_of, subject
+from btq_lang.ide.meaning import (
+    ReferenceAt,
+    Subject,
+    at,
+    definition,
+    entry_at,
+    everywhere,
+    own_quality,
+    quality_of,
+    subject,
+)
 from btq_lang.ide.ports import cpp_place, port_of
 from btq_lang.syntax.tree import Model, Tree, is_name, written
 from btq_lang.util.record import Record
@@ -16,7 +26,7 @@ from btq_lang.workspace.references import What
 from btq_lang.workspace.workspace import Workspace
 
 
-class Target(Record):
+class NavigationTarget(Record):
     """A place to go to.
 
     Attributes:
@@ -38,7 +48,7 @@ class Highlight(Record):
     writes: bool
 
 
-def goto_definition(workspace: Workspace, path: str, offset: int) -> tuple[Target, ...]:
+def goto_definition(workspace: Workspace, path: str, offset: int) -> tuple[NavigationTarget, ...]:
     """Where the word at a place is defined; for a name out of scope, its definitions elsewhere in the project.
 
     A node and its ports are defined in the C++ that registers it, if that is known, and else in a model.  A blackboard
@@ -50,23 +60,25 @@ def goto_definition(workspace: Workspace, path: str, offset: int) -> tuple[Targe
     wanted = subject(workspace, found)
     if wanted.what is What.INCLUDE:
         target = wanted.name
-        return (Target(target, Span(0, 0), Span(0, 0), found.span),) if target in workspace.files else ()
+        return (NavigationTarget(target, Span(0, 0), Span(0, 0), found.span),) if target in workspace.files else ()
     place = definition(workspace, path, wanted)
     in_cpp = _in_cpp(workspace, found, wanted, place)
     if in_cpp is not None:
-        return (Target(*in_cpp, in_cpp[1], found.span),)
+        return (NavigationTarget(*in_cpp, in_cpp[1], found.span),)
     if place is not None:
-        return (Target(place.path, place.whole, place.span, found.span),)
+        return (NavigationTarget(place.path, place.whole, place.span, found.span),)
     if wanted.what in (What.KEY, What.PORT, What.PARAMETER, What.INSTANCE):
         places = list(everywhere(workspace, wanted))
         first = next((one for one in places if one.mention.defines), None)
         if first is None and wanted.what is What.KEY:
             first = next((one for one in places if writes(workspace, one)), None)
-        return (Target(first.path, first.span, first.span, found.span),) if first else ()
+        return (NavigationTarget(first.path, first.span, first.span, found.span),) if first else ()
     return ()
 
 
-def _in_cpp(workspace: Workspace, found: Found, wanted: Subject, place: Definition | None) -> tuple[str, Span] | None:
+def _in_cpp(
+    workspace: Workspace, found: ReferenceAt, wanted: Subject, place: Definition | None
+) -> tuple[str, Span] | None:
     """Where in C++ a node or its port is, whatever models of it there are beside the code."""
     if place is not None and isinstance(place.symbol.target, Model):
         places = (cpp_place(workspace, each, place.symbol.name) for each in (found.path, place.path))
@@ -90,14 +102,14 @@ def highlights(workspace: Workspace, path: str, offset: int) -> tuple[Highlight,
     return tuple(Highlight(one.span, one.mention.defines or writes(workspace, one)) for one in places)
 
 
-def _references(workspace: Workspace, path: str, offset: int, paths: tuple[str, ...] | None) -> Iterable[Found]:
+def _references(workspace: Workspace, path: str, offset: int, paths: tuple[str, ...] | None) -> Iterable[ReferenceAt]:
     found = at(workspace, path, offset)
     if found is None or found.entry is None or found.mention.what in _WITHOUT_REFERENCES:
         return ()
     return everywhere(workspace, subject(workspace, found), paths)
 
 
-def is_definition(workspace: Workspace, found: Found) -> bool:
+def is_definition(workspace: Workspace, found: ReferenceAt) -> bool:
     """Whether a reference is the definition that counts, and not one of the repetitions of classic files."""
     if not found.mention.defines:
         return False
@@ -105,7 +117,7 @@ def is_definition(workspace: Workspace, found: Found) -> bool:
     return place is None or (place.path, place.span) == (found.path, found.span)
 
 
-def writes(workspace: Workspace, found: Found) -> bool:
+def writes(workspace: Workspace, found: ReferenceAt) -> bool:
     """Whether the blackboard entry named here gets its value here."""
     mention = found.mention
     if mention.what not in (What.KEY, What.PORT):
@@ -119,7 +131,7 @@ def writes(workspace: Workspace, found: Found) -> bool:
     return port is not None and port.direction != "input"
 
 
-def goto_implementation(workspace: Workspace, path: str, offset: int) -> tuple[Target, ...]:
+def goto_implementation(workspace: Workspace, path: str, offset: int) -> tuple[NavigationTarget, ...]:
     """The nodes that refer to the requirement at a place; for everything else, the definition."""
     found = at(workspace, path, offset)
     wanted = subject(workspace, found) if found is not None else None
@@ -131,11 +143,11 @@ def goto_implementation(workspace: Workspace, path: str, offset: int) -> tuple[T
         if node is not None and one.entry is not None:
             name = node.head.span.shifted(one.entry.start)
             whole = Span(node.start, node.block_end).shifted(one.entry.start)
-            targets[one.path, name] = Target(one.path, whole, name, found.span)
+            targets[one.path, name] = NavigationTarget(one.path, whole, name, found.span)
     return tuple(targets.values())
 
 
-def goto_type(workspace: Workspace, path: str, offset: int) -> tuple[Target, ...]:
+def goto_type(workspace: Workspace, path: str, offset: int) -> tuple[NavigationTarget, ...]:
     """The model or the tree of a named node; the declaration of a requirement's custom quality."""
     found = at(workspace, path, offset)
     if found is None:
@@ -152,7 +164,7 @@ def goto_type(workspace: Workspace, path: str, offset: int) -> tuple[Target, ...
         place = own_quality(workspace, requirement.path, quality.names[-1].text) if quality is not None else None
     if place is None:
         return ()
-    return (Target(place.path, place.whole, place.span, found.span),)
+    return (NavigationTarget(place.path, place.whole, place.span, found.span),)
 
 
 def node_path(workspace: Workspace, path: str, offset: int) -> str | None:

@@ -75,7 +75,7 @@ def open_brace(text: str, offset: int) -> OpenBrace | None:
     return OpenBrace(Span(offset - len(begun[2]), end), bool(begun[1]), "" if rest and rest[1] else "}")
 
 
-class Place(Record):
+class CursorPlace(Record):
     """The place of the cursor.
 
     Attributes:
@@ -131,7 +131,7 @@ class Place(Record):
         return self.group[-1].text if self.group else ""
 
 
-def place_at(workspace: Workspace, path: str, offset: int) -> Place:
+def place_at(workspace: Workspace, path: str, offset: int) -> CursorPlace:
     """The place of an offset.
 
     Raises:
@@ -163,7 +163,7 @@ def place_at(workspace: Workspace, path: str, offset: int) -> Place:
             callee = word_text(before[-2]) if len(before) > 1 else ""
             node = None
     prefix = file.text[span.start : offset]
-    return Place(inside, text, prefix, span, block, parent, words, group, depth, callee, node)
+    return CursorPlace(inside, text, prefix, span, block, parent, words, group, depth, callee, node)
 
 
 def item_tokens(file: File, offset: int) -> Sequence[Token]:

@@ -15,11 +15,11 @@ from btq_lang.catalog.qualities import qualities as standard_qualities
 from btq_lang.catalog.units import dimension_name, parse_unit, symbols
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.diagnostics.rules import RULES
-from btq_lang.ide.meaning import Found, is_main, match_of, subject
-from btq_lang.ide.measures import Measured, parameters_at
+from btq_lang.ide.meaning import ReferenceAt, is_main, match_of, subject
+from btq_lang.ide.measures import MeasuredValue, parameters_at
 from btq_lang.ide.moves import include_name
 from btq_lang.ide.outline import requirement_detail
-from btq_lang.ide.place import Place, word_text
+from btq_lang.ide.place import CursorPlace, word_text
 from btq_lang.requirements.nodes import nodes as nodes_in_scope
 from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.syntax.tree import Context, Entry, QualityDecl, Requirement, Signal, Tree, is_name, quote, shape, written
@@ -100,7 +100,7 @@ def port_heads() -> Iterator[Proposal]:
         yield keyword(word, f'{word} ${{1:name}} : ${{2:string}} "$0"')
 
 
-def port_words(place: Place) -> Iterator[Proposal]:
+def port_words(place: CursorPlace) -> Iterator[Proposal]:
     if place.last == ":":
         yield from types()
 
@@ -145,7 +145,7 @@ def undeclared(workspace: Workspace, path: str, kind: Kind, what: What) -> Itera
             continue
         for entry in file.parsed.entries:
             named = (one for one in file.mentions_of(entry) if one.what is what and not one.defines)
-            found.update(one.name for one in named if not subject(workspace, Found(other, entry, one)).home)
+            found.update(one.name for one in named if not subject(workspace, ReferenceAt(other, entry, one)).home)
     for name in sorted(found):
         if is_name(name) and not workspace.defined_anywhere(kind, name):
             yield Proposal(name, kind.value, "not declared yet", name)
@@ -168,7 +168,7 @@ def _contexts(workspace: Workspace, path: str) -> Iterator[Proposal]:
 
 
 def operands(
-    workspace: Workspace, path: str, place: Place, wanted: Measured, contexts: bool = True
+    workspace: Workspace, path: str, place: CursorPlace, wanted: MeasuredValue, contexts: bool = True
 ) -> Iterator[Proposal]:
     """Operands of a comparison: the requirement's parameters, contexts, signals; those that measure what is wanted come
     first and, if that is certain, alone."""
@@ -267,7 +267,7 @@ def includes(workspace: Workspace, path: str, quoted: bool) -> Iterator[Proposal
 # ---- knowledge ----
 
 
-def qualities(workspace: Workspace, path: str, place: Place) -> Iterator[Proposal]:
+def qualities(workspace: Workspace, path: str, place: CursorPlace) -> Iterator[Proposal]:
     """Qualities: custom ones, then characteristics, then their parts; after `performance-efficiency.`, its parts alone.
 
     A part is found by its own name and by its characteristic's.  Some editors compare the typed letters with the start
@@ -304,7 +304,7 @@ def _short_names(part: str, chosen: str) -> Iterator[Proposal]:
             yield Proposal(name, "quality", known.name, name, None, "", known.id)
 
 
-def units(wanted: Measured) -> Iterator[Proposal]:
+def units(wanted: MeasuredValue) -> Iterator[Proposal]:
     """Units; those that measure what is wanted come first, beginning with the one that is spelt the same; if that is
     certain, they come alone."""
     compounds = dict.fromkeys((*_COMPOUNDS, wanted.unit or "1"))
@@ -319,7 +319,7 @@ def units(wanted: Measured) -> Iterator[Proposal]:
 
 def units_of_names() -> Iterator[Proposal]:
     """What may follow the `:` of a signal or a parameter."""
-    yield from units(Measured())
+    yield from units(MeasuredValue())
     yield from words(("bool", "text", "1"), "unit")
 
 

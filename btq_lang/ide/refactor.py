@@ -15,7 +15,7 @@ from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.ide.block import STEP, blanks_before, block_of, deeper, moved, nodes_at, shifts
 from btq_lang.ide.meaning import entry_at
 from btq_lang.ide.ports import port_of
-from btq_lang.requirements.model import Span as Time
+from btq_lang.requirements.model import Interval as Time
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.scan import line_end
 from btq_lang.syntax.tokens import BRACED, NODE_CLAUSES
@@ -24,9 +24,9 @@ from btq_lang.syntax.tree import (
     Claim,
     Entry,
     Node,
-    Quality,
     QualityPath,
     Requirement,
+    SatisficedQuality,
     Satisfices,
     Satisfies,
     Tree,
@@ -295,7 +295,7 @@ def _lift(workspace: Workspace, path: str, entry: Entry, offset: int) -> Iterato
             )
 
 
-def _defined_in(clause: object) -> Iterator[tuple[Requirement, Quality | None]]:
+def _defined_in(clause: object) -> Iterator[tuple[Requirement, SatisficedQuality | None]]:
     if isinstance(clause, Satisfies):
         yield from ((use, None) for use in clause.uses if isinstance(use, Requirement))
     elif isinstance(clause, Satisfices):

@@ -17,7 +17,7 @@ from btq_lang.catalog.names import instance_name_problem, is_port_name, model_na
 from btq_lang.catalog.nav2 import PACKAGED
 from btq_lang.catalog.nodes import lookup
 from btq_lang.catalog.qualities import fold
-from btq_lang.ide.meaning import ENGINE, STANDARD, Found, Subject, at, definition, everywhere, subject
+from btq_lang.ide.meaning import ENGINE, STANDARD, ReferenceAt, Subject, at, definition, everywhere, subject
 from btq_lang.syntax.tree import is_name, quote
 from btq_lang.util.record import Record
 from btq_lang.util.text import Edit, Span, apply_edits
@@ -33,7 +33,7 @@ class Renamable(Record):
     name: str
 
 
-class Refusal(Record):
+class RenameRefusal(Record):
     """The reason why something cannot be renamed, as a sentence."""
 
     reason: str
@@ -45,31 +45,33 @@ class Renaming(Record):
     edits: dict[str, tuple[Edit, ...]]
 
 
-def prepare_rename(workspace: Workspace, path: str, offset: int) -> Renamable | Refusal:
+def prepare_rename(workspace: Workspace, path: str, offset: int) -> Renamable | RenameRefusal:
     """Whether the word at a place can be renamed."""
     found = at(workspace, path, offset)
     if found is None:
-        return Refusal("nothing to rename here")
+        return RenameRefusal("nothing to rename here")
     wanted = subject(workspace, found)
     reason = _refusal(workspace, wanted, found)
-    return Refusal(reason) if reason else Renamable(found.span, found.mention.name)
+    return RenameRefusal(reason) if reason else Renamable(found.span, found.mention.name)
 
 
-def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming | Refusal:
+def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming | RenameRefusal:
     """The edits that rename what the word at a place means; the new name gets quotes where needed."""
     found = at(workspace, path, offset)
     if found is None:
-        return Refusal("nothing to rename here")
+        return RenameRefusal("nothing to rename here")
     wanted = subject(workspace, found)
     reason = _refusal(workspace, wanted, found) or _unfit(wanted, name) or _is_the_other(workspace, path, wanted, name)
     if reason:
-        return Refusal(reason)
+        return RenameRefusal(reason)
     places = tuple(everywhere(workspace, wanted))
     kept = next(((place.path, why) for place in places if (why := _is_kept(workspace.files[place.path]))), None)
     if kept is not None:  # a node without a model is the same in unrelated files
-        return Refusal(f"cannot rename `{wanted.name}`: {workspace.project.shown(kept[0])}, {kept[1]}, also uses it")
+        return RenameRefusal(
+            f"cannot rename `{wanted.name}`: {workspace.project.shown(kept[0])}, {kept[1]}, also uses it"
+        )
     if not (name.isascii() and name.isidentifier()) and any(_is_in_script(place.mention) for place in places):
-        return Refusal("a name in a script may contain only the letters A to Z, digits and `_`")
+        return RenameRefusal("a name in a script may contain only the letters A to Z, digits and `_`")
     # In a tree that runs itself, an entry may be a port as well: `{=}` then stays as it is.
     pairs = [
         {id(place.mention.pair) for place in places if place.mention.what is what} for what in (What.PORT, What.KEY)
@@ -87,7 +89,7 @@ def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming 
             return Renaming(edits)
         if wanted.what in _PLAIN or wanted.what is What.KEY:
             break
-    return Refusal(reasons[0])
+    return RenameRefusal(reasons[0])
 
 
 def _is_kept(file: File) -> str:
@@ -101,7 +103,7 @@ def _is_kept(file: File) -> str:
     return "" if file.origin.is_complete else "which cannot be read"
 
 
-def _refusal(workspace: Workspace, wanted: Subject, found: Found) -> str:
+def _refusal(workspace: Workspace, wanted: Subject, found: ReferenceAt) -> str:
     """Why a subject cannot be renamed; empty if it can."""
     mention = found.mention
     if wanted.what in _FIXED:
@@ -166,7 +168,7 @@ def _is_in_script(mention: Mention) -> bool:
     return mention.what is What.KEY and text != mention.name and not text.startswith("{")
 
 
-def _edits(place: Found, wanted: Subject, name: str, in_quotes: bool, both: set[int]) -> Iterator[Edit]:
+def _edits(place: ReferenceAt, wanted: Subject, name: str, in_quotes: bool, both: set[int]) -> Iterator[Edit]:
     mention = place.mention
     start = place.entry.start if place.entry else 0
     if mention.what is What.KEY and not (mention.defines or mention.word.raw == wanted.name):
@@ -187,8 +189,8 @@ def _edits(place: Found, wanted: Subject, name: str, in_quotes: bool, both: set[
 def _changes_meaning(
     workspace: Workspace,
     path: str,
-    found: Found,
-    places: tuple[Found, ...],
+    found: ReferenceAt,
+    places: tuple[ReferenceAt, ...],
     edits: dict[str, tuple[Edit, ...]],
     name: str,
 ) -> str:
@@ -213,7 +215,7 @@ def _changes_meaning(
     return ""
 
 
-def _start(workspace: Workspace, found: Found) -> int:
+def _start(workspace: Workspace, found: ReferenceAt) -> int:
     """Where a reference begins in its file on the disk."""
     return workspace.files[found.path].on_disk(found.span).start
 

@@ -18,7 +18,7 @@ from btq_lang.util.record import Record
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
-    from btq_lang.ide.verdicts import Evidence
+    from btq_lang.ide.verdicts import ProjectVerdicts
 
 
 class LoggedRun(Record):
@@ -37,7 +37,7 @@ class LoggedRun(Record):
     number_in_log: int
 
 
-def runs_to_show(workspace: Workspace, path: str, evidence: Evidence) -> list[tuple[int, str]]:
+def runs_to_show(workspace: Workspace, path: str, evidence: ProjectVerdicts) -> list[tuple[int, str]]:
     """The runs that people look for, each with what it is: the last one, and the worst of each violated clause."""
     mission = _mission(workspace, path, evidence)
     if mission is None:
@@ -55,7 +55,7 @@ def runs_to_show(workspace: Workspace, path: str, evidence: Evidence) -> list[tu
     return [(run, "; ".join(dict.fromkeys(words))) for run, words in found.items()]
 
 
-def logged_run(workspace: Workspace, path: str, evidence: Evidence, number: int) -> LoggedRun | None:
+def logged_run(workspace: Workspace, path: str, evidence: ProjectVerdicts, number: int) -> LoggedRun | None:
     """Where a run is; None: there is no such run."""
     mission = _mission(workspace, path, evidence)
     for source in evidence.missions[mission].sources if mission is not None else ():
@@ -99,6 +99,6 @@ def _said(step: Mapping[str, Any]) -> str:
     return f"{step['state']}, {step['took']}" if step["took"] else str(step["state"])
 
 
-def _mission(workspace: Workspace, path: str, evidence: Evidence) -> str | None:
+def _mission(workspace: Workspace, path: str, evidence: ProjectVerdicts) -> str | None:
     """The first mission of a file that there are runs of."""
     return next((each for each in missions_of(workspace, path) if each in evidence.missions), None)

@@ -35,7 +35,7 @@ from btq_lang.util.text import LINE_END, Encoding, Span, width_of
 from btq_lang.workspace.inputs import definition
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
-from btq_lang.workspace.references import Listener, Mention, Owner, What, report
+from btq_lang.workspace.references import Mention, Owner, ReferenceListener, What, report
 from btq_lang.workspace.workspace import Workspace
 
 Token: TypeAlias = tuple[int, int, str]  # start, end and appearance
@@ -61,7 +61,7 @@ def encoded(
     return encode(text, tokens, encoding)
 
 
-class _Words(Listener):
+class _Words(ReferenceListener):
     """The words of an item as tokens."""
 
     def __init__(self, store: Store[Workspace], path: str) -> None:

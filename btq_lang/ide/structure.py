@@ -19,7 +19,7 @@ class Fold(Record):
     kind: str
 
 
-class Link(Record):
+class FileLink(Record):
     """A word that leads to a file; target: None if the file does not exist."""
 
     span: Span
@@ -120,7 +120,7 @@ def _brackets(workspace: Workspace, path: str) -> Iterator[Span]:
             yield Span(opened.pop(), token.end)
 
 
-def document_links(workspace: Workspace, path: str) -> tuple[Link, ...]:
+def document_links(workspace: Workspace, path: str) -> tuple[FileLink, ...]:
     """The paths of includes."""
     file = workspace.files[path]
     found = []
@@ -128,5 +128,5 @@ def document_links(workspace: Workspace, path: str) -> tuple[Link, ...]:
         if include.path is not None:
             span = include.path.span.shifted(file.start_of(include))
             inside = Span(span.start + 1, max(span.end - 1, span.start + 1)) if include.path.quoted else span
-            found.append(Link(inside, workspace.included_by(path, include)))
+            found.append(FileLink(inside, workspace.included_by(path, include)))
     return tuple(found)

@@ -34,7 +34,7 @@ from btq_lang.graph.missions import MeasuredBy
 from btq_lang.ide.clause_enforcement import MOST_MISSIONS, missions_of
 from btq_lang.ide.meaning import Subject, definition
 from btq_lang.render.gfm import code, escaped, table
-from btq_lang.requirements.model import Requirement
+from btq_lang.requirements.model import ResolvedRequirement
 from btq_lang.requirements.resolve import requirements
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span, counted
@@ -55,11 +55,11 @@ class Judged(Record):
 
     written: WrittenMission
     shown: tuple[Shown, ...]
-    open: tuple[Requirement, ...]
+    open: tuple[ResolvedRequirement, ...]
     is_earlier: bool
 
 
-class Evidence:
+class ProjectVerdicts:
     """The verdicts of a project's logs.
 
     It keeps the verdicts on the last text of a mission itself.  The query store would take more: its inputs are read
@@ -100,7 +100,7 @@ class Evidence:
 
 
 def verdict_titles(
-    workspace: Workspace, path: str, evidence: Evidence
+    workspace: Workspace, path: str, evidence: ProjectVerdicts
 ) -> Iterator[tuple[Span, str, tuple[tuple[str, Span], ...]]]:
     """For each requirement in a file of whose mission there are logs: the place of its name, its worst verdict in a few
     words, and its nodes.
@@ -123,7 +123,7 @@ def verdict_titles(
         yield workspace.files[path].span_of(place), title, ()
 
 
-def verdict_table(workspace: Workspace, path: str, wanted: Subject, evidence: Evidence) -> str:
+def verdict_table(workspace: Workspace, path: str, wanted: Subject, evidence: ProjectVerdicts) -> str:
     """What logs show of a requirement, in Markdown; empty without any."""
     place = definition(workspace, path, wanted)
     lines: list[str] = []
@@ -144,7 +144,7 @@ def verdict_table(workspace: Workspace, path: str, wanted: Subject, evidence: Ev
     return "\n".join(lines).strip()
 
 
-def verdict_findings(workspace: Workspace, path: str, evidence: Evidence) -> tuple[Reported, ...]:
+def verdict_findings(workspace: Workspace, path: str, evidence: ProjectVerdicts) -> tuple[Reported, ...]:
     """Violated requirements and such that were never exercised, at their nodes in a file."""
     found: dict[int, tuple[ResolvedNode, dict[tuple[str, str], Diagnostic]]] = {}
     for judged in _on_missions(workspace, path, evidence):
@@ -162,7 +162,7 @@ def verdict_findings(workspace: Workspace, path: str, evidence: Evidence) -> tup
     return evidence.reported[path]
 
 
-def is_outdated(workspace: Workspace, mission: str, evidence: Evidence) -> bool:
+def is_outdated(workspace: Workspace, mission: str, evidence: ProjectVerdicts) -> bool:
     """Whether the summary does not say what the logs show of the present text."""
     judged = evidence.on(workspace, mission)
     if judged is None:
@@ -171,12 +171,12 @@ def is_outdated(workspace: Workspace, mission: str, evidence: Evidence) -> bool:
     return was_edited or any(each.verdict is None for each in judged.shown)
 
 
-def measured_in(workspace: Workspace, path: str, evidence: Evidence) -> MeasuredBy:
+def measured_in(workspace: Workspace, path: str, evidence: ProjectVerdicts) -> MeasuredBy:
     """A function from a requirement at what it applies to, to what logs of the file's missions show of it."""
     return measured_of(shown for judged in _on_missions(workspace, path, evidence) for shown in judged.shown)
 
 
-def _on_missions(workspace: Workspace, path: str, evidence: Evidence) -> Iterator[Judged]:
+def _on_missions(workspace: Workspace, path: str, evidence: ProjectVerdicts) -> Iterator[Judged]:
     for mission in missions_of(workspace, path)[:MOST_MISSIONS]:
         if (judged := evidence.on(workspace, mission)) is not None:
             yield judged
@@ -207,7 +207,7 @@ def _nodes(demand: Demand) -> Sequence[ResolvedNode]:
     return demand.applied.nodes if demand.applied is not None else ()
 
 
-def _defined(requirement: Requirement) -> tuple[str, str | None]:
+def _defined(requirement: ResolvedRequirement) -> tuple[str, str | None]:
     return requirement.name, requirement.place.path
 
 

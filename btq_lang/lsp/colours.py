@@ -9,7 +9,7 @@ from lsprotocol import types
 
 from btq_lang import ide as features
 from btq_lang.ide.legend import MODIFIERS, TYPES
-from btq_lang.lsp.editor import Refused, Server
+from btq_lang.lsp.editor import RequestRefused, Server
 from btq_lang.lsp.protocol import Json, Plain
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ def register(server: Server) -> None:
 _NO_TOKENS = Json('{"data": []}')
 
 
-class Later(Refused):
+class Later(RequestRefused):
     """A request that has no answer now: an editor keeps the last one."""
 
     CODE = -32802  # ServerCancelled

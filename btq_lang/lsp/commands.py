@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 from btq_lang import ide as features
-from btq_lang.lsp.editor import Refused, Server, Unknown
+from btq_lang.lsp.editor import RequestRefused, Server, UnknownDocument
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from btq_lang.projects.messages import Messages
+    from btq_lang.projects.messages import CommandOutput
     from btq_lang.workspace.workspace import Workspace
 
 NODE_PATH = "btq.server.nodePath"
@@ -34,20 +34,20 @@ def register(server: Server) -> None:
     @server.command(NODE_PATH)
     def path_of_node(place: types.TextDocumentPositionParams) -> str | None:
         """The path of the node at a position."""
-        with suppress(Unknown):
+        with suppress(UnknownDocument):
             return server.ask(place, features.navigation.node_path, reads=True)[2]
         return None
 
     def mission(document: types.TextDocumentIdentifier, *, reads: bool = False) -> tuple[Workspace, str]:
         try:
             return server.at(document, reads=reads)
-        except Unknown:
+        except UnknownDocument:
             what = "neither a .btq file nor BehaviorTree.CPP's XML" if reads else "not a .btq file"
-            raise Refused(f"this is {what} of the open folders") from None
+            raise RequestRefused(f"this is {what} of the open folders") from None
 
-    def outcome(code: int, files: Iterable[str], messages: Messages) -> dict[str, object]:
+    def outcome(code: int, files: Iterable[str], messages: CommandOutput) -> dict[str, object]:
         if code:
-            raise Refused(messages.text())
+            raise RequestRefused(messages.text())
         return {"files": [convert.uri(file) for file in files], "said": messages.text()}
 
     @server.command(XML)
@@ -59,7 +59,7 @@ def register(server: Server) -> None:
 
         done = as_xml(workspace, path).export
         for problem in done.problems:
-            raise Refused(f"cannot write this as XML: {problem.message}")
+            raise RequestRefused(f"cannot write this as XML: {problem.message}")
         return write(done.document)
 
     @server.command(PICTURE)
@@ -93,7 +93,7 @@ def register(server: Server) -> None:
         """Write the XML of a mission as `btq build` does, with the editor's texts of open files."""
         _, path = mission(document)
         if not document.uri.startswith("file:"):
-            raise Refused("save this document to a file first")
+            raise RequestRefused("save this document to a file first")
         from btq_lang.projects.build_files import BuildOptions, build_files  # as above
         from btq_lang.projects.files import Files
 
@@ -110,9 +110,9 @@ def register(server: Server) -> None:
 
         file = workspace.files[path]
         if file.origin is None:
-            raise Refused("this is a .btq file already")
+            raise RequestRefused("this is a .btq file already")
         if not document.uri.startswith("file:") or read(path)[0] != file.source:
-            raise Refused("save this document to a file first")
+            raise RequestRefused("save this document to a file first")
         from btq_lang.projects.import_files import ImportOptions, import_files
 
         imported = import_files(ImportOptions((path,)))

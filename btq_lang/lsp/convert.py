@@ -28,7 +28,7 @@ if TYPE_CHECKING:  # all these import the checks; the server must start fast
     from btq_lang.ide.outline import Match, Outline
     from btq_lang.ide.refactor import Action
     from btq_lang.ide.structure import Fold
-    from btq_lang.workspace.findings import Findings
+    from btq_lang.workspace.findings import FileFindings
     from btq_lang.workspace.loader import LoadProblem
     from btq_lang.workspace.workspace import Workspace
 
@@ -132,7 +132,7 @@ class Converter:
         ]
         return types.WorkspaceEdit(document_changes=[*documents])
 
-    def findings(self, workspace: Workspace, path: str, found: Findings) -> Json:
+    def findings(self, workspace: Workspace, path: str, found: FileFindings) -> Json:
         """All diagnostics of a file, as a JSON list.
 
         All of them are sent after every keystroke, but most items are unchanged or only moved: what an item says is

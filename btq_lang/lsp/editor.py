@@ -28,7 +28,7 @@ from pygls.lsp.server import LanguageServer
 
 from btq_lang import ide as features
 from btq_lang.lsp.convert import Converter
-from btq_lang.lsp.protocol import Json, Messages, Output, Protocol
+from btq_lang.lsp.protocol import Json, Messages, OutgoingMessages, Protocol
 from btq_lang.projects import failures
 from btq_lang.util.version import __version__
 from btq_lang.workspace.queries import Cancelled
@@ -49,13 +49,13 @@ class Asked(Shape):
     position: types.Position
 
 
-class Refused(JsonRpcException):
+class RequestRefused(JsonRpcException):
     """A request that is refused, with the reason for the user; not a failure of the server."""
 
     CODE = -32803  # RequestFailed
 
 
-class Unknown(Exception):  # not an error: there is nothing to answer
+class UnknownDocument(Exception):  # not an error: there is nothing to answer
     """A document that btq does not know, or that a feature does not read."""
 
 
@@ -128,7 +128,7 @@ class Server(LanguageServer):
     def start_io(self, stdin: BinaryIO | None = None, stdout: BinaryIO | None = None) -> None:
         """As in pygls, except for how messages are read."""
         self._stop_event = Event()
-        self.protocol.set_writer(Output(stdout or sys.stdout.buffer, self._end))
+        self.protocol.set_writer(OutgoingMessages(stdout or sys.stdout.buffer, self._end))
         reader = Messages(stdin or sys.stdin.buffer, self._end_soon)
         self.has_message = lambda: reader.has_message
         report = self.report_server_error
@@ -214,13 +214,13 @@ class Server(LanguageServer):
 
         @functools.wraps(handler)
         def answer(*arguments: Any) -> Any:
-            with timing(arguments), suppress(Unknown):
+            with timing(arguments), suppress(UnknownDocument):
                 return handler(*arguments)
             return otherwise
 
         @functools.wraps(handler)
         async def answer_later(*arguments: Any) -> Any:
-            with timing(arguments), suppress(Unknown):
+            with timing(arguments), suppress(UnknownDocument):
                 return await handler(*arguments)
             return otherwise
 
@@ -279,9 +279,9 @@ class Server(LanguageServer):
         path = self.convert.path(document.uri)
         workspace = self.session.workspace_of(path)
         if workspace is None or workspace.files[path].is_cpp:
-            raise Unknown
+            raise UnknownDocument
         if workspace.files[path].origin is not None and not (reads and self.session.knows(path)):
-            raise Unknown
+            raise UnknownDocument
         return workspace, path
 
     def ask(
@@ -295,7 +295,7 @@ class Server(LanguageServer):
         workspace, path = self.at(place.text_document, reads=reads)
         offset = workspace.files[path].from_disk(self.convert.offset(workspace, path, place.position))
         if offset is None:
-            raise Unknown
+            raise UnknownDocument
         return workspace, path, feature(workspace, path, offset)
 
     # ---- publishing diagnostics ----
@@ -388,7 +388,7 @@ class Server(LanguageServer):
             await asyncio.sleep(PAUSE)
         self._ready.intersection_update(self.session.open)
         for path in [path for path in self.session.open if path not in self._ready]:
-            with suppress(Unknown):
+            with suppress(UnknownDocument):
                 place = self.at(types.TextDocumentIdentifier(self.convert.uri(path)))
                 has_tokens = self.supports("text_document.semantic_tokens")
                 tokens = features.colours.making(*place, self.convert.encoding) if has_tokens else ()

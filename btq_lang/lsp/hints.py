@@ -37,7 +37,7 @@ def register(server: Server) -> None:
 
     def calls(
         given: types.CallHierarchyItem,
-        feature: Callable[[Workspace, features.calls.TreeItem], tuple[features.calls.Call, ...]],
+        feature: Callable[[Workspace, features.calls.TreeItem], tuple[features.calls.TreeCall, ...]],
     ) -> Iterator[tuple[types.CallHierarchyItem, list[types.Range]]]:
         data = given.data if isinstance(given.data, dict) else {}
         workspace = server.session.workspace_of(str(data.get("path")))

@@ -20,13 +20,13 @@ from typing import TYPE_CHECKING, Any, Final
 
 from lsprotocol import types
 
-from btq_lang.lsp.editor import Refused, Server, Unknown
+from btq_lang.lsp.editor import RequestRefused, Server, UnknownDocument
 from btq_lang.lsp.progress import progress
 from btq_lang.util.version import __version__
 
 if TYPE_CHECKING:
     from btq_lang.ide.runs import LoggedRun
-    from btq_lang.ide.verdicts import Evidence
+    from btq_lang.ide.verdicts import ProjectVerdicts
     from btq_lang.workspace.config import Project
     from btq_lang.workspace.workspace import Workspace
 
@@ -48,12 +48,14 @@ def register(server: Server) -> None:
     def did_save(params: types.DidSaveTextDocumentParams) -> None:
         logs.saved(server.convert.path(params.text_document.uri))
 
-    def judged(document: types.TextDocumentIdentifier) -> tuple[Workspace, str, Evidence]:
-        with suppress(Unknown):
+    def judged(document: types.TextDocumentIdentifier) -> tuple[Workspace, str, ProjectVerdicts]:
+        with suppress(UnknownDocument):
             workspace, path = server.at(document, reads=True)
             if (evidence := server.session.evidence(workspace)) is not None:
                 return workspace, path, evidence
-        raise Refused("no logs of this mission have been judged; name them with `logs` in [evidence] of btq.toml")
+        raise RequestRefused(
+            "no logs of this mission have been judged; name them with `logs` in [evidence] of btq.toml"
+        )
 
     @server.command(RUNS)
     def runs(document: types.TextDocumentIdentifier) -> list[dict[str, object]]:
@@ -70,13 +72,13 @@ def register(server: Server) -> None:
         workspace, path, evidence = judged(document)
         where = logged_run(workspace, path, evidence, number)
         if where is None:
-            raise Refused(f"the logs have no run {number} of this mission")
+            raise RequestRefused(f"the logs have no run {number} of this mission")
         found = await logs.read_run(evidence.root, where)
         if isinstance(found, str):
-            raise Refused(found)
+            raise RequestRefused(found)
         drawn = run_on_picture(workspace, path, where, found)
         if drawn is None:
-            raise Refused("this run is of an earlier text: the trees have been edited since, or are not saved")
+            raise RequestRefused("this run is of an earlier text: the trees have been edited since, or are not saved")
         return drawn
 
 
@@ -181,7 +183,7 @@ class Logs:
 
     def _show(self, root: str, summary: str) -> None:
         from btq_lang.evidence.written_verdicts import NotVerdicts, read_verdicts  # few projects have logs
-        from btq_lang.ide.verdicts import Evidence
+        from btq_lang.ide.verdicts import ProjectVerdicts
         from btq_lang.workspace.loader import absolute, read
 
         try:
@@ -190,7 +192,7 @@ class Logs:
             logging.getLogger(__name__).warning("%s: %s", summary, error)
             return
         by_path = {absolute(os.path.join(root, each.file)): each for each in missions if each.runs}
-        self._server.session.show(root, Evidence(root, by_path))
+        self._server.session.show(root, ProjectVerdicts(root, by_path))
         self._server.check_soon(self._server.session.paths())
         self._server.refresh()
         self._server.protocol.notify_plain(JUDGED, {})

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 from btq_lang import ide as features
-from btq_lang.lsp.editor import Asked, Refused, Server
+from btq_lang.lsp.editor import Asked, RequestRefused, Server
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
@@ -20,11 +20,11 @@ def register(server: Server) -> None:
     convert = server.convert
 
     def links(
-        params: Asked, feature: Callable[[Workspace, str, int], tuple[features.navigation.Target, ...]]
+        params: Asked, feature: Callable[[Workspace, str, int], tuple[features.navigation.NavigationTarget, ...]]
     ) -> list[types.LocationLink] | list[types.Location]:
         def found(
             workspace: Workspace, path: str, offset: int
-        ) -> tuple[Workspace, tuple[features.navigation.Target, ...]]:
+        ) -> tuple[Workspace, tuple[features.navigation.NavigationTarget, ...]]:
             from btq_lang.catalog.nav2 import FILES  # as all of the catalog, after the start
 
             targets = feature(workspace, path, offset)
@@ -76,15 +76,15 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_PREPARE_RENAME)
     def prepare(params: types.PrepareRenameParams) -> types.PrepareRenamePlaceholder | None:
         workspace, path, found = server.ask(params, features.rename.prepare_rename, reads=True)
-        if isinstance(found, features.rename.Refusal):
-            raise Refused(found.reason)
+        if isinstance(found, features.rename.RenameRefusal):
+            raise RequestRefused(found.reason)
         return types.PrepareRenamePlaceholder(convert.range(workspace, path, found.span), found.name)
 
     @server.feature(types.TEXT_DOCUMENT_RENAME, types.RenameOptions(prepare_provider=True))
     def rename_all(params: types.RenameParams) -> types.WorkspaceEdit | None:
         workspace, _, found = server.ask(params, partial(features.rename.rename, name=params.new_name), reads=True)
-        if isinstance(found, features.rename.Refusal):
-            raise Refused(found.reason)
+        if isinstance(found, features.rename.RenameRefusal):
+            raise RequestRefused(found.reason)
         return convert.workspace_edit(server.versions_for_edits(), (workspace, found.edits))
 
     @server.feature(types.WORKSPACE_SYMBOL)

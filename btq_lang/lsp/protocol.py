@@ -194,7 +194,7 @@ class Messages:
             self._at_end()
 
 
-class Output(StdoutWriter):
+class OutgoingMessages(StdoutWriter):
     """Outgoing messages.
 
     Args:

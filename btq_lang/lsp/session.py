@@ -26,7 +26,7 @@ from btq_lang.util.text import LineIndex
 from btq_lang.workspace.config import SEVERITIES, Project
 from btq_lang.workspace.factories import merged
 from btq_lang.workspace.file import CPP_SUFFIXES, SIDE_SUFFIX, SUFFIXES, YAML_SUFFIXES, File
-from btq_lang.workspace.findings import Findings, Reported
+from btq_lang.workspace.findings import FileFindings, Reported
 from btq_lang.workspace.inputs import advance
 from btq_lang.workspace.item_index import Name
 from btq_lang.workspace.loader import LoadProblem, find_project, is_project_file, read, stamp, work_in
@@ -34,7 +34,7 @@ from btq_lang.workspace.overrides import Override, Severities
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
-    from btq_lang.ide.verdicts import Evidence
+    from btq_lang.ide.verdicts import ProjectVerdicts
 
 _ENDINGS: Final = (*SUFFIXES, ".xml", "/btq.toml", "/pyproject.toml")  # of missions and project files
 
@@ -59,9 +59,9 @@ class Session:
         self.settings: dict[str, object] = {}
         self.open: dict[str, str] = {}
         self.projects: dict[str, tuple[str, tuple[LoadProblem, ...]]] = {}
-        self.parameters: dict[str, tuple[Workspace, Findings]] = {}
+        self.parameters: dict[str, tuple[Workspace, FileFindings]] = {}
         self.check_seconds: dict[str, float] = {}
-        self._evidence: dict[str, Evidence] = {}  # by the folder of the project
+        self._evidence: dict[str, ProjectVerdicts] = {}  # by the folder of the project
         self._files = Files()
         self._files.overlay = self.open
         self._read_for: tuple[tuple[str, ...], dict[str, object]] | None = None  # which folders and settings
@@ -71,7 +71,7 @@ class Session:
         # With answers for what open XML included or lacked before a key has made it unreadable.
         self._aside: list[Workspace] = []
         # Weak: a file's findings must not keep an old workspace alive until its next check.
-        self._checked: dict[str, tuple[tuple[ReferenceType[Workspace], ...], Findings]] = {}
+        self._checked: dict[str, tuple[tuple[ReferenceType[Workspace], ...], FileFindings]] = {}
 
     # ---- what changes ----
 
@@ -187,7 +187,7 @@ class Session:
         workspace = Workspace.of(texts)
         for file in read:
             placed = (each.diagnostic for each in found if each.path == file.path)
-            self.parameters[file.path] = workspace, Findings.placed(placed)
+            self.parameters[file.path] = workspace, FileFindings.placed(placed)
 
     def with_code_of_nav2(self, workspace: Workspace) -> Workspace:
         """A workspace with the C++ of Nav2's nodes, if it is on this machine."""
@@ -322,11 +322,11 @@ class Session:
             for store in stores:
                 store.is_cancelled = lambda: False
 
-    def findings(self, path: str) -> Findings:
+    def findings(self, path: str) -> FileFindings:
         """The current findings of a file."""
         workspaces = self.workspaces_of(path)
         if not workspaces:
-            return Findings([])
+            return FileFindings([])
         known = self._checked.get(path)
         if known is not None and [id(each()) for each in known[0]] == [*map(id, workspaces)]:
             return known[1]
@@ -357,20 +357,20 @@ class Session:
 
         return verdict_findings(workspace, path, evidence)
 
-    def evidence(self, workspace: Workspace) -> Evidence | None:
+    def evidence(self, workspace: Workspace) -> ProjectVerdicts | None:
         """What logs show of a project's requirements, if it names logs and these have been judged."""
         project = workspace.project
         return self._evidence.get(project.root) if project.evidence is not None and project.evidence.logs else None
 
-    def show(self, root: str, evidence: Evidence) -> None:
+    def show(self, root: str, evidence: ProjectVerdicts) -> None:
         """Use what logs show of the requirements of the project in a folder."""
         self._evidence[root] = evidence
         self._checked.clear()
 
-    def _merged(self, workspaces: Iterable[Workspace], found: Iterable[tuple[Diagnostic, ...]]) -> Findings:
+    def _merged(self, workspaces: Iterable[Workspace], found: Iterable[tuple[Diagnostic, ...]]) -> FileFindings:
         """What is found in one file in each of its factories."""
         of_each = [(workspace.factory, each) for workspace, each in zip(workspaces, found, strict=True)]
-        return Findings.placed(merged(of_each))
+        return FileFindings.placed(merged(of_each))
 
     def diagnostics(self, path: str) -> tuple[Diagnostic, ...]:
         """The diagnostics of a file, counted from its start."""

@@ -14,7 +14,7 @@ from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.nav2.libraries import NAMES, Libraries
-from btq_lang.nav2.loaded import Load, Skipped, file_with
+from btq_lang.nav2.loaded import Load, SkippedFile, file_with
 from btq_lang.nav2.names import parameter_findings
 from btq_lang.nav2.own_libraries import own_libraries
 from btq_lang.nav2.parameters import Parameters
@@ -26,7 +26,7 @@ from btq_lang.util.text import Span
 from btq_lang.workspace.workspace import Workspace
 
 
-class Loaded(Record):
+class NavigatorTree(Record):
     """A tree that bt_navigator creates, with the files that it registers for it."""
 
     load: Load
@@ -34,7 +34,7 @@ class Loaded(Record):
 
 
 def findings(
-    parameters: Parameters, distribution: str, found: Iterable[Loaded]
+    parameters: Parameters, distribution: str, found: Iterable[NavigatorTree]
 ) -> Iterator[tuple[str | None, Diagnostic]]:
     """All that is wrong, with the file that it is in; None: the parameter file."""
     found = tuple(found)
@@ -50,13 +50,15 @@ def findings(
     yield from dict.fromkeys(all_found)
 
 
-def _own_code(parameters: Parameters, libraries: Libraries, found: Iterable[Loaded]) -> OwnCode:
+def _own_code(parameters: Parameters, libraries: Libraries, found: Iterable[NavigatorTree]) -> OwnCode:
     files = {path: file.source for each in found for path, file in each.workspace.files.items() if file.is_cpp}
     has_navigator = any(not plugin.text.startswith(OWN_PACKAGE) for _, plugin in parameters.plugins)
     return OwnCode(tuple(files.values()), has_navigator or not libraries.are_of_nav2)
 
 
-def wrong_goals(parameters: Parameters, distribution: str, found: Iterable[Loaded]) -> Iterator[tuple[str, Diagnostic]]:
+def wrong_goals(
+    parameters: Parameters, distribution: str, found: Iterable[NavigatorTree]
+) -> Iterator[tuple[str, Diagnostic]]:
     """What is wrong with the trees that goals name, by this name, wherever it is; without other files, which the trees
     that name them need not have loaded."""
     for load, one in _of_loads(parameters, distribution, found):
@@ -65,7 +67,9 @@ def wrong_goals(parameters: Parameters, distribution: str, found: Iterable[Loade
             yield named.text, replace(one, related=())
 
 
-def _of_loads(parameters: Parameters, distribution: str, found: Iterable[Loaded]) -> Iterator[tuple[Load, Diagnostic]]:
+def _of_loads(
+    parameters: Parameters, distribution: str, found: Iterable[NavigatorTree]
+) -> Iterator[tuple[Load, Diagnostic]]:
     """What is wrong with the trees that bt_navigator creates and with the files that it registers for them."""
     seen: set[str | None] = set()
     for each in found:
@@ -77,7 +81,7 @@ def _of_loads(parameters: Parameters, distribution: str, found: Iterable[Loaded]
 # ---- trees and folders ----
 
 
-def _places(found: Loaded) -> Iterator[Diagnostic]:
+def _places(found: NavigatorTree) -> Iterator[Diagnostic]:
     """What parameters or goals name, and is not there."""
     load = found.load
     for place in (load.tree, *(load.folders if not load.goals else ())):
@@ -108,7 +112,7 @@ def _places(found: Loaded) -> Iterator[Diagnostic]:
         yield Diagnostic("missing-nav2-tree", load.main.span, message, related, notes)
 
 
-def _without_main(found: Loaded, parameters: Parameters) -> Iterator[Diagnostic]:
+def _without_main(found: NavigatorTree, parameters: Parameters) -> Iterator[Diagnostic]:
     """A file with several trees, with those that it includes, none of which is the main one; Lyrical creates a tree by
     its ID."""
     load, workspace = found.load, found.workspace
@@ -146,7 +150,7 @@ def _folders(load: Load, parameters: Parameters, seen: set[str | None]) -> Itera
     seen.update(each.path for each in (*load.refused, *(skipped.place for skipped in load.skipped)))
 
 
-def _skipped(skipped: Skipped, load: Load, parameters: Parameters) -> Diagnostic:
+def _skipped(skipped: SkippedFile, load: Load, parameters: Parameters) -> Diagnostic:
     name, other = _name(skipped.place), _name(skipped.other)
     if name == other:  # in two folders
         name, other = (_name(each, 2) for each in (skipped.place, skipped.other))
@@ -184,7 +188,7 @@ def _name(place: Place | None, parts: int = 1) -> str:
 # ---- nodes ----
 
 
-def _unloaded(found: Loaded, parameters: Parameters, libraries: Libraries) -> Iterator[Diagnostic]:
+def _unloaded(found: NavigatorTree, parameters: Parameters, libraries: Libraries) -> Iterator[Diagnostic]:
     """Nodes that nothing registers."""
     span = parameters.key(NAMES) or parameters.place or Span(0, 0)
     refused = ("while such a file is in a search directory, bt_navigator loads no tree at all",)

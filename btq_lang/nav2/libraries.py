@@ -8,7 +8,7 @@ from typing import Final
 from btq_lang.catalog.nav2.libraries import LIBRARIES
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.nav2.own_libraries import OwnLibraries
-from btq_lang.nav2.parameters import Parameters, Text
+from btq_lang.nav2.parameters import Parameters, ParameterText
 from btq_lang.util.spelling import did_you_mean, distance, near
 from btq_lang.util.text import Span
 
@@ -61,7 +61,7 @@ class Libraries:
                 yield Diagnostic("unknown-library", each.span, message, notes=(_REFUSED,))
             first.setdefault(each.text, each.span)
 
-    def _loaded_by_nav2(self, named: list[Text]) -> Iterator[Diagnostic]:
+    def _loaded_by_nav2(self, named: list[ParameterText]) -> Iterator[Diagnostic]:
         """The libraries that Nav2 loads without a name: one finding, as a file of another distribution names all."""
         if not named:
             return

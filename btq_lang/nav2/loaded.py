@@ -19,7 +19,7 @@ from btq_lang.catalog.nav2 import TREE_OF_GOAL, ports_of
 from btq_lang.catalog.nav2.navigator import NAVIGATORS, OWN_PACKAGE
 from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.nav2.parameters import Parameters, Text, is_id
+from btq_lang.nav2.parameters import Parameters, ParameterText, is_id
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.util.text import Span
@@ -42,13 +42,13 @@ class Located(Record):
         severity: how sure it is that it is not on the robot either.
     """
 
-    named: Text | None
+    named: ParameterText | None
     path: str | None = None
     problem: str = ""
     severity: Severity = Severity.HINT
 
 
-class Skipped(Record):
+class SkippedFile(Record):
     """A file that bt_navigator passes over.
 
     Attributes:
@@ -82,9 +82,9 @@ class Load(Record):
 
     label: str
     tree: Located | None
-    main: Text | None
+    main: ParameterText | None
     files: tuple[str, ...]
-    skipped: tuple[Skipped, ...] = ()
+    skipped: tuple[SkippedFile, ...] = ()
     refused: tuple[Place, ...] = ()
     folders: tuple[Located, ...] = ()
     goals: tuple[Place, ...] = ()
@@ -131,7 +131,7 @@ class Loads:
     def of_goal(self, name: str, is_replaced: bool) -> Load:
         """The tree that goals name: by the path of a file, in which a launch file may replace `$(…)`, or in Lyrical by
         its ID."""
-        named = Text(name, Span(0, 0))
+        named = ParameterText(name, Span(0, 0))
         if self._folders is not None and (is_id(name) or not (is_replaced or name.endswith(".xml"))):
             return self._searched(name, None, named)
         if "$(" in name and not is_replaced:
@@ -142,7 +142,7 @@ class Loads:
             return self._searched(name, Located(named, None, why, Severity.WARNING))
         return self._searched(os.path.basename(name), _located(named, self._find, self._root))
 
-    def _searched(self, label: str, tree: Located | None, named: Text | None = None) -> Load:
+    def _searched(self, label: str, tree: Located | None, named: ParameterText | None = None) -> Load:
         """What is read for a tree: its file, then those in the folders."""
         first = tree.path if tree is not None else None
         if self._folders is None:
@@ -150,7 +150,7 @@ class Loads:
         paths = [first] if first is not None else []
         for folder in self._folders:
             paths += matching(folder.path, "*.xml") if folder.path is not None else ()
-        skipped: list[Skipped] = []
+        skipped: list[SkippedFile] = []
         refused: list[Place] = []
         owners: dict[str, Place] = {}
         for path in dict.fromkeys(paths):
@@ -162,18 +162,20 @@ class Loads:
             if listed is not None and not main and (len(ids) > 1 or (path == first and not ids)):
                 refused.append(places[min(1, len(places) - 1)])
             elif not ids:
-                skipped.append(Skipped(places[0], None, None, text.find("<BehaviorTree") >= 0))
+                skipped.append(SkippedFile(places[0], None, None, text.find("<BehaviorTree") >= 0))
             elif clash is not None:
                 at = next((each for each in places if f'"{clash}"' in text[each.span.start : each.span.end]), places[0])
                 is_certain = owners[clash].path == first  # else the other file may be the one that is skipped
-                skipped.append(Skipped(at, clash, owners[clash], not is_certain or not owners.keys() >= {*ids}, ids))
+                skipped.append(
+                    SkippedFile(at, clash, owners[clash], not is_certain or not owners.keys() >= {*ids}, ids)
+                )
             else:
                 owners.update(zip(ids, [*places, *[places[-1]] * len(ids)], strict=False))
         files = tuple(dict.fromkeys(each.path for each in owners.values() if each.path is not None))
         return Load(label, tree, named, files, tuple(skipped), tuple(refused), self._folders)
 
 
-def _located(named: Text, find: FindPackage, root: str, is_folder: bool = False) -> Located:
+def _located(named: ParameterText, find: FindPackage, root: str, is_folder: bool = False) -> Located:
     """The file or folder that a string names."""
     lost: list[str] = []
     packages: list[str] = []

@@ -14,7 +14,7 @@ from btq_lang.catalog.nav2.navigator import BOOLEAN, DOUBLE, INTEGER, NAVIGATORS
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.nav2.parameters import NODE, Parameters
-from btq_lang.nav2.yaml_reader import Value
+from btq_lang.nav2.yaml_reader import YamlValue
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.util.text import Span
 
@@ -69,7 +69,7 @@ def _mistyped(parameters: Parameters, distribution: str) -> Iterator[Diagnostic]
             yield Diagnostic("nav2-parameter", value.span, message, notes=notes, severity=Severity.ERROR)
 
 
-def _may_be(wanted: str, value: Value) -> bool:
+def _may_be(wanted: str, value: YamlValue) -> bool:
     """Whether ROS 2 reads a value as this type; or nothing, or what a launch file puts in its place."""
     if value.text is None:
         return wanted == STRINGS

@@ -21,7 +21,7 @@ from btq_lang.catalog.nav2.navigator import (
     SENDERS,
     outside_entries,
 )
-from btq_lang.nav2.yaml_reader import Value, read_yaml
+from btq_lang.nav2.yaml_reader import YamlValue, read_yaml
 from btq_lang.util.reach import reached
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import near
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from btq_lang.catalog.nav2.navigator import OutsideEntry
 
 
-class Text(Record):
+class ParameterText(Record):
     """A string of a parameter and its place."""
 
     text: str
@@ -50,24 +50,24 @@ class Parameters(Record):
         has_client_nodes: whether it sets parameters of the nodes that only Humble configures by themselves.
     """
 
-    values: dict[str, tuple[Value, Value]]
+    values: dict[str, tuple[YamlValue, YamlValue]]
     place: Span | None
-    goals: tuple[Text, ...] = ()
+    goals: tuple[ParameterText, ...] = ()
     shared: frozenset[str] = frozenset()
-    misspelt: tuple[tuple[Text, str], ...] = ()
+    misspelt: tuple[tuple[ParameterText, str], ...] = ()
     has_client_nodes: bool = False
 
-    def text(self, name: str) -> Text | None:
+    def text(self, name: str) -> ParameterText | None:
         """The value of a parameter that is a string."""
         _, value = self.values.get(name, (None, None))
-        return None if value is None or value.text is None else Text(value.text, value.span)
+        return None if value is None or value.text is None else ParameterText(value.text, value.span)
 
-    def texts(self, name: str) -> tuple[Text, ...] | None:
+    def texts(self, name: str) -> tuple[ParameterText, ...] | None:
         """The values of a parameter that is a list of strings; None if it is not set."""
         if name not in self.values:
             return None
         _, value = self.values[name]
-        return tuple(Text(each.text, each.span) for each in value.items if each.text is not None)
+        return tuple(ParameterText(each.text, each.span) for each in value.items if each.text is not None)
 
     def key(self, name: str) -> Span | None:
         """The place of a parameter's name."""
@@ -113,7 +113,7 @@ class Parameters(Record):
         return next(each for each in DISTRIBUTIONS if each[0] in letters) if len(letters) == 1 else None
 
     @property
-    def plugins(self) -> Iterator[tuple[str, Text]]:
+    def plugins(self) -> Iterator[tuple[str, ParameterText]]:
         """The navigators whose class is named, and its name."""
         for navigator in self.navigators:
             if (plugin := self.text(f"{navigator}.plugin")) is not None:
@@ -152,9 +152,9 @@ def read_parameters(text: str) -> Parameters:
     """
     top = read_yaml(text)
     nodes = [*_nodes(top)]
-    values: dict[str, tuple[Value, Value]] = {}
+    values: dict[str, tuple[YamlValue, YamlValue]] = {}
     own: set[str] = set()
-    goals: dict[Text, None] = {}
+    goals: dict[ParameterText, None] = {}
     place = None
     for key, node in sorted(nodes, key=lambda each: _last(each[0]) == NODE):  # what names the node counts most
         if _last(key) in (NODE, "*", "**"):
@@ -164,13 +164,13 @@ def read_parameters(text: str) -> Parameters:
             own.update(below if _last(key) == NODE else ())
         named = node.get(SENDERS[_last(key)]) if _last(key) in SENDERS else None
         if named is not None and named.text:
-            goals[Text(named.text, named.span)] = None
+            goals[ParameterText(named.text, named.span)] = None
     is_of_humble = any(_last(key).startswith(f"{NODE}_navigate_") for key, _ in nodes)
     misspelt = tuple(_misspelt(top, place is None))
     return Parameters(values, place, tuple(goals), frozenset(values.keys() - own), misspelt, is_of_humble)
 
 
-def _nodes(top: Value) -> Iterator[tuple[Value, Value]]:
+def _nodes(top: YamlValue) -> Iterator[tuple[YamlValue, YamlValue]]:
     """The names of nodes with their parameters, whatever the namespaces around them."""
     around = reached([top], lambda value: [below for _, below in value.entries if below.get(_PARAMETERS) is None])
     for key, below in (entry for value in around for entry in value.entries):
@@ -178,21 +178,21 @@ def _nodes(top: Value) -> Iterator[tuple[Value, Value]]:
             yield key, parameters
 
 
-def _misspelt(top: Value, has_no_node: bool) -> Iterator[tuple[Text, str]]:
+def _misspelt(top: YamlValue, has_no_node: bool) -> Iterator[tuple[ParameterText, str]]:
     """The keys that are nearly those around the parameters of bt_navigator, each with what is meant."""
 
-    def inside(value: Value) -> list[Value]:
+    def inside(value: YamlValue) -> list[YamlValue]:
         entries = [(key.text or "", below) for key, below in value.entries if below.get(_PARAMETERS) is None]
         return [below for key, below in entries if not near(key, (_PARAMETERS,))]
 
     for key, below in (entry for value in reached([top], inside) for entry in value.entries):
         if near(key.text or "", (_PARAMETERS,)):
-            yield Text(key.text or "", key.span), _PARAMETERS
+            yield ParameterText(key.text or "", key.span), _PARAMETERS
         elif has_no_node and below.get(_PARAMETERS) is not None and near(_last(key), (NODE,)):
-            yield Text(_last(key), key.span), NODE
+            yield ParameterText(_last(key), key.span), NODE
 
 
-def _flat(node: Value) -> Iterator[tuple[tuple[Value, ...], Value]]:
+def _flat(node: YamlValue) -> Iterator[tuple[tuple[YamlValue, ...], YamlValue]]:
     """The parameters of a node, and those one level below: there are no others that matter."""
     for key, value in node.entries:
         yield (key,), value
@@ -200,7 +200,7 @@ def _flat(node: Value) -> Iterator[tuple[tuple[Value, ...], Value]]:
             yield (key, name), below
 
 
-def _last(key: Value) -> str:
+def _last(key: YamlValue) -> str:
     return (key.text or "").rpartition("/")[2]
 
 

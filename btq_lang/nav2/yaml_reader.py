@@ -14,7 +14,7 @@ from typing import Any, Final
 from btq_lang.util.text import Span
 
 
-class Value:
+class YamlValue:
     """A value: a scalar, a list or a mapping.
 
     Attributes:
@@ -31,10 +31,10 @@ class Value:
         self.span = span
         self.text = text
         self.is_plain = is_plain
-        self.items: list[Value] = []
-        self.entries: list[tuple[Value, Value]] = []
+        self.items: list[YamlValue] = []
+        self.entries: list[tuple[YamlValue, YamlValue]] = []
 
-    def get(self, key: str) -> Value | None:
+    def get(self, key: str) -> YamlValue | None:
         """The value of a key of a mapping; of several the last one counts."""
         return next((value for name, value in reversed(self.entries) if name.text == key), None)
 
@@ -52,7 +52,7 @@ class YamlMissing(Exception):
     """PyYAML is not installed."""
 
 
-def read_yaml(text: str) -> Value:
+def read_yaml(text: str) -> YamlValue:
     """The first document of a text; an empty text is an empty mapping.
 
     Raises:
@@ -63,7 +63,7 @@ def read_yaml(text: str) -> Value:
         raise YamlProblem(f"larger than {_MOST_CHARACTERS} characters", 0)
     yaml = _yaml()
     try:
-        return _Builder(yaml).document(yaml.parse(text, Loader=yaml.SafeLoader)) or Value(Span(0, 0))
+        return _Builder(yaml).document(yaml.parse(text, Loader=yaml.SafeLoader)) or YamlValue(Span(0, 0))
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         raise YamlProblem(str(error.problem or error.context), mark.index if mark else 0) from error
@@ -85,11 +85,13 @@ class _Builder:
 
     def __init__(self, yaml: ModuleType) -> None:
         self._yaml = yaml
-        self._anchors: dict[str, Value] = {}
-        self._open: list[tuple[Value, list[Value], bool, str | None]] = []  # with its children, and whether a mapping
+        self._anchors: dict[str, YamlValue] = {}
+        self._open: list[
+            tuple[YamlValue, list[YamlValue], bool, str | None]
+        ] = []  # with its children, and whether a mapping
         self._copied = 0  # entries, by `<<`
 
-    def document(self, events: Iterator[Any]) -> Value | None:
+    def document(self, events: Iterator[Any]) -> YamlValue | None:
         """The value of the first document."""
         for event in events:
             done = self._value(event)
@@ -100,12 +102,12 @@ class _Builder:
             self._open[-1][1].append(done)
         return None
 
-    def _value(self, event: Any) -> Value | None:
+    def _value(self, event: Any) -> YamlValue | None:
         """The value that an event completes."""
         yaml = self._yaml
         span = Span(event.start_mark.index, event.end_mark.index)
         if isinstance(event, yaml.ScalarEvent):
-            value = Value(span, event.value, event.style is None)
+            value = YamlValue(span, event.value, event.style is None)
             return self._anchored(value, event.anchor)
         if isinstance(event, yaml.AliasEvent):
             if event.anchor not in self._anchors:
@@ -114,7 +116,7 @@ class _Builder:
         if isinstance(event, yaml.CollectionStartEvent):
             if len(self._open) >= _DEEPEST:
                 raise YamlProblem(f"more than {_DEEPEST} nested levels", span.start)
-            self._open.append((Value(span), [], isinstance(event, yaml.MappingStartEvent), event.anchor))
+            self._open.append((YamlValue(span), [], isinstance(event, yaml.MappingStartEvent), event.anchor))
         elif isinstance(event, yaml.CollectionEndEvent):
             value, children, is_mapping, anchor = self._open.pop()
             if is_mapping:
@@ -126,9 +128,9 @@ class _Builder:
             return self._anchored(value, anchor)
         return None
 
-    def _merged(self, entries: list[tuple[Value, Value]]) -> list[tuple[Value, Value]]:
+    def _merged(self, entries: list[tuple[YamlValue, YamlValue]]) -> list[tuple[YamlValue, YamlValue]]:
         """The entries of a mapping after those that `<<` names, of which each key is kept once."""
-        found: dict[str | None, tuple[Value, Value]] = {}
+        found: dict[str | None, tuple[YamlValue, YamlValue]] = {}
         for _, value in [each for each in entries if each[0].text == "<<" and each[0].is_plain]:
             for mapping in reversed(value.items or [value]):  # the first of several counts
                 found.update((name.text, (name, below)) for name, below in mapping.entries)
@@ -137,7 +139,7 @@ class _Builder:
                     raise YamlProblem(f"more than {_MOST_COPIED} keys by `<<`", value.span.start)
         return [*found.values(), *entries]
 
-    def _anchored(self, value: Value, anchor: str | None) -> Value:
+    def _anchored(self, value: YamlValue, anchor: str | None) -> YamlValue:
         if anchor is not None:
             self._anchors[anchor] = value
         return value

@@ -13,14 +13,14 @@ from typing import Final
 from btq_lang.btcpp.enforcement import ClauseEnforcement, Enforcement
 from btq_lang.btcpp.export import Export, is_mission
 from btq_lang.btcpp.marks import is_generated
-from btq_lang.btcpp.outputs import Output, Places, outputs, sources, without_tree
+from btq_lang.btcpp.outputs import MissionOutput, OutputPlaces, outputs, sources, without_tree
 from btq_lang.btcpp.side_file import is_side_file, side_path
 from btq_lang.btcpp.source import Remark
 from btq_lang.catalog.versions import is_before_4
 from btq_lang.diagnostics.model import Place
 from btq_lang.projects.building import errors, for_target
-from btq_lang.projects.files import STDIN, Files, Group, no_mission_below
-from btq_lang.projects.messages import Messages
+from btq_lang.projects.files import STDIN, FileGroup, Files, no_mission_below
+from btq_lang.projects.messages import CommandOutput
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import Span, counted
@@ -72,7 +72,7 @@ class BuildResult(Record):
     """
 
     code: int
-    messages: Messages
+    messages: CommandOutput
     watched: tuple[str, ...]
     files: tuple[str, ...] = ()
     text: str | None = None
@@ -97,7 +97,7 @@ def build_files(options: BuildOptions, files: Files) -> BuildResult:
     Raises:
         ValueError: btq does not know the version of the engine.
     """
-    messages = Messages()
+    messages = CommandOutput()
     groups, problems = files.groups(options.paths, options.stdin_filename)
     if options.target:
         groups = tuple(replace(group, workspace=for_target(group.workspace, options.target)) for group in groups)
@@ -130,20 +130,22 @@ def build_files(options: BuildOptions, files: Files) -> BuildResult:
     return BuildResult(code, messages, watched, tuple(target.path for target in targets if target.text is not None))
 
 
-def _version_problem(groups: tuple[Group, ...], options: BuildOptions) -> str | None:
+def _version_problem(groups: tuple[FileGroup, ...], options: BuildOptions) -> str | None:
     if not options.target and any(is_before_4(group.workspace.project.target) for group in groups):
         return "btq writes XML for version 4 of the engine, and btq.toml names an older one: choose one with --target"
     return None
 
 
-def _planned(groups: tuple[Group, ...], options: BuildOptions, messages: Messages) -> list[Output] | None:
+def _planned(
+    groups: tuple[FileGroup, ...], options: BuildOptions, messages: CommandOutput
+) -> list[MissionOutput] | None:
     """What is to be written; None: a message says why nothing is written."""
     empty = [path for group in groups for path in without_tree(group.workspace, group.given)]
     for path in empty:
         messages.remark(f"btq build: {shown(path)} has no tree to run")
     if empty and len(empty) == sum(len(group.given) for group in groups):
         return None
-    places = Places(absolute(options.output) if options.output else None, _sources(groups))
+    places = OutputPlaces(absolute(options.output) if options.output else None, _sources(groups))
     planned = [output for group in groups for output in _outputs(group, places, options)]
     number = sum(_remarks(output.done.export.problems, "error", groups, messages) for output in planned)
     clashes = [*_same_place(planned)]
@@ -152,16 +154,16 @@ def _planned(groups: tuple[Group, ...], options: BuildOptions, messages: Message
     return None if number or clashes else planned
 
 
-def _sources(groups: tuple[Group, ...]) -> tuple[str, ...]:
+def _sources(groups: tuple[FileGroup, ...]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(path for group in groups for path in sources(group.workspace, group.given)))
 
 
-def _stale(groups: tuple[Group, ...], options: BuildOptions) -> list[str]:
+def _stale(groups: tuple[FileGroup, ...], options: BuildOptions) -> list[str]:
     """What an earlier build left beside missions."""
     return [] if options.output else stale_outputs(os.path.dirname(path) for path in _sources(groups))
 
 
-def _outputs(group: Group, places: Places, options: BuildOptions) -> tuple[Output, ...]:
+def _outputs(group: FileGroup, places: OutputPlaces, options: BuildOptions) -> tuple[MissionOutput, ...]:
     return outputs(
         group.workspace,
         group.given,
@@ -172,7 +174,7 @@ def _outputs(group: Group, places: Places, options: BuildOptions) -> tuple[Outpu
     )
 
 
-def _has_errors(groups: tuple[Group, ...], options: BuildOptions, messages: Messages) -> bool:
+def _has_errors(groups: tuple[FileGroup, ...], options: BuildOptions, messages: CommandOutput) -> bool:
     """Whether errors prevent the build; they are results."""
     findings = [
         Finding(path, group.workspace.files[path].source, each)
@@ -193,7 +195,7 @@ def _has_errors(groups: tuple[Group, ...], options: BuildOptions, messages: Mess
     return True
 
 
-def _remarks(remarks: Collection[Remark], word: str, groups: tuple[Group, ...], messages: Messages) -> int:
+def _remarks(remarks: Collection[Remark], word: str, groups: tuple[FileGroup, ...], messages: CommandOutput) -> int:
     """Tell an export's remarks; returns how many."""
     for remark in remarks:
         file = next(group.workspace.files[remark.path] for group in groups if remark.path in group.workspace.files)
@@ -203,7 +205,9 @@ def _remarks(remarks: Collection[Remark], word: str, groups: tuple[Group, ...], 
     return len(remarks)
 
 
-def _clauses(planned: list[Enforcement], groups: tuple[Group, ...], is_verbose: bool, messages: Messages) -> None:
+def _clauses(
+    planned: list[Enforcement], groups: tuple[FileGroup, ...], is_verbose: bool, messages: CommandOutput
+) -> None:
     """Tell how the clauses of requirements are covered, with a line for each one demanded to be enforced that is not,
     or that has a remark.
     """
@@ -235,7 +239,7 @@ def _clauses(planned: list[Enforcement], groups: tuple[Group, ...], is_verbose: 
         messages.remark(f"clauses of requirements: {', '.join(counted)}")
 
 
-def _guesses(exports: list[Export], messages: Messages) -> None:
+def _guesses(exports: list[Export], messages: CommandOutput) -> None:
     """Tell which nodes got a guessed category in the models, because the mission does not declare it."""
     guessed = {name: category for each in exports for name, category in each.guessed.items()}
     shown = [f"{name} ({category})" for name, category in sorted(guessed.items())[:_GUESSES_SHOWN]]
@@ -246,14 +250,14 @@ def _guesses(exports: list[Export], messages: Messages) -> None:
         messages.remark(f"categories guessed from the use of the nodes: {', '.join(shown)}; {which}")
 
 
-def _absolute(place: Place, groups: tuple[Group, ...]) -> tuple[str, Span]:
+def _absolute(place: Place, groups: tuple[FileGroup, ...]) -> tuple[str, Span]:
     """The file of a place, and its span in that file."""
     assert place.path is not None, "a clause is part of a file"
     file = next(group.workspace.files[place.path] for group in groups if place.path in group.workspace.files)
     return place.path, file.span_of(place)
 
 
-def _same_place(planned: list[Output]) -> Iterator[str]:
+def _same_place(planned: list[MissionOutput]) -> Iterator[str]:
     """Messages for two files that would be written to one place: `a.btq` and `a.qualitybtcpp`."""
     known: dict[str, str] = {}
     for output in planned:
@@ -262,7 +266,7 @@ def _same_place(planned: list[Output]) -> Iterator[str]:
             yield f"{shown(other)} and {shown(output.path)} would both be written to {shown(output.place)}"
 
 
-def _targets(output: Output) -> Iterator[_Target]:
+def _targets(output: MissionOutput) -> Iterator[_Target]:
     """The XML of a mission and its side file; an outdated side file is removed."""
     yield _Target(output.place, output.text, _old_text(output.place))
     side = side_path(output.place)
@@ -276,7 +280,7 @@ def _old_text(path: str) -> str | None:
     return (read(path)[0] or "") if os.path.exists(path) else None
 
 
-def _compare(targets: list[_Target], options: BuildOptions, stale: list[str], messages: Messages) -> int:
+def _compare(targets: list[_Target], options: BuildOptions, stale: list[str], messages: CommandOutput) -> int:
     """`--check`: tell which files a build would change or remove."""
     for path in stale:
         messages.result(f"stale: {shown(path)}")
@@ -287,7 +291,7 @@ def _compare(targets: list[_Target], options: BuildOptions, stale: list[str], me
     return int(bool(outdated or stale))
 
 
-def _write(targets: list[_Target], options: BuildOptions, stale: list[str], messages: Messages) -> int:
+def _write(targets: list[_Target], options: BuildOptions, stale: list[str], messages: CommandOutput) -> int:
     """Write what has changed: all files, or none if one cannot be written."""
     for path in stale:
         messages.remark(f"stale: {shown(path)}")
@@ -307,7 +311,7 @@ def _write(targets: list[_Target], options: BuildOptions, stale: list[str], mess
     return 0
 
 
-def _put_all(targets: list[_Target], messages: Messages) -> bool:
+def _put_all(targets: list[_Target], messages: CommandOutput) -> bool:
     """Write or remove all files, or none if that fails for one."""
     for number, target in enumerate(targets):
         try:
@@ -337,7 +341,7 @@ def _is_foreign(text: str | None) -> bool:
     return text is not None and not is_generated(text) and not is_side_file(text)
 
 
-def _take_back(targets: list[_Target], messages: Messages) -> None:
+def _take_back(targets: list[_Target], messages: CommandOutput) -> None:
     """Restore the old contents of files, as far as possible."""
     for target in targets:
         try:

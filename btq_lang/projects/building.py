@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from btq_lang.btcpp.export import is_mission, xml_name
-from btq_lang.btcpp.outputs import Places, missions, outputs, sources, without_tree
+from btq_lang.btcpp.outputs import OutputPlaces, missions, outputs, sources, without_tree
 from btq_lang.btcpp.side_file import side_path
 from btq_lang.btcpp.source import Remark
 from btq_lang.checks import check
@@ -75,7 +75,7 @@ def build(
     problems += [Remark(each, Span(0, 0), "has no tree to run") for each in without_tree(workspace, (path,))]
     if problems:
         return Built({}, tuple(problems), ())
-    made = outputs(workspace, (path,), Places(), bundled=bundle, enforce=enforce)
+    made = outputs(workspace, (path,), OutputPlaces(), bundled=bundle, enforce=enforce)
     problems = [each for output in made for each in output.done.export.problems]
     if problems:
         return Built({}, tuple(problems), ())

@@ -17,19 +17,19 @@ from btq_lang.cpp.grammar import GrammarMissing
 from btq_lang.cpp.macros import Macro, Macros, macros_in
 from btq_lang.cpp.model import CppNode, CppNodes
 from btq_lang.cpp.nodes import nodes_of
-from btq_lang.cpp.source import Source
+from btq_lang.cpp.source import CppSource
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.parser import parse
 from btq_lang.projects.factory_files import cpp_in_folder
 from btq_lang.projects.node_writers import models_in_btq
 from btq_lang.syntax.tree import models_in
 from btq_lang.util.record import Record, replace
-from btq_lang.util.source_map import Places
+from btq_lang.util.source_map import OriginMap
 from btq_lang.util.text import LineIndex, Placed, Span
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.factories import Factory
 from btq_lang.workspace.file import CPP_SUFFIXES, File, Origin
-from btq_lang.workspace.loader import Found, LoadProblem, excluder, matching, read, shown
+from btq_lang.workspace.loader import FoundProject, LoadProblem, excluder, matching, read, shown
 from btq_lang.workspace.queries import Store, input_of
 from btq_lang.workspace.workspace import Workspace
 
@@ -40,7 +40,7 @@ _OF_FIELD = re.compile(r".*::_\w+_type").fullmatch
 MISSING = "C++ is read with tree-sitter; install it with pip install 'btq-lang[cpp]'"
 
 
-class Read(Record):
+class ProjectSources(Record):
     """A project with what was read from its C++ sources.
 
     Attributes:
@@ -66,7 +66,7 @@ class CppFiles:
         self._store: Store[dict[str, str]] = Store({})  # the texts, by path
         self._files: dict[str, File] = {}
 
-    def read(self, home: Found, factories: tuple[Factory, ...]) -> Read:
+    def read(self, home: FoundProject, factories: tuple[Factory, ...]) -> ProjectSources:
         """Read the sources that a project and its factories name."""
         project, problems = home.project, []
         own: dict[str, None] = {}
@@ -91,7 +91,7 @@ class CppFiles:
             node_files=(*project.node_files, *(path for path in own if path in files)),
             hides_nodes=nodes is None or any(each.hides_node for each in nodes.unseen),
         )
-        return Read(project, files, tuple(problems))
+        return ProjectSources(project, files, tuple(problems))
 
     def files(
         self, texts: Mapping[str, str], root: str = ".", distributions: tuple[str, ...] = DISTRIBUTIONS
@@ -161,7 +161,7 @@ def cpp_file(
     """A C++ source with the models of the nodes that it registers; it shares with the file before an edit what is the
     same."""
     models = models_in_btq(map(_certain, nodes.values()), f"the nodes that {path} registers") if nodes else ""
-    places = Places((), (), lambda *_: tuple(_pieces(models, path, text, nodes)))
+    places = OriginMap((), (), lambda *_: tuple(_pieces(models, path, text, nodes)))
     # Not complete: most of what is in the C++ is not in the models, and neither can be edited by the other.
     origin = Origin(text, places, diagnostics, is_complete=False, defines=frozenset(nodes), nodes=nodes)
     return File(path, models, origin) if before is None else before.edited(models, origin)
@@ -173,8 +173,8 @@ def _nodes(
     return nodes_of((store.ask(_source, path, macros) for path, macros in files), distributions)
 
 
-def _source(store: Store[dict[str, str]], path: str, macros: tuple[Macro, ...]) -> Source:
-    return Source(path, store.ask(_text, path), macros)
+def _source(store: Store[dict[str, str]], path: str, macros: tuple[Macro, ...]) -> CppSource:
+    return CppSource(path, store.ask(_text, path), macros)
 
 
 def _macros(store: Store[dict[str, str]], path: str) -> tuple[Macro, ...]:
@@ -225,7 +225,7 @@ def _span(start: int, part: Placed) -> Span:
     return Span(part.start, part.end).shifted(start)
 
 
-def _problem(home: Found, pattern: str, message: str) -> LoadProblem:
+def _problem(home: FoundProject, pattern: str, message: str) -> LoadProblem:
     """A problem of a pattern in the project file."""
     path = home.path or ""
     text = read(path)[0] or ""

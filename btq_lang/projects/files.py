@@ -14,7 +14,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.file import SUFFIXES, XML_SUFFIXES, File, is_xml
 from btq_lang.workspace.loader import (
-    Found,
+    FoundProject,
     LoadProblem,
     absolute,
     collect,
@@ -29,7 +29,7 @@ from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
     from btq_lang.diagnostics.model import Diagnostic
-    from btq_lang.projects.cpp_files import CppFiles, Read
+    from btq_lang.projects.cpp_files import CppFiles, ProjectSources
     from btq_lang.projects.nav2_factory import ParameterFile
     from btq_lang.projects.xml_below import XmlBelow
     from btq_lang.workspace.config import Project
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 STDIN = "-"
 
 
-class Group(Record):
+class FileGroup(Record):
     """The files of one project.
 
     Attributes:
@@ -84,7 +84,7 @@ def logs_of(project: Project) -> Sequence[str]:
     return paths
 
 
-def no_mission_below(paths: Iterable[str], groups: Iterable[Group], missing: str = "no .btq file") -> str | None:
+def no_mission_below(paths: Iterable[str], groups: Iterable[FileGroup], missing: str = "no .btq file") -> str | None:
     """The message if folders were requested and none contains a mission."""
     folders = [path.rstrip("/") + "/" for path in paths if os.path.isdir(path)]
     if not folders or any(group.given for group in groups):
@@ -119,7 +119,7 @@ class Files:
         self._of_stdin: LoadProblem | None = None
         self.folders: tuple[str, ...] = (absolute("."),)
         self._known: dict[str, File] = {}
-        self._sources: dict[str, Read] = {}  # the C++ of the last request, by the path of the project file
+        self._sources: dict[str, ProjectSources] = {}  # the C++ of the last request, by the path of the project file
 
     def groups(
         self,
@@ -128,7 +128,7 @@ class Files:
         *,
         with_xml: bool = False,
         for_checks: bool = False,
-    ) -> tuple[tuple[Group, ...], tuple[LoadProblem, ...]]:
+    ) -> tuple[tuple[FileGroup, ...], tuple[LoadProblem, ...]]:
         """The files that paths denote, by project and factory, and read errors.
 
         Each file belongs to the nearest project file above it, whatever the current folder, and to the factories that
@@ -141,19 +141,19 @@ class Files:
         """
         paths = tuple(paths)
         problems: list[LoadProblem] = []
-        projects: dict[str, Found] = {}
+        projects: dict[str, FoundProject] = {}
         self.parameter_files.clear()
         self._sources.clear()
-        governed: dict[str, Found] = {}
+        governed: dict[str, FoundProject] = {}
         members: dict[str, dict[str, str]] = {}  # each with the folder that was requested
 
-        def project_of(path: str) -> Found:
+        def project_of(path: str) -> FoundProject:
             folder = path if os.path.isdir(path) else os.path.dirname(path)
             if folder not in projects:
                 projects[folder] = find_project(folder, self.overlay)
             return projects[folder]
 
-        def governing(path: str) -> Found:
+        def governing(path: str) -> FoundProject:
             """The project of something that is requested, which must be right; others may be of no concern."""
             home = project_of(path)
             governed[home.path or ""] = home
@@ -178,11 +178,11 @@ class Files:
                 if file == path or not excluder(home.project)(file):
                     members.setdefault(home.path or "", {})[file] = path if file != path else os.path.dirname(path)
         by_path = {found.path or "": found.project for found in projects.values()}
-        groups: list[Group] = []
+        groups: list[FileGroup] = []
         folders = [f"{path.rstrip('/')}/" for path in map(absolute, paths) if os.path.isdir(path)]
         for key, files in members.items():
             found_groups, found_problems = self._groups_of(
-                files, Found(by_path[key], key or None), project_of, for_checks
+                files, FoundProject(by_path[key], key or None), project_of, for_checks
             )
             groups += (_with_cpp(group, folders) for group in found_groups)
             problems += found_problems
@@ -194,8 +194,8 @@ class Files:
         return tuple(groups), tuple(dict.fromkeys(problems))
 
     def _groups_of(
-        self, tops: Mapping[str, str], home: Found, project_of: Callable[[str], Found], for_checks: bool
-    ) -> tuple[list[Group], list[LoadProblem]]:
+        self, tops: Mapping[str, str], home: FoundProject, project_of: Callable[[str], FoundProject], for_checks: bool
+    ) -> tuple[list[FileGroup], list[LoadProblem]]:
         """The requested files of one project, by factory; `tops`: each with the folder in which it was requested."""
         factories, problems = self._declared(home)
         groot: tuple[Factory, ...] = ()
@@ -210,7 +210,7 @@ class Files:
         problems += unreadable
         lacking = [each for each in factories if not each.files]
         problems += [LoadProblem(home.path or "", f"the factory `{each.name}` loads no file") for each in lacking]
-        groups: list[Group] = []
+        groups: list[FileGroup] = []
         for some in (factories, groot):  # what the project file says comes first
             groups += _by_factory(group, some, for_checks)
             known = {path for each in groups for path in each.given}
@@ -226,14 +226,14 @@ class Files:
         text = self.overlay.get(path)
         return not path.endswith(SUFFIXES) if text is None else is_xml(path, text)
 
-    def _pools(self, tops: Mapping[str, str], home: Found) -> dict[str, tuple[str, ...]]:
+    def _pools(self, tops: Mapping[str, str], home: FoundProject) -> dict[str, tuple[str, ...]]:
         """The pools of XML files, each with all files in it that may be missions."""
         folders = {(os.path.dirname(path), top) for path, top in tops.items()}
         pools = {home.project.root} if home.path else {pool_of(*each) for each in folders}
         suffixes = (*SUFFIXES, *XML_SUFFIXES)
         return {pool: collect([pool], home.project, suffixes)[0] for pool in sorted(pools)}
 
-    def _declared(self, home: Found) -> tuple[tuple[Factory, ...], list[LoadProblem]]:
+    def _declared(self, home: FoundProject) -> tuple[tuple[Factory, ...], list[LoadProblem]]:
         """The factories of a project with their files and C++ sources."""
         factories, problems = self._factories(home)
         if home.project.cpp or any(each.cpp_files for each in factories):
@@ -242,7 +242,7 @@ class Files:
             problems += sources.problems
         return factories, problems
 
-    def _factories(self, home: Found) -> tuple[tuple[Factory, ...], list[LoadProblem]]:
+    def _factories(self, home: FoundProject) -> tuple[tuple[Factory, ...], list[LoadProblem]]:
         """The factories of a project with their files."""
         if not home.project.factories and not self.nav2_params:
             return (), []
@@ -258,11 +258,11 @@ class Files:
             if not found.nav2:
                 factories.append(found)
                 continue
-            from btq_lang.projects.nav2_factory import Sources, parameter_file  # few projects are for Nav2
+            from btq_lang.projects.nav2_factory import ParameterSources, parameter_file  # few projects are for Nav2
 
             senders = others if len(others) == len(every) - 1 else ()  # of several robots, it is not known to which
             of_factory = partial(self.workspace_of, home=home)
-            sources = Sources(self.overlay.get, self.xml.source_of, of_factory, senders)
+            sources = ParameterSources(self.overlay.get, self.xml.source_of, of_factory, senders)
             file, problem = parameter_file(found, home.project, home.path, sources)
             if problem is not None and file is None and home.path is not None:
                 problem = LoadProblem(home.path, f"`{found.nav2}` {problem.message}")  # where editors show it
@@ -273,7 +273,7 @@ class Files:
                 goals = file.goals if senders else ()
         return tuple(replace(each, goals=each.goals or goals) for each in factories), problems
 
-    def _requested_factories(self, home: Found) -> Iterator[Factory]:
+    def _requested_factories(self, home: FoundProject) -> Iterator[Factory]:
         """A factory for each requested parameter file that the project does not name."""
         from btq_lang.workspace.factories import Factory  # few projects have any
 
@@ -283,19 +283,19 @@ class Files:
             if path not in named:
                 yield Factory(os.path.basename(path), nav2=path)
 
-    def workspace_of(self, factory: Factory, home: Found) -> Workspace:
+    def workspace_of(self, factory: Factory, home: FoundProject) -> Workspace:
         """The workspace of all files of a factory, requested or not."""
         sources = self._sources.get(home.path or "")
         whole = sources.declared_in(factory) if sources is not None else factory
         return self._load((), home, (whole,))[0].workspace.of_factory(whole)
 
-    def workspace_of_nodes(self, home: Found) -> Workspace:
+    def workspace_of_nodes(self, home: FoundProject) -> Workspace:
         """The workspace of what a project of the last request declares of nodes, without missions."""
         return self._load((), home, ())[0].workspace
 
     def _with_pools(
-        self, group: Group, pools: Mapping[str, tuple[str, ...]], project_of: Callable[[str], Found]
-    ) -> Group:
+        self, group: FileGroup, pools: Mapping[str, tuple[str, ...]], project_of: Callable[[str], FoundProject]
+    ) -> FileGroup:
         """The group with the files of its pools that define what its XML lacks."""
         workspace = group.workspace
         project = replace(workspace.project, pools=tuple(pools))
@@ -341,8 +341,8 @@ class Files:
         return self.stdin
 
     def _load(
-        self, paths: tuple[str, ...], home: Found, factories: Iterable[Factory]
-    ) -> tuple[Group, list[LoadProblem]]:
+        self, paths: tuple[str, ...], home: FoundProject, factories: Iterable[Factory]
+    ) -> tuple[FileGroup, list[LoadProblem]]:
         """The requested files of a project, with those of its factories and all that they include."""
         sources = self._sources.get(home.path or "")
         project, cpp = (home.project, {}) if sources is None else (sources.project, sources.files)
@@ -362,7 +362,7 @@ class Files:
         if self._of_stdin is not None:
             damaged += tuple(path for path in given if path == self.stdin)
         project = replace(project, folders=self.folders)
-        group = Group(Workspace(files, project), given, damaged, loaded.absent, home.path)
+        group = FileGroup(Workspace(files, project), given, damaged, loaded.absent, home.path)
         return group, list(loaded.problems)
 
     def _file(self, path: str, text: str) -> File:
@@ -372,7 +372,7 @@ class Files:
         return known
 
 
-def _by_factory(group: Group, factories: Iterable[Factory], in_each: bool) -> Iterator[Group]:
+def _by_factory(group: FileGroup, factories: Iterable[Factory], in_each: bool) -> Iterator[FileGroup]:
     """The requested files of a project that its factories register, a group for each factory that has any; a file that
     several register belongs to the first, or `in_each` to each."""
     taken: set[str] = set()
@@ -386,14 +386,14 @@ def _by_factory(group: Group, factories: Iterable[Factory], in_each: bool) -> It
             taken.update(() if in_each else given)
 
 
-def _with_cpp(group: Group, folders: Iterable[str]) -> Group:
+def _with_cpp(group: FileGroup, folders: Iterable[str]) -> FileGroup:
     """The group with its C++ sources below some folders."""
     files = group.workspace.files
     cpp = tuple(path for path in files if files[path].is_cpp and path.startswith(tuple(folders)))
     return replace(group, cpp=cpp) if cpp else group
 
 
-def _with_created(group: Group, pools: Iterable[str]) -> Group:
+def _with_created(group: FileGroup, pools: Iterable[str]) -> FileGroup:
     """The group with the main trees that C++ of its pools creates."""
     if all(len(group.workspace.files[path].names.by_kind[Kind.TREE]) < 2 for path in group.given):
         return group

@@ -113,9 +113,9 @@ class Commit:
 
     def _of_nav2(self, factory: Factory, project: Project) -> Iterator[Factory]:
         """The factories that a parameter file of Nav2 describes, with the files that are in its folders today."""
-        from btq_lang.projects.nav2_factory import Sources, parameter_file  # few projects are for Nav2
+        from btq_lang.projects.nav2_factory import ParameterSources, parameter_file  # few projects are for Nav2
 
-        sources = Sources(self.text, self.source_of, partial(self._of_factory, project))
+        sources = ParameterSources(self.text, self.source_of, partial(self._of_factory, project))
         file, _ = parameter_file(factory, project, None, sources)
         yield from file.distinct if file is not None else ()
 

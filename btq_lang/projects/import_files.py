@@ -16,16 +16,16 @@ from btq_lang.btcpp.importing import Imported, import_xml
 from btq_lang.btcpp.logged import as_written
 from btq_lang.btcpp.manual_edits import ADVICE
 from btq_lang.btcpp.side_file import side_path
-from btq_lang.btcpp.version3 import Change
+from btq_lang.btcpp.version3 import VersionNote
 from btq_lang.checks.engines import declared_engines
 from btq_lang.evidence.readers import SUFFIXES as LOGS
 from btq_lang.evidence.readers import NotALog, trees
 from btq_lang.evidence.readers.bag import files_in
 from btq_lang.projects.files import STDIN, Files
-from btq_lang.projects.messages import Messages
+from btq_lang.projects.messages import CommandOutput
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.util.record import Record, replace
-from btq_lang.util.source_map import Places
+from btq_lang.util.source_map import OriginMap
 from btq_lang.util.text import LineIndex, counted
 from btq_lang.workspace.config import include_candidates
 from btq_lang.workspace.file import SUFFIXES
@@ -64,7 +64,7 @@ class ImportResult(Record):
     """
 
     code: int
-    messages: Messages
+    messages: CommandOutput
     missions: tuple[str, ...]
 
 
@@ -90,7 +90,7 @@ def import_files(options: ImportOptions, overlay: Mapping[str, str] | None = Non
     Args:
         overlay: the texts of project files that are not on the disk yet, by path.
     """
-    messages = Messages()
+    messages = CommandOutput()
     problems: list[LoadProblem] = []
     targets = {absolute(path): _target(path, options) for path in options.files if path != STDIN}
     possible = (_job(path, targets, options, problems, overlay or {}) for path in options.files)
@@ -185,7 +185,7 @@ def _of_log(path: str, target: str, options: ImportOptions, problems: list[LoadP
         problems.append(LoadProblem(path, "not imported: it has no tree"))
         return None
     xml = write(as_written(logged[-1].xml))
-    imported = Imported(xml, (), (), Places()) if options.is_xml else import_xml(xml, options.keeps_v3)
+    imported = Imported(xml, (), (), OriginMap()) if options.is_xml else import_xml(xml, options.keeps_v3)
     number = len({write(as_written(tree.xml)) for tree in logged})
     return _Job(
         path, xml, imported, target, losses=(f"it has {number} trees, of which the last is imported",) * (number > 1)
@@ -217,7 +217,7 @@ def _with_side_file(job: _Job, target: str, force: bool, problems: list[LoadProb
         for lost in mission.lost
     )
     manual_edits = (
-        Change(each.span, f"`{each.guard}` was {each.happened} by hand: {ADVICE}") for each in mission.manual_edits
+        VersionNote(each.span, f"`{each.guard}` was {each.happened} by hand: {ADVICE}") for each in mission.manual_edits
     )
     changes = (*manual_edits, *job.done.changes)
     return replace(job, done=replace(job.done, text=format_text(mission.text).text, changes=changes), losses=losses)
@@ -248,7 +248,7 @@ def _clashes(job: _Job, jobs: Iterable[_Job], force: bool, problems: list[LoadPr
     return False
 
 
-def _write(job: _Job, problems: list[LoadProblem], messages: Messages) -> bool:
+def _write(job: _Job, problems: list[LoadProblem], messages: CommandOutput) -> bool:
     if job.target is None:
         messages.result(job.done.text.removesuffix("\n"))
         return True
@@ -262,7 +262,7 @@ def _write(job: _Job, problems: list[LoadProblem], messages: Messages) -> bool:
     return True
 
 
-def _add_findings(jobs: Iterable[_Job], options: ImportOptions, messages: Messages) -> None:
+def _add_findings(jobs: Iterable[_Job], options: ImportOptions, messages: CommandOutput) -> None:
     """Tell the diagnostics of the XML, with its lines."""
     findings = [Finding(job.path, job.xml, each) for job in jobs for each in job.done.diagnostics]
     if not findings:
@@ -271,7 +271,7 @@ def _add_findings(jobs: Iterable[_Job], options: ImportOptions, messages: Messag
     messages.remark("".join(render("full", report, colour=options.is_coloured)).removesuffix("\n"))
 
 
-def _add_changes(job: _Job, messages: Messages) -> None:
+def _add_changes(job: _Job, messages: CommandOutput) -> None:
     """Tell what is lost, and where the new file differs from the XML, a line each."""
     for loss in job.losses:
         messages.remark(f"{shown(job.path)}: {loss}")
@@ -281,7 +281,7 @@ def _add_changes(job: _Job, messages: Messages) -> None:
         messages.remark(f"{shown(job.path)}:{line + 1}:{column + 1}: {change.message}")
 
 
-def _sum_up(written: list[_Job], refused: int, messages: Messages) -> None:
+def _sum_up(written: list[_Job], refused: int, messages: CommandOutput) -> None:
     changes = sum(len(job.done.changes) for job in written)
     with_changes = f" with {counted(changes, 'change')}" if changes else ""
     others = sum(len(job.others) for job in written)

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from btq_lang.workspace.loader import LoadProblem
 
 
-class Messages:
+class CommandOutput:
     """Lines in the order in which they are shown.
 
     Attributes:

@@ -6,11 +6,11 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.nav2 import PACKAGED
-from btq_lang.projects.files import Group
+from btq_lang.projects.files import FileGroup
 from btq_lang.projects.nav2_factory import ParameterFile, findings_of, in_distribution
 from btq_lang.render import Finding
 from btq_lang.util.record import replace
-from btq_lang.workspace.loader import Found, absolute, excluder, read
+from btq_lang.workspace.loader import FoundProject, absolute, excluder, read
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -44,9 +44,9 @@ def requested(files: Files, options: CheckOptions) -> tuple[ParameterFile, ...]:
     return found
 
 
-def as_groups(found: Iterable[ParameterFile]) -> tuple[Group, ...]:
+def as_groups(found: Iterable[ParameterFile]) -> tuple[FileGroup, ...]:
     """Parameter files as groups without any tree, for what looks at the paths of groups."""
-    return tuple(Group(Workspace({}, each.project), (each.path,), (), (), each.project_file) for each in found)
+    return tuple(FileGroup(Workspace({}, each.project), (each.path,), (), (), each.project_file) for each in found)
 
 
 def nav2_findings(
@@ -67,9 +67,9 @@ def nav2_findings(
     texts: dict[str, str] = {}
     for file in found:
         texts[file.path] = file.text
-        home = Found(file.project, file.project_file)
+        home = FoundProject(file.project, file.project_file)
 
-        def workspace_of(factory: Factory, home: Found = home) -> Workspace:
+        def workspace_of(factory: Factory, home: FoundProject = home) -> Workspace:
             workspace = files.workspace_of(factory, home)
             texts.update((path, each.source) for path, each in workspace.files.items())
             return workspace

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.nav2 import FILES, distribution_among
 from btq_lang.diagnostics.model import Diagnostic, Place
-from btq_lang.nav2.findings import Loaded, findings, wrong_goals
+from btq_lang.nav2.findings import NavigatorTree, findings, wrong_goals
 from btq_lang.nav2.loaded import Load, Loads, goals_in
 from btq_lang.nav2.names import distribution_unknown, file_findings
 from btq_lang.nav2.parameters import Parameters, read_parameters
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     _Finding: TypeAlias = tuple[str | None, Diagnostic]  # None: in the parameter file
 
 
-class Sources(Record):
+class ParameterSources(Record):
     """Where parameter files and what they name are read.
 
     Attributes:
@@ -67,7 +67,7 @@ class ParameterFile(Record):
     project: Project
     project_file: str | None
     factory: Factory
-    sources: Sources
+    sources: ParameterSources
     parameters: Parameters | None
     distribution: str | None
     factories: tuple[tuple[Load, Factory], ...] = ()
@@ -110,7 +110,7 @@ class ParameterFile(Record):
 
 
 def parameter_file(
-    factory: Factory, project: Project, project_file: str | None, sources: Sources
+    factory: Factory, project: Project, project_file: str | None, sources: ParameterSources
 ) -> tuple[ParameterFile | None, LoadProblem | None]:
     """The parameter file of a factory, or why it could not be read; the files of the factory are those that
     goals name."""
@@ -218,5 +218,5 @@ def _found(file: ParameterFile, workspace_of: Callable[[Factory], Workspace]) ->
         yield from findings(file.parameters, file.distribution, _loaded(file, workspace_of))
 
 
-def _loaded(file: ParameterFile, workspace_of: Callable[[Factory], Workspace]) -> list[Loaded]:
-    return [Loaded(load, workspace_of(factory)) for load, factory in file.factories]
+def _loaded(file: ParameterFile, workspace_of: Callable[[Factory], Workspace]) -> list[NavigatorTree]:
+    return [NavigatorTree(load, workspace_of(factory)) for load, factory in file.factories]

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Final
 
-from btq_lang.btcpp.document import Attribute, Comment, Document, Element, Text, escape, write
+from btq_lang.btcpp.document import Attribute, Document, Element, XmlComment, XmlText, escape, write
 from btq_lang.btcpp.importing import import_xml
 from btq_lang.catalog.kinds import CATEGORIES
 from btq_lang.cpp.model import CppNode, CppNodes, CppPort
@@ -32,7 +32,7 @@ def models_in_btq(nodes: Iterable[CppNode], headline: str, texts: Mapping[str, s
 def as_xml(nodes: Iterable[CppNode], sources: str) -> str:
     """The models as XML."""
     root = Element("root", [Attribute("BTCPP_format", "4")], [Element("TreeNodesModel", (), _models(nodes, {}))])
-    return write(Document([Comment(f" {_headline(sources)} "), root]))
+    return write(Document([XmlComment(f" {_headline(sources)} "), root]))
 
 
 def _headline(sources: str) -> str:
@@ -44,18 +44,18 @@ def _with_optional_inputs(node: CppNode) -> CppNode:
     return replace(node, ports=ports)
 
 
-def _models(nodes: Iterable[CppNode], texts: Mapping[str, str]) -> Iterator[Comment | Element]:
+def _models(nodes: Iterable[CppNode], texts: Mapping[str, str]) -> Iterator[XmlComment | Element]:
     for node in nodes:
         if not node.complete:
-            yield Comment(f" it cannot be seen whether {node.name} has more ports ")
-        text = [Element("description", (), [Text(texts[node.name])])] if node.name in texts else []
+            yield XmlComment(f" it cannot be seen whether {node.name} has more ports ")
+        text = [Element("description", (), [XmlText(texts[node.name])])] if node.name in texts else []
         yield Element(node.category, [Attribute("ID", escape(node.name))], [*text, *map(_port, node.ports)])
 
 
 def _port(port: CppPort) -> Element:
     said = (("name", port.name), ("type", port.type or None), ("default", port.default))
     attributes = [Attribute(key, escape(value)) for key, value in said if value is not None]
-    return Element(f"{port.direction}_port", attributes, [Text(port.text)] if port.text.strip() else [])
+    return Element(f"{port.direction}_port", attributes, [XmlText(port.text)] if port.text.strip() else [])
 
 
 def as_html(found: CppNodes, sources: str) -> str:

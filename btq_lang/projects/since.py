@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator
 
 from btq_lang.btcpp.recognition import defined_in
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.projects.files import Group
+from btq_lang.projects.files import FileGroup
 from btq_lang.projects.git import GitTrouble, Revisions, revisions
 from btq_lang.util.record import replace
 from btq_lang.workspace.config import include_candidates
@@ -22,7 +22,7 @@ from btq_lang.workspace.file import SUFFIXES, XML_SUFFIXES
 from btq_lang.workspace.workspace import Workspace
 
 
-def affected(groups: Iterable[Group], revision: str) -> tuple[Group, ...]:
+def affected(groups: Iterable[FileGroup], revision: str) -> tuple[FileGroup, ...]:
     """The groups with only those requested files that a change since a revision concerns.
 
     Raises:
@@ -31,7 +31,7 @@ def affected(groups: Iterable[Group], revision: str) -> tuple[Group, ...]:
     if ".." in revision:
         raise GitTrouble(f"expected one revision, which the files are compared with, not `{revision}`")
     of_folder: dict[str, tuple[Revisions, frozenset[str]]] = {}
-    done: list[Group] = []
+    done: list[FileGroup] = []
     for group in groups:
         for path in group.given[:1]:
             folder = posixpath.dirname(path)

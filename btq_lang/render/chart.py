@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     Kind: TypeAlias = Literal["bars", "line", "dots"]
 
 
-class Series(Record):
+class ChartSeries(Record):
     """Values in the places of a chart.
 
     Attributes:
@@ -37,7 +37,7 @@ class Level(Record):
     value: float
 
 
-class Mark(Record):
+class ChartMark(Record):
     """A dotted line at the left edge of a place, or within one, where something begins."""
 
     place: float
@@ -58,11 +58,11 @@ class Chart(Record):
     kind: str
     label: str
     size: tuple[int, int]
-    series: tuple[Series, ...]
+    series: tuple[ChartSeries, ...]
     ticks: tuple[tuple[float, str], ...]
     ends: tuple[str, str]
     levels: tuple[Level, ...] = ()
-    marks: tuple[Mark, ...] = ()
+    marks: tuple[ChartMark, ...] = ()
 
 
 def drawn(chart: Chart) -> str:
@@ -104,18 +104,18 @@ class _Frame:
         if last != first:
             yield f'<text class="last" x="{self._right:g}" y="{chart.size[1] - 3}">{escape(last)}</text>'
 
-    def bars(self, series: Series) -> Iterator[str]:
+    def bars(self, series: ChartSeries) -> Iterator[str]:
         base = self._y(max(self._low, 0.0))
         for x, value, title in self._known(series):
             high = max(base - self._y(value), 1.0)
             at = f'x="{x - self._step * 0.4:.1f}" y="{base - high:.1f}" width="{self._step * 0.8:.1f}"'
             yield f'<rect {at} height="{high:.1f}"><title>{escape(title)}</title></rect>'
 
-    def line(self, series: Series) -> Iterator[str]:
+    def line(self, series: ChartSeries) -> Iterator[str]:
         points = "L".join(f"{x:.1f} {self._y(value):g}" for x, value, _ in self._known(series))
         yield f'<path class="line" d="M{points}"/>'
 
-    def dots(self, series: Series) -> Iterator[str]:
+    def dots(self, series: ChartSeries) -> Iterator[str]:
         for x, value, title in self._known(series):
             yield f'<circle cx="{x:.1f}" cy="{self._y(value):g}" r="2.5"><title>{escape(title)}</title></circle>'
 
@@ -140,7 +140,7 @@ class _Frame:
                 yield f'<text x="{x + _NEAR:g}" y="{_SIZE - 1}">{escape(mark.text)}</text>'
                 free = x + 2 * _NEAR + width(mark.text, _SIZE)
 
-    def _known(self, series: Series) -> Iterator[tuple[float, float, str]]:
+    def _known(self, series: ChartSeries) -> Iterator[tuple[float, float, str]]:
         """The middle of each place that has a value, that value and its title."""
         for place, (value, title) in enumerate(zip(series.values, series.titles, strict=True)):
             if value is not None:
@@ -151,7 +151,7 @@ class _Frame:
         return round(self._ground - share * (self._ground - self._top), 1)
 
 
-_DRAWN: Final[dict[Kind, Callable[[_Frame, Series], Iterator[str]]]] = {
+_DRAWN: Final[dict[Kind, Callable[[_Frame, ChartSeries], Iterator[str]]]] = {
     "bars": _Frame.bars,
     "line": _Frame.line,
     "dots": _Frame.dots,

@@ -10,21 +10,21 @@ from itertools import pairwise
 
 from btq_lang.diagnostics.model import Fix
 from btq_lang.render.cells import cut, printable
-from btq_lang.render.frame import Row
+from btq_lang.render.frame import FrameRow
 from btq_lang.render.report import Finding, Report, clamped, line_index, text_of
 from btq_lang.util.text import Edit, LineIndex, Position, alike, apply_edits
 
 _MOST = 12
 
 
-def fix_diff(report: Report, finding: Finding, fix: Fix, room: int) -> list[Row]:
+def fix_diff(report: Report, finding: Finding, fix: Fix, room: int) -> list[FrameRow]:
     """The lines that a fix removes and adds; empty for a single replacement of exactly the marked span."""
     if _title_says_it(finding, fix):
         return []
-    rows: list[Row] = []
+    rows: list[FrameRow] = []
     for path in dict.fromkeys(change.place.path or finding.path for change in fix.changes):
         if path != finding.path:
-            rows.append(Row(None, printable(path), ":::"))
+            rows.append(FrameRow(None, printable(path), ":::"))
         text = text_of(report, finding, path)
         if text is None:
             continue
@@ -34,7 +34,7 @@ def fix_diff(report: Report, finding: Finding, fix: Fix, room: int) -> list[Row]
             return []  # such a fix cannot be applied, so there is nothing to show
         rows += _hunks(text, edits, room)
     if len(rows) > _MOST:
-        rows[_MOST - 1 :] = [Row(None, f"... {len(rows) - _MOST + 1} more lines")]
+        rows[_MOST - 1 :] = [FrameRow(None, f"... {len(rows) - _MOST + 1} more lines")]
     return rows
 
 
@@ -50,9 +50,9 @@ def _title_says_it(finding: Finding, fix: Fix) -> bool:
     )
 
 
-def _hunks(text: str, edits: list[Edit], room: int) -> list[Row]:
+def _hunks(text: str, edits: list[Edit], room: int) -> list[FrameRow]:
     lines = line_index(text)
-    rows: list[Row] = []
+    rows: list[FrameRow] = []
     shift = 0  # how many lines earlier hunks have added
     hunk: list[Edit] = []
     for edit, following in zip(edits, [*edits[1:], None], strict=True):
@@ -83,5 +83,5 @@ def _lines(text: str) -> list[str]:
     return [lines.line(number) for number in range(lines.line_count)]
 
 
-def _rows(lines: list[str], number: int, bar: str, room: int) -> list[Row]:
-    return [Row(number + at, cut(line, 0, room), bar) for at, line in enumerate(lines)]
+def _rows(lines: list[str], number: int, bar: str, room: int) -> list[FrameRow]:
+    return [FrameRow(number + at, cut(line, 0, room), bar) for at, line in enumerate(lines)]

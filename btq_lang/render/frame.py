@@ -19,7 +19,7 @@ _HEAD, _TAIL = 4, 2  # lines of a long span that are shown at its start and its 
 _MARGIN = "  "  # where the line along a span over several lines is drawn
 
 
-class Row(Record):
+class FrameRow(Record):
     """One line of a block: number, bar and body of `12 | body`.
 
     Attributes:
@@ -32,7 +32,7 @@ class Row(Record):
     bar: str = "|"
 
 
-def frame(text: str, span: Span, *, mark: str, room: int, paint: Callable[[str], str]) -> list[Row]:
+def frame(text: str, span: Span, *, mark: str, room: int, paint: Callable[[str], str]) -> list[FrameRow]:
     """The rows that show a span.
 
     Args:
@@ -79,37 +79,37 @@ def _view(lines: LineIndex, start: Position, columns: int, room: int) -> _View:
     return _View(lines, max(0, min(first - (room - min(last - first, room)) // 2, total - room)), room)
 
 
-def _single(view: _View, start: Position, end: Position, mark: str, paint: Callable[[str], str]) -> list[Row]:
+def _single(view: _View, start: Position, end: Position, mark: str, paint: Callable[[str], str]) -> list[FrameRow]:
     first, last = view.cell(start), view.cell(end)
     if first == last and first > 0 and start < end:
         first -= 1  # a combining character is drawn in the cell before
     marks = mark * max(1, min(last, view.room + 1) - first)
-    return [Row(start.line + 1, view.line(start.line)), Row(None, " " * first + paint(marks))]
+    return [FrameRow(start.line + 1, view.line(start.line)), FrameRow(None, " " * first + paint(marks))]
 
 
-def _several(view: _View, start: Position, end: Position, mark: str, paint: Callable[[str], str]) -> list[Row]:
+def _several(view: _View, start: Position, end: Position, mark: str, paint: Callable[[str], str]) -> list[FrameRow]:
     """A span over several lines, as rustc draws it: `/` or `____^` where it begins, `|____^` where it ends."""
     if _line(view.lines, start.line)[: start.column].strip():
         rows = [
-            Row(start.line + 1, _MARGIN + view.line(start.line)),
-            Row(None, " " + paint("_" * (1 + view.cell(start)) + mark)),
+            FrameRow(start.line + 1, _MARGIN + view.line(start.line)),
+            FrameRow(None, " " + paint("_" * (1 + view.cell(start)) + mark)),
         ]
     else:
-        rows = [Row(start.line + 1, f"{paint('/')} {view.line(start.line)}")]
+        rows = [FrameRow(start.line + 1, f"{paint('/')} {view.line(start.line)}")]
     skipped = range(start.line + _HEAD, end.line - _TAIL + 1)
     if len(skipped) < 2:
         skipped = range(0)
     for number in range(start.line + 1, end.line + 1):
         if number not in skipped:
-            rows.append(Row(number + 1, f"{paint('|')} {view.line(number)}"))
+            rows.append(FrameRow(number + 1, f"{paint('|')} {view.line(number)}"))
         elif number == skipped.start:
-            rows.append(Row(None, f"{paint('|')} ..."))
+            rows.append(FrameRow(None, f"{paint('|')} ..."))
     last = view.cell(Position(end.line, end.column - 1))
-    return [*rows, Row(None, paint("|" + "_" * (1 + max(0, min(last, view.room))) + mark))]
+    return [*rows, FrameRow(None, paint("|" + "_" * (1 + max(0, min(last, view.room))) + mark))]
 
 
-def _context(view: _View, numbers: range, margin: str) -> list[Row]:
-    return [Row(number + 1, margin + view.line(number)) for number in numbers if _line(view.lines, number).strip()]
+def _context(view: _View, numbers: range, margin: str) -> list[FrameRow]:
+    return [FrameRow(number + 1, margin + view.line(number)) for number in numbers if _line(view.lines, number).strip()]
 
 
 @lru_cache(16)  # as for `laid_out`; the hash of a line is computed once

@@ -18,7 +18,7 @@ from collections.abc import Iterator
 from btq_lang.diagnostics.model import Place
 from btq_lang.render.cells import printable
 from btq_lang.render.colour import Paint, painter
-from btq_lang.render.frame import Row, frame
+from btq_lang.render.frame import FrameRow, frame
 from btq_lang.render.report import Finding, Report, line_index, location, text_of
 from btq_lang.render.summary import last_line
 
@@ -44,21 +44,21 @@ def _header(finding: Finding, paint: Paint) -> str:
     return title + paint("message", f": {printable(finding.diagnostic.message)}") + "\n"
 
 
-def _rows(report: Report, finding: Finding, width: int, paint: Paint) -> Iterator[Row]:
+def _rows(report: Report, finding: Finding, width: int, paint: Paint) -> Iterator[FrameRow]:
     diagnostic = finding.diagnostic
     # To the left of a line are its number and ` | `; a cut line has a sign on each side.
     room = max(_LEAST_ROOM, width - len(str(line_index(finding.text).line_count)) - 5)
     severity = diagnostic.effective_severity.value
     yield from _place(report, finding, None, "^", severity, room, paint)
     if diagnostic.notes or diagnostic.related or diagnostic.fixes:
-        yield Row(None, "")
+        yield FrameRow(None, "")
     for note in diagnostic.notes:
         yield from _remark("note", note)
     for related in diagnostic.related:
-        yield Row(None, printable(related.message), "note:")
+        yield FrameRow(None, printable(related.message), "note:")
         yield from _place(report, finding, related.place, "-", "gutter", room, paint)
     if diagnostic.related and diagnostic.fixes:
-        yield Row(None, "")
+        yield FrameRow(None, "")
     for fix in diagnostic.fixes:
         yield from _remark("help", fix.title + (" (--fix)" if fix.safe else ""))
         from btq_lang.render.fix_diff import fix_diff  # most findings have no fix
@@ -68,27 +68,27 @@ def _rows(report: Report, finding: Finding, width: int, paint: Paint) -> Iterato
 
 def _place(
     report: Report, finding: Finding, place: Place | None, mark: str, style: str, room: int, paint: Paint
-) -> Iterator[Row]:
+) -> Iterator[FrameRow]:
     at = location(report, finding, place)
     text = text_of(report, finding, at.path)
     if text is None:
-        yield Row(None, printable(at.path), "-->")
+        yield FrameRow(None, printable(at.path), "-->")
         return
-    yield Row(None, f"{printable(at.path)}:{at.line}:{at.column}", "-->")
-    yield Row(None, "")
+    yield FrameRow(None, f"{printable(at.path)}:{at.line}:{at.column}", "-->")
+    yield FrameRow(None, "")
     span = finding.diagnostic.span if place is None else place.span
     yield from frame(text, span, mark=mark, room=room, paint=lambda marks: paint(style, marks))
 
 
-def _remark(kind: str, text: str) -> Iterator[Row]:
+def _remark(kind: str, text: str) -> Iterator[FrameRow]:
     """A note or a help; further lines are aligned with its first."""
     first, *others = text.split("\n")
-    yield Row(None, f"{kind}: {printable(first)}", "=")
+    yield FrameRow(None, f"{kind}: {printable(first)}", "=")
     for line in others:
-        yield Row(None, " " * (len(kind) + 2) + printable(line), " ")
+        yield FrameRow(None, " " * (len(kind) + 2) + printable(line), " ")
 
 
-def _line(row: Row, gutter: int, paint: Paint) -> str:
+def _line(row: FrameRow, gutter: int, paint: Paint) -> str:
     """The printed form of a row; `note:` begins a part of its own at the left edge, `-->` points out of the gutter."""
     if row.bar == "note:":
         return paint("message", "note") + f": {row.body}\n"

@@ -46,7 +46,9 @@ class Attached(Record):
 # ---- what an item attaches ----
 
 
-def uses_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> tuple[tuple[model.Use, ...], Problems]:
+def uses_in(
+    store: Store[Workspace], viewpoint: str, path: str, facts: Facts
+) -> tuple[tuple[model.Attachment, ...], Problems]:
     """What a tree or an `apply` attaches to which nodes, and what is wrong with that."""
     reader = Reader(store, viewpoint, path, facts)
     item = facts.item
@@ -68,7 +70,7 @@ def attached_names(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
 
 def applied_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> Attached:
     """What applies to nodes of a tree, in the order of the requirements; a span by the node that it begins at."""
-    by_name: dict[str, tuple[list[model.Applied], list[model.Use]]] = {}
+    by_name: dict[str, tuple[list[model.Applied], list[model.Attachment]]] = {}
     for applied in store.ask(_claimed_in, viewpoint, facts):
         by_name.setdefault(applied.requirement.name, ([], []))[0].append(applied)
     for use in uses_of_nodes(store, viewpoint, path, facts):
@@ -90,7 +92,7 @@ def applied_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts)
     return Attached(tuple(found), tuple(traces), tuple(problems))
 
 
-def attached_by(store: Store[Workspace], viewpoint: str, name: str, uses: Sequence[model.Use]) -> Attached:
+def attached_by(store: Store[Workspace], viewpoint: str, name: str, uses: Sequence[model.Attachment]) -> Attached:
     """What a requirement applies to by some of its attachments: all of those to certain nodes."""
     of_name, _ = store.ask(requirement, viewpoint, name)
     if not uses or of_name is None:
@@ -104,7 +106,7 @@ def attached_by(store: Store[Workspace], viewpoint: str, name: str, uses: Sequen
     return Attached(tuple(applied), problems=problems)
 
 
-def uses_of_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> Iterable[model.Use]:
+def uses_of_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> Iterable[model.Attachment]:
     """The attachments to nodes of a tree, in the order of the items that make them."""
     own, _ = store.ask(uses_in, viewpoint, path, facts)
     given = store.ask(_given_to, viewpoint, facts) if store.ask(inputs.applies, viewpoint) else ()
@@ -114,12 +116,12 @@ def uses_of_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Fac
     return sorted((*own, *given), key=lambda use: order[id(use.place.anchor)])
 
 
-def _given_to(store: Store[Workspace], viewpoint: str, facts: Facts) -> tuple[model.Use, ...]:
+def _given_to(store: Store[Workspace], viewpoint: str, facts: Facts) -> tuple[model.Attachment, ...]:
     """What `apply` items attach to nodes of a tree."""
     return store.ask(_given, viewpoint).get(facts, ())
 
 
-def _given(store: Store[Workspace], viewpoint: str) -> dict[Facts, tuple[model.Use, ...]]:
+def _given(store: Store[Workspace], viewpoint: str) -> dict[Facts, tuple[model.Attachment, ...]]:
     uses = [use for each in store.ask(inputs.applies, viewpoint) for use in store.ask(uses_in, viewpoint, *each)[0]]
     return _by_tree((use.target.node.facts, use) for use in uses)
 
@@ -159,8 +161,8 @@ def _by_tree(found: Iterable[tuple[Facts, T]]) -> dict[Facts, tuple[T, ...]]:
 
 def _home(applied: model.Applied) -> Facts | None:
     """The tree that a subject is in, or that a span begins in."""
-    subject = applied.subject.first.subject if isinstance(applied.subject, model.Span) else applied.subject
-    node = subject.node if isinstance(subject, model.Target | model.Mission) else None
+    subject = applied.subject.first.subject if isinstance(applied.subject, model.Interval) else applied.subject
+    node = subject.node if isinstance(subject, model.NodeTarget | model.MissionRun) else None
     return node.facts if node is not None else None
 
 
@@ -175,10 +177,10 @@ def _order(store: Store[Workspace], viewpoint: str) -> dict[str, int]:
 def _with(
     store: Store[Workspace],
     viewpoint: str,
-    of_name: model.Requirement,
+    of_name: model.ResolvedRequirement,
     which: tuple[int, ...],
-    arguments: tuple[model.Argument, ...],
-) -> model.Requirement:
+    arguments: tuple[model.ResolvedArgument, ...],
+) -> model.ResolvedRequirement:
     """A requirement with some of its claims, and with arguments in place of its parameters; cached, for most nodes get
     the same one."""
     if not arguments and len(which) == len(of_name.claims):
@@ -187,18 +189,22 @@ def _with(
 
 
 def _filled(
-    store: Store[Workspace], viewpoint: str, name: str, which: tuple[int, ...], arguments: tuple[model.Argument, ...]
-) -> model.Requirement:
+    store: Store[Workspace],
+    viewpoint: str,
+    name: str,
+    which: tuple[int, ...],
+    arguments: tuple[model.ResolvedArgument, ...],
+) -> model.ResolvedRequirement:
     of_name, _ = store.ask(requirement, viewpoint, name)
     assert of_name is not None, "whoever asks has seen it"
     claims = tuple([of_name.claims[at] for at in which if at < len(of_name.claims)])
     filled = _filled_part(replace(of_name, claims=claims), {each.name: each.value for each in arguments})
-    assert isinstance(filled, model.Requirement), "a part is filled with a part of its kind"
+    assert isinstance(filled, model.ResolvedRequirement), "a part is filled with a part of its kind"
     return replace(filled, parameters=of_name.parameters)
 
 
 def _filled_part(part: object, values: dict[str, model.Bounded]) -> object:
-    if isinstance(part, model.Parameter):
+    if isinstance(part, model.ResolvedParameter):
         return values.get(part.name, part)
     if isinstance(part, tuple):
         return tuple([_filled_part(each, values) for each in part])
@@ -216,20 +222,20 @@ def _filled_part(part: object, values: dict[str, model.Bounded]) -> object:
     return replace(part, **changes) if changes else part
 
 
-def _by_subject(store: Store[Workspace], viewpoint: str, of_name: model.Requirement) -> Iterator[model.Applied]:
+def _by_subject(store: Store[Workspace], viewpoint: str, of_name: model.ResolvedRequirement) -> Iterator[model.Applied]:
     """A claim's own subject takes precedence over what the requirement is attached to."""
     arguments = tuple(
-        model.Argument(each.name, each.default) for each in of_name.parameters if each.default is not None
+        model.ResolvedArgument(each.name, each.default) for each in of_name.parameters if each.default is not None
     )
     if len(arguments) < len(of_name.parameters):
         return
     groups: dict[object, tuple[model.Subject, list[int]]] = {}
     for at, claim in enumerate(of_name.claims):
         subject = claim.subject
-        if isinstance(subject, model.Every):
+        if isinstance(subject, model.EveryNode):
             for node in store.ask(nodes.every, viewpoint, subject.name):
-                groups.setdefault(id(node), (model.Target(node), []))[1].append(at)
-        elif isinstance(subject, model.Target) and not subject.through:
+                groups.setdefault(id(node), (model.NodeTarget(node), []))[1].append(at)
+        elif isinstance(subject, model.NodeTarget) and not subject.through:
             groups.setdefault(id(subject.node), (subject, []))[1].append(at)
         elif subject is not None:
             groups.setdefault(subject, (subject, []))[1].append(at)
@@ -239,7 +245,7 @@ def _by_subject(store: Store[Workspace], viewpoint: str, of_name: model.Requirem
         yield model.Applied(made, subject, arguments, place, "subject")  # type: ignore[arg-type]  # no Every is left
 
 
-def _at_nodes(reader: Reader, tree: syntax.Tree) -> Iterator[model.Use]:
+def _at_nodes(reader: Reader, tree: syntax.Tree) -> Iterator[model.Attachment]:
     of_tree = reader.store.ask(tree_nodes, reader.viewpoint, reader.path, reader.facts)
     places: list[tuple[ResolvedNode | None, tuple[syntax.NodeClause, ...]]] = [(of_tree.root, tree.clauses)]
     places += [(node, node.node.clauses) for node in of_tree.all if node.node.clauses]
@@ -252,10 +258,10 @@ def _at_nodes(reader: Reader, tree: syntax.Tree) -> Iterator[model.Use]:
             arguments = _arguments(reader, of_name, written, word.span)
             if arguments is not None and node is not None:
                 place = reader.place(word.span)
-                yield model.Use(of_name.name, model.Target(node), arguments, _AT_NODE, "satisfies", place)
+                yield model.Attachment(of_name.name, model.NodeTarget(node), arguments, _AT_NODE, "satisfies", place)
 
 
-def _applied_by(reader: Reader, apply: syntax.Apply) -> Iterator[model.Use]:
+def _applied_by(reader: Reader, apply: syntax.Apply) -> Iterator[model.Attachment]:
     targets = [found for selector in apply.targets for found in _selected(reader, selector)]
     excepted = _excepted(reader, apply, {id(target.node) for target, _ in targets})
     for reference in apply.uses:
@@ -266,10 +272,10 @@ def _applied_by(reader: Reader, apply: syntax.Apply) -> Iterator[model.Use]:
         place = reader.place(reference.name.span)
         for target, rank in targets:
             if id(target.node) not in excepted:
-                yield model.Use(of_name.name, target, arguments, rank, "apply", place)
+                yield model.Attachment(of_name.name, target, arguments, rank, "apply", place)
 
 
-def _requirement(reader: Reader, name: str) -> model.Requirement | None:
+def _requirement(reader: Reader, name: str) -> model.ResolvedRequirement | None:
     return reader.store.ask(requirement, reader.viewpoint, name)[0]
 
 
@@ -286,13 +292,13 @@ def _excepted(reader: Reader, apply: syntax.Apply, applied_to: set[int]) -> set[
     return excepted
 
 
-def _selected(reader: Reader, selector: syntax.Selector) -> Iterator[tuple[model.Target, int]]:
+def _selected(reader: Reader, selector: syntax.Selector) -> Iterator[tuple[model.NodeTarget, int]]:
     """The nodes of a selector, and how specific it is."""
     if selector.tag is not None:
         found = reader.store.ask(nodes.tagged, reader.viewpoint, selector.tag.text)
         if not found:
             reader.no_tag(selector.tag)
-        yield from ((model.Target(node), _EVERY) for node in found)
+        yield from ((model.NodeTarget(node), _EVERY) for node in found)
     elif selector.every is not None:
         found = reader.store.ask(nodes.every, reader.viewpoint, selector.every.text)
         if not found:
@@ -306,7 +312,7 @@ def _selected(reader: Reader, selector: syntax.Selector) -> Iterator[tuple[model
                 message = f"no node matches `every {selector.every.raw}` below `{shown}`"
                 reader.complain("unmatched-path", selector.every.span, message)
             found, rank = below, _EVERY_UNDER
-        yield from ((model.Target(node), rank) for node in found)
+        yield from ((model.NodeTarget(node), rank) for node in found)
     elif selector.path is not None:
         target = reader.target(selector.path)
         if target is not None:
@@ -314,8 +320,8 @@ def _selected(reader: Reader, selector: syntax.Selector) -> Iterator[tuple[model
 
 
 def _arguments(
-    reader: Reader, of_name: model.Requirement, written: syntax.Requirement | syntax.ReqRef, span: Span
-) -> tuple[model.Argument, ...] | None:
+    reader: Reader, of_name: model.ResolvedRequirement, written: syntax.Requirement | syntax.ReqRef, span: Span
+) -> tuple[model.ResolvedArgument, ...] | None:
     """The values of the parameters; None if one is missing or wrong, which is reported."""
     given: dict[str, model.Bounded] = {}
     complete = True
@@ -340,10 +346,10 @@ def _arguments(
     if missing or not complete:
         return None
     values = ((each.name, given.get(each.name, each.default)) for each in of_name.parameters)
-    return tuple(model.Argument(name, value) for name, value in values if value is not None)
+    return tuple(model.ResolvedArgument(name, value) for name, value in values if value is not None)
 
 
-def _no_parameter(reader: Reader, of_name: model.Requirement, argument: syntax.Argument) -> None:
+def _no_parameter(reader: Reader, of_name: model.ResolvedRequirement, argument: syntax.Argument) -> None:
     word: syntax.Word = argument.name
     known = [parameter.name for parameter in of_name.parameters]
     likely = [name for name in near(word.text, known) if syntax.is_name(name)]
@@ -354,12 +360,14 @@ def _no_parameter(reader: Reader, of_name: model.Requirement, argument: syntax.A
     reader.complain("wrong-argument", word.span, message, related=related, notes=notes, fixes=fixes)
 
 
-def _most_specific(of_name: model.Requirement, uses: Sequence[model.Use]) -> tuple[list[model.Use], Problems]:
+def _most_specific(
+    of_name: model.ResolvedRequirement, uses: Sequence[model.Attachment]
+) -> tuple[list[model.Attachment], Problems]:
     """One use for each node, or for each way that a path leads to it; and the problems where equally specific ones
     differ."""
-    found: list[model.Use] = []
+    found: list[model.Attachment] = []
     problems: list[Problem] = []
-    of_node: dict[tuple[int, tuple[str, ...]], list[model.Use]] = {}
+    of_node: dict[tuple[int, tuple[str, ...]], list[model.Attachment]] = {}
     for use in uses:
         of_node.setdefault((id(use.target.node), use.target.through), []).append(use)
     for same in of_node.values():
@@ -378,12 +386,12 @@ def _most_specific(of_name: model.Requirement, uses: Sequence[model.Use]) -> tup
     return found, tuple(problems)
 
 
-def _values(use: model.Use) -> tuple[object, ...]:
+def _values(use: model.Attachment) -> tuple[object, ...]:
     """Equal for arguments that mean the same, however they are written."""
     return tuple(getattr(argument.value, "si", argument.value) for argument in use.arguments)
 
 
-def _said(use: model.Use) -> str:
+def _said(use: model.Attachment) -> str:
     return ", ".join(f"{argument.name} = {argument.value.text}" for argument in use.arguments)
 
 

@@ -16,8 +16,8 @@ from btq_lang.requirements import nodes
 from btq_lang.requirements.attach import applied_in
 from btq_lang.requirements.budget_parts import UNKNOWN, Budget, mapped, opened, port_count, port_seconds
 from btq_lang.requirements.composition import compose
-from btq_lang.requirements.durations import ANY, ZERO, Range, Term, hull
-from btq_lang.requirements.model import Applied, Claim, Target
+from btq_lang.requirements.durations import ANY, ZERO, DurationTerm, Range, hull
+from btq_lang.requirements.model import Applied, NodeTarget, ResolvedClaim
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store, on_circle
@@ -125,9 +125,11 @@ class TreeBudgets:
 
     def __init__(self, tree: ResolvedTree, applied: tuple[Applied, ...], outcomes: Mapping[str, Outcome]) -> None:
         self._outcomes = outcomes
-        self._claims: dict[int, list[tuple[Applied, Claim]]] = {}  # the claims that count, by the `id` of the node
+        self._claims: dict[
+            int, list[tuple[Applied, ResolvedClaim]]
+        ] = {}  # the claims that count, by the `id` of the node
         for each in applied:
-            if isinstance(each.subject, Target) and not each.subject.through and not each.requirement.scopes:
+            if isinstance(each.subject, NodeTarget) and not each.subject.through and not each.requirement.scopes:
                 for claim in each.requirement.claims:
                     self._claims.setdefault(id(each.subject.node), []).append((each, claim))
         self._composed: dict[int, Budget] = {}
@@ -279,7 +281,7 @@ def _as_part(node: ResolvedNode, budget: Budget) -> Budget:
     def part(each: Range | None) -> Range | None:
         if each is None or (each.high == 0.0 and not each.terms):
             return each
-        return Range(each.low, each.high, (Term(node, 1, each.high),) if each.high > 0.0 else ())
+        return Range(each.low, each.high, (DurationTerm(node, 1, each.high),) if each.high > 0.0 else ())
 
     return mapped(budget, part)
 
@@ -289,7 +291,7 @@ def _without_terms(budget: Budget) -> Budget:
     return mapped(budget, lambda each: Range(each.low, each.high) if each is not None and each.terms else each)
 
 
-def _with_claims(composed: Budget, claims: list[tuple[Applied, Claim]]) -> Budget:
+def _with_claims(composed: Budget, claims: list[tuple[Applied, ResolvedClaim]]) -> Budget:
     """What is demanded of a node; of bounds with odds the likeliest, and only if there is no certain bound."""
     sure = [claim for applied, claim in claims if applied.requirement.odds is None]
     without_odds = replace(opened(composed), probability=1.0)
@@ -316,13 +318,13 @@ def _with_attributes(node: ResolvedNode, budget: Budget) -> Budget:
     return budget
 
 
-def _all_narrowed(budget: Budget, claims: list[Claim]) -> Budget:
+def _all_narrowed(budget: Budget, claims: list[ResolvedClaim]) -> Budget:
     for claim in claims:
         budget = _narrowed(budget, claim)
     return budget
 
 
-def _narrowed(budget: Budget, claim: Claim) -> Budget:
+def _narrowed(budget: Budget, claim: ResolvedClaim) -> Budget:
     """A budget, if a claim holds too.  If both cannot hold, the claim counts: the conflict is reported elsewhere."""
     limits = VERBS[claim.verb].limits
     if claim.limit is None or not limits:
@@ -344,7 +346,7 @@ def _within(each: Range | None, allowed: Range) -> Range | None:
     return Range(low, high, each.terms if high == each.high else ()) if low <= high else allowed
 
 
-def _range(claim: Claim) -> Range:
+def _range(claim: ResolvedClaim) -> Range:
     """The durations that a claim's bound allows in any situation."""
     least = max(claim.lowest[0], 0.0) if claim.lowest is not None else 0.0
     most = max(claim.highest[0], 0.0) if claim.highest is not None else inf

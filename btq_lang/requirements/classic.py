@@ -11,14 +11,22 @@ from typing import Final
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements.clauses import with_clauses
 from btq_lang.requirements.constraints import Constraint, can_be_checked, clauses_of, constraints, is_script
-from btq_lang.requirements.model import Claim, Limit, Not, Relation, Requirement, Script, parts_in
+from btq_lang.requirements.model import (
+    ClassicScript,
+    Limit,
+    Negation,
+    Relation,
+    ResolvedClaim,
+    ResolvedRequirement,
+    parts_in,
+)
 from btq_lang.requirements.reader import Reader
 from btq_lang.syntax import tree as syntax
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span
 
 
-def with_constraints(reader: Reader, requirement: Requirement, text: syntax.Word) -> Requirement:
+def with_constraints(reader: Reader, requirement: ResolvedRequirement, text: syntax.Word) -> ResolvedRequirement:
     """A requirement without clauses, with the claims of its description."""
     found = constraints(text)
     names = frozenset(reader.names("nodes")) if found else frozenset()
@@ -33,7 +41,7 @@ def with_constraints(reader: Reader, requirement: Requirement, text: syntax.Word
 def entries_in(part: object) -> tuple[str, ...]:
     """The entries that scripts in a part of the model read, each once, without names in capitals: these are those of
     enumerations, which only the robot's program knows."""
-    scripts = [each for each in parts_in(part) if isinstance(each, Script)]
+    scripts = [each for each in parts_in(part) if isinstance(each, ClassicScript)]
     if not scripts:
         return ()
     from btq_lang.syntax.script.parser import parse_script  # few missions have one
@@ -43,12 +51,12 @@ def entries_in(part: object) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for name in read if not name.isupper()))
 
 
-def _with(reader: Reader, requirement: Requirement, constraint: Constraint, span: Span) -> Requirement:
+def _with(reader: Reader, requirement: ResolvedRequirement, constraint: Constraint, span: Span) -> ResolvedRequirement:
     if is_script(constraint.text):
         keyword = "FailureIf" if constraint.violates else "SuccessIf"
         text = f"{keyword} {constraint.text}"
         verb = "never" if constraint.violates else "keeps"
-        claim = Claim(verb, text, reader.place(span), condition=Script(constraint.text))
+        claim = ResolvedClaim(verb, text, reader.place(span), condition=ClassicScript(constraint.text))
         return replace(requirement, claims=(*requirement.claims, claim))
     found = clauses_of(constraint.text)
     assert found is not None, "what can be checked is a script or has clauses"
@@ -67,12 +75,12 @@ def _with(reader: Reader, requirement: Requirement, constraint: Constraint, span
     return replace(resolved, claims=(*requirement.claims, *added)) if understood and added else requirement
 
 
-def _turned(claim: Claim) -> Claim | None:
+def _turned(claim: ResolvedClaim) -> ResolvedClaim | None:
     """The claim that holds where this one does not; None if there is no such clause."""
     if claim.condition is not None and claim.verb in ("keeps", "never"):
         return replace(claim, verb="never" if claim.verb == "keeps" else "keeps")
     if claim.condition is not None:
-        return replace(claim, condition=Not(claim.condition))
+        return replace(claim, condition=Negation(claim.condition))
     if claim.limit is not None and claim.limit.relation in _OPPOSITE and VERBS[claim.verb].operand in _BOUNDS:
         return replace(claim, limit=Limit(_OPPOSITE[claim.limit.relation], claim.limit.value))
     return None

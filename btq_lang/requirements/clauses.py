@@ -21,12 +21,12 @@ from btq_lang.util.text import Span
 
 
 def with_clauses(
-    reader: Reader, requirement: model.Requirement, clauses: tuple[syntax.Clause, ...]
-) -> model.Requirement:
+    reader: Reader, requirement: model.ResolvedRequirement, clauses: tuple[syntax.Clause, ...]
+) -> model.ResolvedRequirement:
     """A requirement with these clauses resolved; of clauses that may occur once, the first counts."""
-    claims: list[model.Claim] = []
+    claims: list[model.ResolvedClaim] = []
     unread: list[str] = []
-    scopes: list[model.Scope] = []
+    scopes: list[model.ResolvedScope] = []
     once: dict[str, object] = {}
     reasons: list[str] = []
     goals: list[syntax.Goal] = []
@@ -42,11 +42,11 @@ def with_clauses(
                 claims.append(claim)
             else:
                 unread.append(reader.text(clause.start, clause.end))
-        elif isinstance(clause, syntax.Scope):
+        elif isinstance(clause, syntax.ScopeClause):
             condition = reader.condition(clause.condition)
             if condition is not None:
                 word = "while" if clause.word.raw == "while" else "when"
-                scopes.append(model.Scope(word, condition, reader.text(clause.start, clause.end)))  # type: ignore[arg-type]  # one of the two
+                scopes.append(model.ResolvedScope(word, condition, reader.text(clause.start, clause.end)))  # type: ignore[arg-type]  # one of the two
         elif isinstance(clause, syntax.Odds):
             keep("odds", _odds(reader, clause))
         elif isinstance(clause, syntax.Confidence):
@@ -73,7 +73,7 @@ def with_clauses(
     )
 
 
-def claim_of(reader: Reader, written: syntax.Claim) -> model.Claim | None:
+def claim_of(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | None:
     """What a claim demands; None if a part of it was not understood."""
     subject: model.Subject | None = None
     if written.subject is not None:
@@ -86,9 +86,9 @@ def claim_of(reader: Reader, written: syntax.Claim) -> model.Claim | None:
     return found if found is None or subject is None else replace(found, subject=subject)
 
 
-def _verb(reader: Reader, written: syntax.Claim) -> model.Claim | None:
+def _verb(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | None:
     place = reader.place(Span(written.start, written.end))
-    claim = model.Claim(written.verb.raw, reader.text(written.start, written.end), place)
+    claim = model.ResolvedClaim(written.verb.raw, reader.text(written.start, written.end), place)
     operand = VERBS[claim.verb].operand
     if operand == "condition":
         condition = reader.condition(written.condition)
@@ -98,7 +98,7 @@ def _verb(reader: Reader, written: syntax.Claim) -> model.Claim | None:
         return replace(claim, event=event) if event is not None else None
     if operand == "deadline" and written.bound is None:
         return claim
-    signal: model.Signal | None = None
+    signal: model.ResolvedSignal | None = None
     wanted: Wanted | None = DURATION if operand in _TIMED or written.every else _COUNTED
     if operand == "use":
         signal, wanted = _resource(reader, written.resource)
@@ -115,7 +115,7 @@ def _verb(reader: Reader, written: syntax.Claim) -> model.Claim | None:
     return claim if per is None else replace(claim, per=per)
 
 
-def _resource(reader: Reader, word: syntax.Word | None) -> tuple[model.Signal | None, Wanted | None]:
+def _resource(reader: Reader, word: syntax.Word | None) -> tuple[model.ResolvedSignal | None, Wanted | None]:
     """The signal that is used up, and the kind of its difference over an activation."""
     if word is None:
         return None, None
@@ -145,7 +145,7 @@ def _limit(reader: Reader, written: syntax.Bound | None, wanted: Wanted) -> mode
     return model.Limit(written.relation, value, upper)  # type: ignore[arg-type]  # the parser's relations
 
 
-def _per(reader: Reader, written: syntax.Path | syntax.Word | None) -> model.Target | model.Value | None:
+def _per(reader: Reader, written: syntax.Path | syntax.Word | None) -> model.NodeTarget | model.Quantity | None:
     if isinstance(written, syntax.Path):
         is_run = written.names[-1].text.lower() in _RUN
         return reader.target(written, ("without `per` it counts per run",) if is_run else ())
@@ -155,36 +155,36 @@ def _per(reader: Reader, written: syntax.Path | syntax.Word | None) -> model.Tar
 _RUN = frozenset(("mission", "run", "execution", "trial", "tree"))
 
 
-def _event(reader: Reader, written: syntax.Event | None) -> model.Event | None:
+def _event(reader: Reader, written: syntax.Event | None) -> model.ResolvedEvent | None:
     if written is None:
         return None
     if written.happening == "when":
         condition = reader.condition(written.condition)
-        return model.Event("when", None, condition) if condition is not None else None
-    subject = reader.target(written.path) if written.path is not None else model.Mission(reader.mission)
-    return model.Event(written.happening, subject) if subject is not None else None  # type: ignore[arg-type]  # the parser's words
+        return model.ResolvedEvent("when", None, condition) if condition is not None else None
+    subject = reader.target(written.path) if written.path is not None else model.MissionRun(reader.mission)
+    return model.ResolvedEvent(written.happening, subject) if subject is not None else None  # type: ignore[arg-type]  # the parser's words
 
 
 def _subject(reader: Reader, written: syntax.Subject) -> model.Subject | None:
     if isinstance(written, syntax.Path):
         return reader.target(written)
     if isinstance(written, syntax.Mission):
-        return model.Mission(reader.mission)
+        return model.MissionRun(reader.mission)
     if isinstance(written, syntax.Every):
         if not reader.store.ask(nodes.has_any, reader.viewpoint, written.name.text):
             reader.none_of(written.name)
             return None
-        return model.Every(written.name.text)
+        return model.EveryNode(written.name.text)
     if isinstance(written, syntax.Between):
         first, last = _event(reader, written.first), _event(reader, written.last)
-        return model.Span(first, last) if first is not None and last is not None else None
+        return model.Interval(first, last) if first is not None and last is not None else None
     assert isinstance(written, syntax.Sum), "the last kind of subject"
     targets = [reader.target(path) for path in written.paths]
     found = tuple(target for target in targets if target is not None)
-    return model.Total(found) if len(found) == len(targets) else None
+    return model.DurationSum(found) if len(found) == len(targets) else None
 
 
-def _odds(reader: Reader, written: syntax.Odds) -> model.Odds | None:
+def _odds(reader: Reader, written: syntax.Odds) -> model.ResolvedOdds | None:
     share = reader.quantity(written.value, _SHARE)
     if share is None or written.value is None:
         return None
@@ -195,7 +195,7 @@ def _odds(reader: Reader, written: syntax.Odds) -> model.Odds | None:
     of_runs = written.experiments is not None and written.experiments.raw == "runs"
     text = reader.text(written.start, written.end)
     place = reader.place(Span(written.start, written.end))
-    return model.Odds(written.relation, share.si, "runs" if of_runs else "activations", text, place)
+    return model.ResolvedOdds(written.relation, share.si, "runs" if of_runs else "activations", text, place)
 
 
 def _confidence(reader: Reader, written: syntax.Confidence) -> float | None:
@@ -209,7 +209,7 @@ def _confidence(reader: Reader, written: syntax.Confidence) -> float | None:
     return share.si
 
 
-def _window(reader: Reader, written: syntax.Window) -> model.Window | None:
+def _window(reader: Reader, written: syntax.Window) -> model.ResolvedWindow | None:
     if written.size is None:
         return None
     text = reader.text(written.start, written.end)
@@ -221,12 +221,12 @@ def _window(reader: Reader, written: syntax.Window) -> model.Window | None:
             reader.complain("impossible-odds", written.size.span, message)
             return None
         of_runs = written.experiments.raw == "runs"
-        return model.Window(int(count), "runs" if of_runs else "activations", None, text, place)
+        return model.ResolvedWindow(int(count), "runs" if of_runs else "activations", None, text, place)
     duration = reader.quantity(written.size, DURATION)
-    return model.Window(None, "activations", duration.si, text, place) if duration is not None else None
+    return model.ResolvedWindow(None, "activations", duration.si, text, place) if duration is not None else None
 
 
-def _of_goal(claims: list[model.Claim], has_odds: bool) -> Wanted | None:
+def _of_goal(claims: list[model.ResolvedClaim], has_odds: bool) -> Wanted | None:
     """What a goal measures: the same as the bounds, with odds perhaps a probability; None: anything."""
     dimensions: dict[Dimension, str | None] = {PERCENT: "%"} if has_odds else {}
     for claim in claims:
@@ -242,10 +242,10 @@ def _of_goal(claims: list[model.Claim], has_odds: bool) -> Wanted | None:
     return Wanted("a goal of the same dimension as the bound", tuple(dimensions), unit) if claims else None
 
 
-def parameter_of(reader: Reader, written: syntax.Parameter) -> model.Parameter:
+def parameter_of(reader: Reader, written: syntax.Parameter) -> model.ResolvedParameter:
     """A parameter with its default."""
     sort, unit = sort_of(written.unit)
-    parameter = model.Parameter(written.name.text, sort, unit, None)
+    parameter = model.ResolvedParameter(written.name.text, sort, unit, None)
     default = reader.argument(parameter, written.default) if written.default is not None else None
     return replace(parameter, default=default)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.requirements.clauses import parameter_of, with_clauses
-from btq_lang.requirements.model import Parameter, Requirement
+from btq_lang.requirements.model import ResolvedParameter, ResolvedRequirement
 from btq_lang.requirements.reader import Problems, Reader
 from btq_lang.syntax import tree as syntax
 from btq_lang.workspace import inputs
@@ -14,7 +14,7 @@ from btq_lang.workspace.resolved import tree_nodes
 from btq_lang.workspace.workspace import Workspace
 
 
-def requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Requirement | None, Problems]:
+def requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple[ResolvedRequirement | None, Problems]:
     """The requirement with a name, with parameters, and what is wrong with its definition; None if it is not
     defined."""
     found = store.ask(inputs.definition, viewpoint, Kind.REQUIREMENT, name)
@@ -24,14 +24,14 @@ def requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Req
     written = symbol.target
     assert isinstance(written, syntax.Requirement), "its kind says so"
     reader = Reader(store, viewpoint, *found)
-    parameters: dict[str, Parameter] = {}
+    parameters: dict[str, ResolvedParameter] = {}
     for each in written.parameters:
         parameter = parameter_of(reader, each)
         parameters.setdefault(parameter.name, parameter)
     reader.parameters = parameters
     quality = _quality(store, viewpoint, *found, written)
     title = written.text.text if written.text is not None else None
-    read = Requirement(name, reader.place(symbol.span), quality, title, False, tuple(parameters.values()), ())
+    read = ResolvedRequirement(name, reader.place(symbol.span), quality, title, False, tuple(parameters.values()), ())
     read = with_clauses(reader, read, written.clauses)
     if not written.clauses and written.text is not None:
         from btq_lang.requirements.classic import with_constraints  # only requirements without clauses need it

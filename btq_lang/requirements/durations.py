@@ -14,7 +14,7 @@ from btq_lang.util.record import Record, replace
 from btq_lang.workspace.resolved import ResolvedNode
 
 
-class Term(Record):
+class DurationTerm(Record):
     """A node's share of a duration: `times` runs of at most `seconds` each."""
 
     node: ResolvedNode
@@ -31,7 +31,7 @@ class Range(Record):
 
     low: float
     high: float
-    terms: tuple[Term, ...] = ()
+    terms: tuple[DurationTerm, ...] = ()
 
 
 ZERO: Final = Range(0.0, 0.0)
@@ -96,9 +96,9 @@ def total(ranges: Iterable[Range | None]) -> Range | None:
     return result
 
 
-def together(terms: Iterable[Term]) -> tuple[Term, ...]:
+def together(terms: Iterable[DurationTerm]) -> tuple[DurationTerm, ...]:
     """Terms with equal ones merged."""
-    found: dict[tuple[int, float], Term] = {}
+    found: dict[tuple[int, float], DurationTerm] = {}
     for term in terms:
         key = id(term.node), term.seconds
         same = found.get(key)

@@ -28,7 +28,7 @@ Sort: TypeAlias = Literal["number", "bool", "text"]
 # ---- Nodes ----------------------------------------------------------------------------------------------------------
 
 
-class Target(Record):
+class NodeTarget(Record):
     """A node that a path names.
 
     Attributes:
@@ -40,7 +40,7 @@ class Target(Record):
     through: tuple[str, ...] = ()
 
 
-class Mission(Record):
+class MissionRun(Record):
     """The whole run: the main tree's written root, None if it is unknown which tree runs."""
 
     node: ResolvedNode | None
@@ -49,7 +49,7 @@ class Mission(Record):
 # ---- Values ---------------------------------------------------------------------------------------------------------
 
 
-class Value(Record):
+class Quantity(Record):
     """A quantity or a bare number.
 
     Attributes:
@@ -73,7 +73,7 @@ class Flag(Record):
         return "true" if self.value else "false"
 
 
-class Text(Record):
+class TextValue(Record):
     """A string that a text signal is compared with."""
 
     value: str
@@ -83,7 +83,7 @@ class Text(Record):
         return f'"{self.value}"'
 
 
-class Signal(Record):
+class ResolvedSignal(Record):
     """What can be measured.
 
     Attributes:
@@ -100,7 +100,7 @@ class Signal(Record):
     key: str | None
     behaviour: Behaviour
     fresh: float | None
-    initially: Value | Flag | Text | None
+    initially: Quantity | Flag | TextValue | None
     place: Place
 
     @property
@@ -109,17 +109,17 @@ class Signal(Record):
         return (self.key or "").removeprefix("@")
 
 
-class Read(Record):
+class SignalRead(Record):
     """The last sample of a signal; of a bool signal, a condition as well."""
 
-    signal: Signal
+    signal: ResolvedSignal
 
     @property
     def text(self) -> str:
         return self.signal.name
 
 
-class Parameter(Record):
+class ResolvedParameter(Record):
     """A parameter in the definition of a requirement; what is applied has an argument in its place."""
 
     name: str
@@ -136,7 +136,7 @@ class Aggregate(Record):
     """`p95(track_error)`: over the samples of an activation."""
 
     function: str
-    signal: Signal
+    signal: ResolvedSignal
 
 
 class Minus(Record):
@@ -153,17 +153,17 @@ class Arithmetic(Record):
     right: Number
 
 
-class Case(Record):
+class ResolvedCase(Record):
     """A value and when it holds; no condition: otherwise."""
 
     value: Simple
     condition: Condition | None
 
 
-class Table(Record):
+class ResolvedTable(Record):
     """A value for each situation: of the first case whose condition holds."""
 
-    cases: tuple[Case, ...]
+    cases: tuple[ResolvedCase, ...]
 
     @property
     def text(self) -> str:
@@ -171,8 +171,8 @@ class Table(Record):
         return f"{', '.join(values[:-1])} or {values[-1]}" if len(values) > 1 else "".join(values)
 
 
-Simple: TypeAlias = Value | Flag | Text | Read | Parameter
-Bounded: TypeAlias = Simple | Table
+Simple: TypeAlias = Quantity | Flag | TextValue | SignalRead | ResolvedParameter
+Bounded: TypeAlias = Simple | ResolvedTable
 Number: TypeAlias = Bounded | Aggregate | Minus | Arithmetic
 
 
@@ -198,7 +198,7 @@ class Any(Record):
     conditions: tuple[Condition, ...]
 
 
-class Not(Record):
+class Negation(Record):
     """`not φ`."""
 
     condition: Condition
@@ -218,17 +218,20 @@ class InContext(Record):
 class Running(Record):
     """`node Path`: while that node runs."""
 
-    target: Target
+    target: NodeTarget
 
 
-class Script(Record):
+class ClassicScript(Record):
     """A script of the engine after SuccessIf or FailureIf in a classic description."""
 
     code: str
 
 
-# A Scope is part of another condition only where evidence judges what is demanded in that scope.
-Condition: TypeAlias = "Compare | All | Any | Not | InContext | Running | Script | Read | Flag | Parameter | Scope"
+# A ResolvedScope is part of another condition only where evidence judges what is demanded in that scope.
+Condition: TypeAlias = (
+    "Compare | All | Any | Negation | InContext | Running | "
+    "ClassicScript | SignalRead | Flag | ResolvedParameter | ResolvedScope"
+)
 
 
 # ---- Claims ---------------------------------------------------------------------------------------------------------
@@ -242,37 +245,37 @@ class Limit(Record):
     upper: Bounded | None = None
 
 
-class Event(Record):
+class ResolvedEvent(Record):
     """Something that happens to a node, or to the mission; `when`: a condition becomes true."""
 
     happening: Happening
-    subject: Target | Mission | None
+    subject: NodeTarget | MissionRun | None
     condition: Condition | None = None
 
 
-class Span(Record):
+class Interval(Record):
     """The time from each `first` to the next `last`."""
 
-    first: Event
-    last: Event
+    first: ResolvedEvent
+    last: ResolvedEvent
 
 
-class Total(Record):
+class DurationSum(Record):
     """The sum of the durations of several nodes in one run."""
 
-    targets: tuple[Target, ...]
+    targets: tuple[NodeTarget, ...]
 
 
-class Every(Record):
+class EveryNode(Record):
     """Each node of an ID or kind by itself."""
 
     name: str
 
 
-Subject: TypeAlias = Target | Mission | Every | Span | Total
+Subject: TypeAlias = NodeTarget | MissionRun | EveryNode | Interval | DurationSum
 
 
-class Claim(Record):
+class ResolvedClaim(Record):
     """What is demanded.
 
     Attributes:
@@ -292,9 +295,9 @@ class Claim(Record):
     subject: Subject | None = None
     limit: Limit | None = None
     condition: Condition | None = None
-    signal: Signal | None = None
-    per: Target | Value | None = None
-    event: Event | None = None
+    signal: ResolvedSignal | None = None
+    per: NodeTarget | Quantity | None = None
+    event: ResolvedEvent | None = None
     every: bool = False
 
     @property
@@ -315,12 +318,12 @@ class Claim(Record):
 
 def _values(bounded: Bounded) -> list[tuple[float, str]]:
     """The values of a bound, in SI and as typed; empty if one of them is a signal's."""
-    simple = [case.value for case in bounded.cases] if isinstance(bounded, Table) else [bounded]
-    found = [(value.si, value.text) for value in simple if isinstance(value, Value)]
+    simple = [case.value for case in bounded.cases] if isinstance(bounded, ResolvedTable) else [bounded]
+    found = [(value.si, value.text) for value in simple if isinstance(value, Quantity)]
     return found if len(found) == len(simple) else []
 
 
-class Scope(Record):
+class ResolvedScope(Record):
     """`while φ`: only time (or activations) with φ; `when φ`: only activations with φ at their start."""
 
     word: Literal["while", "when"]
@@ -328,7 +331,7 @@ class Scope(Record):
     text: str
 
 
-class Odds(Record):
+class ResolvedOdds(Record):
     """`in at least 98 % of activations`.  relation: `>=` or `>`; probability: a fraction of one."""
 
     relation: str
@@ -338,7 +341,7 @@ class Odds(Record):
     place: Place
 
 
-class Window(Record):
+class ResolvedWindow(Record):
     """What counts: the last `count` experiments, or the last `seconds`."""
 
     count: int | None
@@ -348,7 +351,7 @@ class Window(Record):
     place: Place
 
 
-class Requirement(Record):
+class ResolvedRequirement(Record):
     """A requirement with its clauses resolved; scopes, odds, confidence, window, action and goal apply to all claims.
 
     Attributes:
@@ -365,12 +368,12 @@ class Requirement(Record):
     quality: str | None
     title: str | None
     classic: bool
-    parameters: tuple[Parameter, ...]
-    claims: tuple[Claim, ...]
-    scopes: tuple[Scope, ...] = ()
-    odds: Odds | None = None
+    parameters: tuple[ResolvedParameter, ...]
+    claims: tuple[ResolvedClaim, ...]
+    scopes: tuple[ResolvedScope, ...] = ()
+    odds: ResolvedOdds | None = None
     confidence: float | None = None
-    window: Window | None = None
+    window: ResolvedWindow | None = None
     action: Action | None = None
     goal: Bounded | None = None
     reasons: tuple[str, ...] = ()
@@ -395,14 +398,14 @@ class Requirement(Record):
         return self.demands_enforcement and is_single and not self.is_verified_by_people
 
 
-class Argument(Record):
+class ResolvedArgument(Record):
     """The value of a parameter: as given, or its default."""
 
     name: str
     value: Bounded
 
 
-class Use(Record):
+class Attachment(Record):
     """An attachment of a requirement to a node, before it is decided which of several counts.
 
     Attributes:
@@ -411,8 +414,8 @@ class Use(Record):
     """
 
     requirement: str
-    target: Target
-    arguments: tuple[Argument, ...]
+    target: NodeTarget
+    arguments: tuple[ResolvedArgument, ...]
     rank: int
     how: Literal["satisfies", "apply"]
     place: Place
@@ -428,16 +431,16 @@ class Applied(Record):
         how: `subject`, `satisfies` or `apply`.
     """
 
-    requirement: Requirement
-    subject: Target | Mission | Span | Total
-    arguments: tuple[Argument, ...]
+    requirement: ResolvedRequirement
+    subject: NodeTarget | MissionRun | Interval | DurationSum
+    arguments: tuple[ResolvedArgument, ...]
     place: Place
     how: Literal["subject", "satisfies", "apply"]
 
     @property
     def node(self) -> ResolvedNode | None:
         """The node that it applies to; None for a span, a sum, and an unknown mission."""
-        return self.subject.node if isinstance(self.subject, Target | Mission) else None
+        return self.subject.node if isinstance(self.subject, NodeTarget | MissionRun) else None
 
     @property
     def given(self) -> str:
@@ -449,7 +452,7 @@ class Applied(Record):
     def tree(self) -> str | None:
         """The tree to whose root it applies, if the claim names the root by its tree."""
         node = self.node
-        if self.how != "subject" or isinstance(self.subject, Mission) or node is None or node.parent is not None:
+        if self.how != "subject" or isinstance(self.subject, MissionRun) or node is None or node.parent is not None:
             return None
         claim = self.requirement.claims[0]
         last = claim.text.partition(f" {claim.verb} ")[0].rpartition("/")[2]
@@ -461,17 +464,17 @@ class Applied(Record):
         node."""
         if self.node is None:
             return ""
-        if isinstance(self.subject, Mission):
+        if isinstance(self.subject, MissionRun):
             return "`mission`"
         return f"`{self.tree}`" if self.tree is not None else self.node.shown
 
     @property
     def nodes(self) -> tuple[ResolvedNode, ...]:
         """The nodes that its subject names; for a span those of its events."""
-        if isinstance(self.subject, Total):
+        if isinstance(self.subject, DurationSum):
             return tuple(target.node for target in self.subject.targets)
-        events = (self.subject.first, self.subject.last) if isinstance(self.subject, Span) else ()
-        parts = [event.subject for event in events] if isinstance(self.subject, Span) else [self.subject]
+        events = (self.subject.first, self.subject.last) if isinstance(self.subject, Interval) else ()
+        parts = [event.subject for event in events] if isinstance(self.subject, Interval) else [self.subject]
         return tuple(part.node for part in parts if part is not None and part.node is not None)
 
 
@@ -485,9 +488,9 @@ class Trace(Record):
 NO_DIMENSION: Final[Dimension] = (0, 0, 0, 0, 0, 0, 0, 0, 0)
 
 
-def signals_in(part: object) -> Iterator[Signal]:
+def signals_in(part: object) -> Iterator[ResolvedSignal]:
     """The signals in a condition, a bound or any other part of the model, or in a tuple of such."""
-    return (each for each in parts_in(part) if isinstance(each, Signal))
+    return (each for each in parts_in(part) if isinstance(each, ResolvedSignal))
 
 
 def parts_in(part: object) -> Iterator[object]:
@@ -506,7 +509,7 @@ def parts_in(part: object) -> Iterator[object]:
                     continue
                 contexts.add(part.name)
             yield part
-            if not isinstance(part, Signal):
+            if not isinstance(part, ResolvedSignal):
                 waiting += reversed(as_dict(part).values())
 
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from functools import cached_property, wraps
 from typing import Concatenate, ParamSpec, TypeVar
 
-from btq_lang.requirements.model import Target
+from btq_lang.requirements.model import NodeTarget
 from btq_lang.util.reach import reached
 from btq_lang.workspace import inputs
 from btq_lang.workspace.queries import Store, hub
@@ -114,7 +114,7 @@ class Nodes:
         name = node.node.id
         return self._roots.get(name.text) if node.category == "SubTree" and name is not None else None
 
-    def find(self, names: tuple[str, ...]) -> tuple[Target, ...]:
+    def find(self, names: tuple[str, ...]) -> tuple[NodeTarget, ...]:
         """The nodes that a path names: the last name's, below nodes or trees of the other names in their order, with
         any others between them.  A SubTree node and the root of its tree are one: the root if the path matches every
         instance of the tree, else the SubTree node."""
@@ -158,7 +158,7 @@ class Nodes:
         """Every ID and kind that a node has."""
         return frozenset().union(*(node.kinds for node in self.all))
 
-    def every_under(self, name: str, top: Target) -> tuple[ResolvedNode, ...]:
+    def every_under(self, name: str, top: NodeTarget) -> tuple[ResolvedNode, ...]:
         """The nodes of an ID or kind below a node, or in a tree that runs below it."""
         below = self._below(top.node)
         return tuple(node for node in self.every(name) if id(node) in below)
@@ -179,7 +179,7 @@ class Nodes:
                 found.setdefault(name, []).extend(nodes)
         return found
 
-    def _target(self, node: ResolvedNode, above: tuple[str, ...], is_tree: bool) -> Target | None:
+    def _target(self, node: ResolvedNode, above: tuple[str, ...], is_tree: bool) -> NodeTarget | None:
         """The node as target of a path, if the path's other names are found above it.
 
         Args:
@@ -197,7 +197,7 @@ class Nodes:
         if all(wanted for _, wanted in states):
             return None
         is_missed = any(wanted and not self.callers(tree) for tree, wanted in states)
-        return Target(node, above[:left]) if is_missed else Target(node)
+        return NodeTarget(node, above[:left]) if is_missed else NodeTarget(node)
 
     def _below(self, top: ResolvedNode) -> set[int]:
         def following(node: ResolvedNode) -> list[ResolvedNode]:

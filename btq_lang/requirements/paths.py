@@ -14,7 +14,7 @@ from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.items import SELECTORS
 from btq_lang.requirements import nodes
-from btq_lang.requirements.model import Parameter, Target
+from btq_lang.requirements.model import NodeTarget, ResolvedParameter
 from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.syntax.tree import Path, Word, written
 from btq_lang.util.record import Record
@@ -54,7 +54,7 @@ class PathReader:
         self.store: Final = store
         self.viewpoint: Final = viewpoint
         self.path: Final = path
-        self.parameters: dict[str, Parameter] = {}
+        self.parameters: dict[str, ResolvedParameter] = {}
         self.source: tuple[str, Span] | None = None
         self.facts: Final = facts
         self._known: Final = known
@@ -67,7 +67,7 @@ class PathReader:
 
     # ---- look-ups ----
 
-    def find(self, names: tuple[str, ...]) -> tuple[Target, ...]:
+    def find(self, names: tuple[str, ...]) -> tuple[NodeTarget, ...]:
         """The nodes that a path means."""
         return self.store.ask(nodes.find, self.viewpoint, names)
 
@@ -128,7 +128,7 @@ class PathReader:
 
     # ---- paths ----
 
-    def target(self, path: Path, notes: tuple[str, ...] = ()) -> Target | None:
+    def target(self, path: Path, notes: tuple[str, ...] = ()) -> NodeTarget | None:
         """The one node that a path names; `notes` are for a path that names none."""
         names = tuple(name.text for name in path.names)
         found = self.find(names)
@@ -169,7 +169,7 @@ class PathReader:
         fixes = tuple(replace_fix(f"Replace `{word.text}` with `{name}`", word.span, written(name)) for name in likely)
         self.complain("unmatched-path", word.span, f"{message}{did_you_mean(likely)}", notes=notes, fixes=fixes)
 
-    def ambiguous(self, span: Span, shown: str, found: tuple[Target, ...]) -> None:
+    def ambiguous(self, span: Span, shown: str, found: tuple[NodeTarget, ...]) -> None:
         """Report a path that names several nodes."""
         related = tuple(Related(target.node.place, f"in the tree `{target.node.tree}`") for target in found[:_SHOWN])
         some = found[:_LOOKED_AT]
@@ -197,7 +197,7 @@ class PathReader:
                     found.append((word, name))
         return found
 
-    def _path_to(self, target: Target) -> str | None:
+    def _path_to(self, target: NodeTarget) -> str | None:
         """The shortest path that names that node alone."""
         node = target.node
         heads = [word.text for word in (node.node.name, node.node.id) if word is not None]

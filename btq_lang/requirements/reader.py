@@ -48,7 +48,7 @@ Problems: TypeAlias = tuple[Problem, ...]
 # ---- what names mean, each with the problems of its definition ----
 
 
-def signal(store: Store[Workspace], viewpoint: str, name: str) -> tuple[model.Signal | None, Problems]:
+def signal(store: Store[Workspace], viewpoint: str, name: str) -> tuple[model.ResolvedSignal | None, Problems]:
     """The signal with a name; None if it is not declared."""
     found = store.ask(inputs.definition, viewpoint, Kind.SIGNAL, name)
     if found is None:
@@ -65,8 +65,8 @@ def signal(store: Store[Workspace], viewpoint: str, name: str) -> tuple[model.Si
     place = reader.place(symbol.span)
     initially = None
     if item.initially is not None:
-        initially = reader.argument(model.Parameter(name, sort, unit, None), item.initially)
-    read = model.Signal(
+        initially = reader.argument(model.ResolvedParameter(name, sort, unit, None), item.initially)
+    read = model.ResolvedSignal(
         name,
         sort,
         unit,
@@ -131,7 +131,7 @@ class Reader(PathReader):
 
     # ---- look-ups ----
 
-    def signal(self, name: str) -> model.Signal | None:
+    def signal(self, name: str) -> model.ResolvedSignal | None:
         """The signal with a name."""
         if self._known is not None and name not in self._known:
             return None
@@ -157,15 +157,15 @@ class Reader(PathReader):
         for case in written.cases:
             value = self.bounded(case.value, wanted)
             condition = self.condition(case.condition) if case.condition is not None else None
-            if value is None or isinstance(value, model.Table) or condition is None:
+            if value is None or isinstance(value, model.ResolvedTable) or condition is None:
                 return None
-            cases.append(model.Case(value, condition))
+            cases.append(model.ResolvedCase(value, condition))
         otherwise = self.bounded(written.otherwise, wanted)
-        if otherwise is None or isinstance(otherwise, model.Table):
+        if otherwise is None or isinstance(otherwise, model.ResolvedTable):
             return None
-        return model.Table((*cases, model.Case(otherwise, None)))
+        return model.ResolvedTable((*cases, model.ResolvedCase(otherwise, None)))
 
-    def argument(self, parameter: model.Parameter, written: syntax.Bounded) -> model.Bounded | None:
+    def argument(self, parameter: model.ResolvedParameter, written: syntax.Bounded) -> model.Bounded | None:
         """The argument for a parameter, or the first value of a signal."""
         if parameter.sort == "number":
             unit = parameter.unit
@@ -181,12 +181,12 @@ class Reader(PathReader):
                 return None
         return found
 
-    def quantity(self, word: syntax.Word | None, wanted: Wanted) -> model.Value | None:
+    def quantity(self, word: syntax.Word | None, wanted: Wanted) -> model.Quantity | None:
         """A quantity or a number by itself."""
         term = self._number(word, False) if word is not None else None
         if term is None or not self._fits(term, wanted):
             return None
-        return term.value if isinstance(term.value, model.Value) else None
+        return term.value if isinstance(term.value, model.Quantity) else None
 
     def _amount(self, amount: syntax.Amount, wanted: Wanted | None) -> Term | None:
         if amount.word.kind in (NUMBER, QUANTITY):
@@ -196,7 +196,7 @@ class Reader(PathReader):
     def _number(self, word: syntax.Word, negative: bool) -> Term | None:
         raw = f"-{word.raw}" if negative else word.raw
         if word.kind == NUMBER:
-            term = Term(model.Value(raw, float(raw), ONE), "number", model.NO_DIMENSION, None, word.span, word=word)
+            term = Term(model.Quantity(raw, float(raw), ONE), "number", model.NO_DIMENSION, None, word.span, word=word)
             return term if self._is_finite(float(raw), word) else None
         found = parse_quantity(raw)
         if found is None:
@@ -206,7 +206,7 @@ class Reader(PathReader):
         if not self._is_finite(value, word):
             return None
         level: Level = "level" if unit.offset else "either"
-        return Term(model.Value(raw, value, unit), "number", unit.dimension, unit_text, word.span, level, word)
+        return Term(model.Quantity(raw, value, unit), "number", unit.dimension, unit_text, word.span, level, word)
 
     def _is_finite(self, value: float, word: syntax.Word) -> bool:
         if not isfinite(value):
@@ -225,13 +225,13 @@ class Reader(PathReader):
         """
         name = word.text
         if word.kind == STRING:
-            return Term(model.Text(name), "text", None, None, word.span)
+            return Term(model.TextValue(name), "text", None, None, word.span)
         if name in ("true", "false"):
             return Term(model.Flag(name == "true"), "bool", None, None, word.span)
         if name in self.parameters:
             return term_of(self.parameters[name], self.parameters[name], word.span)
         if (signal := self.signal(name)) is not None:
-            return term_of(model.Read(signal), signal, word.span)
+            return term_of(model.SignalRead(signal), signal, word.span)
         if self.is_context(name):
             self.complain("unit-mismatch", word.span, f"`{name}` is a context, not a value")
         elif in_bound or not self._is_subtraction(word):
@@ -331,7 +331,7 @@ class Reader(PathReader):
             return self._running(written.path)
         if isinstance(written, syntax.Not):
             operand = self.condition(written.operand)
-            return model.Not(operand) if operand is not None else None
+            return model.Negation(operand) if operand is not None else None
         if isinstance(written, syntax.Binary) and written.operator in ("and", "or"):
             return self._joined(written)
         if isinstance(written, syntax.Comparison):
@@ -371,7 +371,7 @@ class Reader(PathReader):
             term = self._expression(written)
             if term is None:
                 return None
-            if term.sort == "bool" and isinstance(term.value, model.Flag | model.Read | model.Parameter):
+            if term.sort == "bool" and isinstance(term.value, model.Flag | model.SignalRead | model.ResolvedParameter):
                 return term.value
             self._no_condition(term)
             return None

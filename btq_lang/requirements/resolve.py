@@ -9,7 +9,15 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.requirements import nodes
 from btq_lang.requirements.attach import applied_in, attached_by, claimed, uses_in
 from btq_lang.requirements.definitions import requirement
-from btq_lang.requirements.model import Applied, Claim, Condition, Requirement, Signal, Trace, Use
+from btq_lang.requirements.model import (
+    Applied,
+    Attachment,
+    Condition,
+    ResolvedClaim,
+    ResolvedRequirement,
+    ResolvedSignal,
+    Trace,
+)
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.requirements.paths import Problem
 from btq_lang.requirements.reader import Problems, context, signal
@@ -34,7 +42,7 @@ def requirements(workspace: Workspace, path: str) -> Requirements:
     signals = {name: store.ask(signal, path, name) for name in store.ask(inputs.names, path, Kind.SIGNAL)}
     contexts = {name: store.ask(context, path, name)[0] for name in store.ask(inputs.names, path, Kind.CONTEXT)}
     defined = {name: store.ask(requirement, path, name) for name in store.ask(inputs.names, path, Kind.REQUIREMENT)}
-    uses: dict[str, list[Use]] = {}
+    uses: dict[str, list[Attachment]] = {}
     for item in store.ask(inputs.attaching, path):
         for use in store.ask(uses_in, path, *item)[0]:
             uses.setdefault(use.requirement, []).append(use)
@@ -96,15 +104,15 @@ class Requirements(Record):
 
     store: Store[Workspace]
     viewpoint: str
-    signals: dict[str, Signal]
+    signals: dict[str, ResolvedSignal]
     contexts: dict[str, Condition | None]
-    all: dict[str, Requirement]
+    all: dict[str, ResolvedRequirement]
     applied: tuple[Applied, ...]
     traces: tuple[Trace, ...]
     nodes: Nodes
     mission: ResolvedNode | None
 
-    def about_no_node(self) -> tuple[tuple[Requirement, Claim], ...]:
+    def about_no_node(self) -> tuple[tuple[ResolvedRequirement, ResolvedClaim], ...]:
         """The claims that apply to nothing, of requirements whose other claims apply to something; a requirement that
         applies to nothing at all is unused, which is reported separately."""
         used = {each.requirement.name for each in self.applied}

@@ -8,11 +8,11 @@ does its last one.
 from __future__ import annotations
 
 from btq_lang.requirements.budgets import Budgets
-from btq_lang.requirements.model import Event, Span, Target
+from btq_lang.requirements.model import Interval, NodeTarget, ResolvedEvent
 from btq_lang.workspace.resolved import ResolvedNode
 
 
-def node_of(span: Span, budgets: Budgets) -> ResolvedNode | None:
+def node_of(span: Interval, budgets: Budgets) -> ResolvedNode | None:
     """The innermost node whose duration a span measures, if there is one."""
     first, last = _node(span.first, ("starts",)), _node(span.last, ("succeeds", "finishes"))
     if first is None or last is None:
@@ -26,10 +26,10 @@ def node_of(span: Span, budgets: Budgets) -> ResolvedNode | None:
     return None if may_be_skipped else node
 
 
-def _node(event: Event, happenings: tuple[str, ...]) -> ResolvedNode | None:
+def _node(event: ResolvedEvent, happenings: tuple[str, ...]) -> ResolvedNode | None:
     """The node of an event that is one of these, in all of its instances."""
     subject = event.subject
-    if event.happening not in happenings or not isinstance(subject, Target) or subject.through:
+    if event.happening not in happenings or not isinstance(subject, NodeTarget) or subject.through:
         return None
     return subject.node
 

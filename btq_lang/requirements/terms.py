@@ -61,28 +61,32 @@ def amounts(found: model.Bounded | None, written: syntax.Bounded) -> tuple[tuple
     """Each value with its place."""
     if found is None:
         return ()
-    if isinstance(found, model.Table) and isinstance(written, syntax.Table):
+    if isinstance(found, model.ResolvedTable) and isinstance(written, syntax.Table):
         amounts = (*(case.value for case in written.cases), written.otherwise)
         pairs = zip(found.cases, amounts, strict=True)
         return tuple((case.value, amount.word.span) for case, amount in pairs if amount is not None)
-    assert not isinstance(found, model.Table), "a table is read from a table"
+    assert not isinstance(found, model.ResolvedTable), "a table is read from a table"
     assert isinstance(written, syntax.Amount), "a table is read from a table"
     return ((found, written.word.span),)
 
 
 def sort_of_value(value: model.Simple) -> model.Sort:
-    if isinstance(value, model.Read):
+    if isinstance(value, model.SignalRead):
         return value.signal.sort
-    if isinstance(value, model.Parameter):
+    if isinstance(value, model.ResolvedParameter):
         return value.sort
-    return "number" if isinstance(value, model.Value) else "bool" if isinstance(value, model.Flag) else "text"
+    return "number" if isinstance(value, model.Quantity) else "bool" if isinstance(value, model.Flag) else "text"
 
 
 def simple(value: model.Number) -> model.Simple | None:
-    return value if isinstance(value, model.Value | model.Flag | model.Text | model.Read | model.Parameter) else None
+    return (
+        value
+        if isinstance(value, model.Quantity | model.Flag | model.TextValue | model.SignalRead | model.ResolvedParameter)
+        else None
+    )
 
 
-def term_of(value: model.Number, kind: model.Signal | model.Parameter, span: Span) -> Term:
+def term_of(value: model.Number, kind: model.ResolvedSignal | model.ResolvedParameter, span: Span) -> Term:
     """A value of the sort and the unit of a signal or a parameter."""
     unit = kind.unit
     if kind.sort != "number" or unit is None:

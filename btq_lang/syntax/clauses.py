@@ -131,7 +131,7 @@ class Claim(Part):
     every: bool = False
 
 
-class Scope(Part):
+class ScopeClause(Part):
     """`while φ` or `when φ`."""
 
     word: Word
@@ -183,7 +183,7 @@ class How(Part):
     method: Word | None
 
 
-Clause: TypeAlias = Claim | Scope | Odds | Confidence | Window | OnViolation | Goal | Because | How
+Clause: TypeAlias = Claim | ScopeClause | Odds | Confidence | Window | OnViolation | Goal | Because | How
 
 
 # ---- Conditions -----------------------------------------------------------------------------------------------------

@@ -26,7 +26,7 @@ class QualityPath(Record):
         return Span(self.names[0].start, self.names[-1].end)
 
 
-class Quality(Record):
+class SatisficedQuality(Record):
     """A quality in a satisfices list, with the requirements it encloses in the classic form."""
 
     path: QualityPath
@@ -36,7 +36,7 @@ class Quality(Record):
 class Satisfices(Part):
     """`satisfices Quality, …`: a concern, not yet measured."""
 
-    qualities: tuple[Quality, ...]
+    qualities: tuple[SatisficedQuality, ...]
 
 
 class ReqRef(Record):

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix, write_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, replace_fix, write_fix
 from btq_lang.syntax.indentation import Indentation
 from btq_lang.syntax.scan import Maps, blanks_end, line_end, line_opening, line_start
 from btq_lang.syntax.suggestions import ATTRIBUTES, INSTEAD, attributes_in_braces, no_token, value_meant
@@ -100,13 +100,13 @@ class StrangeCharacters(Indentation):
         before = start
         while self.raws and self.text[before - 1] in " \t":
             before -= 1
-        changes: tuple[Change, ...] = (Change(Place(Span(before, start + 1)), ""),)
+        changes: tuple[FixEdit, ...] = (FixEdit(Place(Span(before, start + 1)), ""),)
         closing = self._block_end(start, "}" if character == "{" else "]") if is_opening else start
         if is_opening and closing > start:
             self._block_ends.add(closing)
             end = line_end(self.text, closing)
             end += 2 if self.text.startswith("\r\n", end) else end < self.size
-            changes += (Change(Place(Span(line_start(self.text, start, closing), end)), ""),)
+            changes += (FixEdit(Place(Span(line_start(self.text, start, closing), end)), ""),)
         message = f"unexpected `{character}`: a block consists of indented lines"
         self._mistake(Span(start, start + 1), message, Fix(f"Remove `{character}`", changes))
         return start + 1

@@ -11,7 +11,7 @@ from typing import Final
 
 from btq_lang.catalog.measured import measured
 from btq_lang.catalog.units import nearest_units
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix, write_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, replace_fix, write_fix
 from btq_lang.syntax.composed_times import composed_time
 from btq_lang.syntax.scan import line_end, line_start, number_end
 from btq_lang.syntax.tree import quote
@@ -80,7 +80,7 @@ def unknown_escapes(start: int, raw: str) -> tuple[Diagnostic, ...]:
         return ()
     shown = unknown[0][0] if unknown[0][0].isprintable() else "\\"
     places = [start + escape.start() for escape in unknown]
-    fix = Fix("Write `\\\\`", tuple(Change(Place(Span(at, at + 1)), "\\\\") for at in places), safe=True)
+    fix = Fix("Write `\\\\`", tuple(FixEdit(Place(Span(at, at + 1)), "\\\\") for at in places), safe=True)
     message = f"unknown escape `{shown}`; the backslash is kept"
     notes = ("the escapes are \\\" \\' \\\\ \\n and \\t",)
     span = Span(places[0], places[0] + len(shown))
@@ -112,11 +112,11 @@ def _square_brackets(text: str, start: int) -> tuple[str, tuple[Fix, ...]]:
     ends = Span(start, start + 1), Span(closing, closing + 1)
     before = text[line_start(text, 0, start) : start].rstrip()
     if "=" in text[start:closing]:
-        changes = tuple(Change(Place(end), sign) for end, sign in zip(ends, "()", strict=True))
+        changes = tuple(FixEdit(Place(end), sign) for end, sign in zip(ends, "()", strict=True))
         is_whole = _SQUARE_ATTRIBUTES.match(text, start) is not None and "(" not in before
         return ATTRIBUTES, (Fix("Write `(` and `)`", changes, safe=is_whole),)
     if before.endswith(("satisfies", "satisfices", "tags")):
-        changes = tuple(Change(Place(end), "") for end in ends)
+        changes = tuple(FixEdit(Place(end), "") for end in ends)
         is_whole = _SQUARE_LIST.match(text, start) is not None
         return "a list needs no brackets", (Fix("Remove the brackets", changes, safe=is_whole),)
     return CHILDREN, ()
@@ -128,7 +128,7 @@ def attributes_in_braces(text: str, start: int) -> Fix | None:
     if found is None:
         return None
     ends = Span(start, start + 1), Span(found.end() - 1, found.end())
-    changes = tuple(Change(Place(end), sign) for end, sign in zip(ends, "()", strict=True))
+    changes = tuple(FixEdit(Place(end), sign) for end, sign in zip(ends, "()", strict=True))
     is_whole = _REST.match(text, found.end()) is not None and "(" not in text[line_start(text, 0, start) : start]
     return Fix("Write `(` and `)`", changes, safe=is_whole)
 
@@ -146,7 +146,7 @@ def _look_alikes(text: str, start: int) -> tuple[Fix, ...]:
     from unicodedata import normalize  # few files need it
 
     is_quote = text[start] in _OTHER_QUOTES
-    changes: list[Change] = []
+    changes: list[FixEdit] = []
     for at in range(start, line_end(text, start)):
         other = text[at]
         in_text = is_quote and len(changes) % 2 == 1
@@ -154,7 +154,7 @@ def _look_alikes(text: str, start: int) -> tuple[Fix, ...]:
             break  # texts and comments may contain any character
         plain = _LOOKS_LIKE.get(other) or normalize("NFKC", other)
         if plain != other and plain.isascii() and (other in _OTHER_QUOTES) == is_quote:
-            changes.append(Change(Place(Span(at, at + 1)), plain))
+            changes.append(FixEdit(Place(Span(at, at + 1)), plain))
     return (Fix("Write plain characters", tuple(changes)),) if changes else ()
 
 

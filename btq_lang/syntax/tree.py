@@ -39,16 +39,16 @@ from btq_lang.syntax.clauses import OnViolation as OnViolation
 from btq_lang.syntax.clauses import Operand as Operand
 from btq_lang.syntax.clauses import Parameter as Parameter
 from btq_lang.syntax.clauses import Path as Path
-from btq_lang.syntax.clauses import Scope as Scope
+from btq_lang.syntax.clauses import ScopeClause as ScopeClause
 from btq_lang.syntax.clauses import Subject as Subject
 from btq_lang.syntax.clauses import Sum as Sum
 from btq_lang.syntax.clauses import Table as Table
 from btq_lang.syntax.clauses import Window as Window
 from btq_lang.syntax.node_clauses import NodeClause as NodeClause
-from btq_lang.syntax.node_clauses import Quality as Quality
 from btq_lang.syntax.node_clauses import QualityPath as QualityPath
 from btq_lang.syntax.node_clauses import ReqRef as ReqRef
 from btq_lang.syntax.node_clauses import Requirement as Requirement
+from btq_lang.syntax.node_clauses import SatisficedQuality as SatisficedQuality
 from btq_lang.syntax.node_clauses import Satisfices as Satisfices
 from btq_lang.syntax.node_clauses import Satisfies as Satisfies
 from btq_lang.syntax.node_clauses import Tags as Tags
@@ -209,7 +209,7 @@ class Tree(Part):
         return chain.from_iterable([child.walk() for child in self.children if isinstance(child, Node)])
 
 
-class Skipped(Part):
+class SkippedLines(Part):
     """Lines that do not form an item; a diagnostic says what is wrong with them."""
 
 
@@ -226,7 +226,7 @@ Item: TypeAlias = (
     | Root
     | Tree
     | Verbatim
-    | Skipped
+    | SkippedLines
 )
 
 

@@ -16,14 +16,24 @@ from btq_lang.diagnostics.model import Place
 from btq_lang.evidence.boxes import measured_by
 from btq_lang.evidence.sentences import result
 from btq_lang.evidence.verdicts import WORST_FIRST, RequirementVerdict
-from btq_lang.graph.figure import Box, Measured, Note
+from btq_lang.graph.figure import Box, MeasuredClause, Note
 from btq_lang.graph.missions import by_tree, concerns, figure, requirement_note
-from btq_lang.requirements.model import Applied, Mission, Requirement, Target
+from btq_lang.requirements.model import Applied, MissionRun, NodeTarget, ResolvedRequirement
 from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.syntax.tree import QualityDecl
-from btq_lang.trace.meanings import Meaning, Meanings
-from btq_lang.trace.overview import WAYS, At, Evidence, NodeRow, Overview, QualityRow, RequirementRow, TreeRow, Use
-from btq_lang.trace.overview import Total as TotalRow
+from btq_lang.trace.meanings import Meanings, NameMeaning
+from btq_lang.trace.overview import (
+    WAYS,
+    AppliedRequirement,
+    At,
+    ClauseEvidence,
+    NodeRow,
+    Overview,
+    QualityRow,
+    RequirementRow,
+    TreeRow,
+)
+from btq_lang.trace.overview import CharacteristicTotals as TotalRow
 from btq_lang.trace.ways import declared_ways
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span as TextSpan
@@ -83,10 +93,10 @@ class _Collector:
         self._notes: defaultdict[int, dict[object, Note]] = defaultdict(dict)  # at them, by what they represent
         self._places: dict[int, At] = {}  # of trees
         self._requirements: dict[_Key, RequirementRow] = {}
-        self._meanings: dict[_Key, Meaning] = {}  # of their qualities
-        self._uses: defaultdict[_Key, dict[Use, None]] = defaultdict(dict)
+        self._meanings: dict[_Key, NameMeaning] = {}  # of their qualities
+        self._uses: defaultdict[_Key, dict[AppliedRequirement, None]] = defaultdict(dict)
         self._loose: dict[_Key, list[str]] = {}  # without a node in every mission in which other clauses have one
-        self._seen: defaultdict[_Key, list[Evidence]] = defaultdict(list)
+        self._seen: defaultdict[_Key, list[ClauseEvidence]] = defaultdict(list)
         self._qualities: dict[str, QualityRow] = {}
         self._concerned: defaultdict[str, dict[str, None]] = defaultdict(dict)  # the nodes that satisfice a quality
 
@@ -186,7 +196,8 @@ class _Collector:
         for each in self._verdicts_of(path) if self._verdicts_of is not None else ():
             if (requirement := found.all.get(each.id)) is not None:
                 self._seen[_place_of(requirement)] += [
-                    Evidence(self._shown(path), one.text, one.path, one.verdict, result(one)) for one in each.clauses
+                    ClauseEvidence(self._shown(path), one.text, one.path, one.verdict, result(one))
+                    for one in each.clauses
                 ]
 
     def _quality(self, name: str, meanings: Meanings, at: At) -> str:
@@ -213,7 +224,7 @@ class _Collector:
             at = places[applied.requirement.name]
             sources = applied.nodes
             own.update((id(source), None) for source in sources)
-            use = Use(
+            use = AppliedRequirement(
                 _subject(applied),
                 tuple(dict.fromkeys(self._nodes[id(source.node)].key for source in sources)),
                 applied.how,
@@ -228,7 +239,9 @@ class _Collector:
         for trace in found.traces:
             own[id(trace.node)] = None
             at, node, name = places[trace.requirement], id(trace.node.node), trace.requirement
-            use = Use(_name(trace.node), (self._nodes[node].key,), "link", "", place(trace.node.place), ())
+            use = AppliedRequirement(
+                _name(trace.node), (self._nodes[node].key,), "link", "", place(trace.node.place), ()
+            )
             self._uses[at][use] = None
             key, notes = self._requirements[at].key, self._notes[node]
             if all(note.key != key for note in notes.values()):
@@ -275,7 +288,7 @@ def _places(workspace: Workspace, shown: Callable[[str], str]) -> Callable[[Plac
     return at
 
 
-def _place_of(requirement: Requirement) -> _Key:
+def _place_of(requirement: ResolvedRequirement) -> _Key:
     """The place where a requirement is defined: the same in all missions that use it."""
     return id(requirement.place.anchor), requirement.place.span.start
 
@@ -312,9 +325,9 @@ def _is_below(found: Requirements, source: ResolvedNode, own: dict[int, None]) -
 
 def _subject(applied: Applied) -> str:
     subject = applied.subject
-    if isinstance(subject, Target):
+    if isinstance(subject, NodeTarget):
         return "/".join((*subject.through, applied.tree or _name(subject.node)))
-    if isinstance(subject, Mission):
+    if isinstance(subject, MissionRun):
         return "mission"
     claim = applied.requirement.claims[0]
     return claim.text.partition(f" {claim.verb} ")[0]
@@ -332,14 +345,14 @@ def _name(source: ResolvedNode) -> str:
     return source.shown.removeprefix("`").removesuffix("`")
 
 
-def _note(key: str, applied: Applied, use: Use, measured: tuple[Measured, ...]) -> Note:
+def _note(key: str, applied: Applied, use: AppliedRequirement, measured: tuple[MeasuredClause, ...]) -> Note:
     """The note at a node; its state is that of the weakest clause."""
     ways = {clause.way for clause in use.clauses}
     state = next((way for way in ("reviewed", "monitored", "enforced") if way in ways), "")
     return replace(requirement_note(key, applied, measured, state), link=f"#{key}")
 
 
-def _stated(requirement: Requirement) -> Iterator[str]:
+def _stated(requirement: ResolvedRequirement) -> Iterator[str]:
     yield from (claim.text for claim in requirement.claims)
     yield from (scope.text for scope in requirement.scopes)
     if requirement.odds is not None:
@@ -382,5 +395,5 @@ def _totals(
     return tuple(totals)
 
 
-_NO_MEANING: Final = Meaning(None, (), None, "")
+_NO_MEANING: Final = NameMeaning(None, (), None, "")
 _CARRIES: Final[tuple[Carries, ...]] = ("own", "above", "none")

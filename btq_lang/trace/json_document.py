@@ -38,7 +38,7 @@ from __future__ import annotations
 import json
 from typing import TypeAlias
 
-from btq_lang.trace.overview import Overview, RequirementRow, Total
+from btq_lang.trace.overview import CharacteristicTotals, Overview, RequirementRow
 from btq_lang.util.fields import as_dict
 from btq_lang.util.version import __version__
 
@@ -111,6 +111,6 @@ def _requirement(each: RequirementRow, has_evidence: bool) -> Json:
     }
 
 
-def _total(each: Total) -> Json:
+def _total(each: CharacteristicTotals) -> Json:
     fields = as_dict(each)
     return {"characteristic": fields.pop("id") or None, **fields}

@@ -12,7 +12,7 @@ from btq_lang.util.record import Record
 from btq_lang.workspace.workspace import Workspace
 
 
-class Meaning(Record):
+class NameMeaning(Record):
     """The meaning of a name.
 
     Attributes:
@@ -41,7 +41,7 @@ class Meanings:
         targets = {name: each.symbol.target for name, each in found.items() if each is not None}
         self._own = {name: each for name, each in targets.items() if isinstance(each, QualityDecl)}
 
-    def of(self, name: str) -> Meaning:
+    def of(self, name: str) -> NameMeaning:
         """The meaning of a name, or of names joined by dots."""
         own: list[QualityDecl] = []
         declared = self._own.get(fold(name.rpartition(".")[2]))
@@ -54,10 +54,10 @@ class Meanings:
         model = [known.id, *([known.parent] if known.parent else [])] if known is not None else []
         if own:
             text = own[0].text.text if own[0].text is not None else ""
-            return Meaning(ids[0], (*ids[1:], *model), self._characteristic(known), text)
+            return NameMeaning(ids[0], (*ids[1:], *model), self._characteristic(known), text)
         if known is None:
-            return Meaning(None, (), None, "")
-        return Meaning(known.id, tuple(model[1:]), self._characteristic(known), known.definition)
+            return NameMeaning(None, (), None, "")
+        return NameMeaning(known.id, tuple(model[1:]), self._characteristic(known), known.definition)
 
     def _in_model(self, name: str) -> Quality | None:
         match = find(tuple(name.split(".")), self.edition)

@@ -51,7 +51,7 @@ class Clause(Record):
     is_demanded: bool = False
 
 
-class Use(Record):
+class AppliedRequirement(Record):
     """A requirement applied to a subject.
 
     Attributes:
@@ -70,7 +70,7 @@ class Use(Record):
     clauses: tuple[Clause, ...]
 
 
-class Evidence(Record):
+class ClauseEvidence(Record):
     """What logs show of a clause at a node.
 
     Attributes:
@@ -106,10 +106,10 @@ class RequirementRow(Record):
     quality_key: str | None
     clauses: tuple[str, ...]
     at: At
-    uses: tuple[Use, ...]
+    uses: tuple[AppliedRequirement, ...]
     loose: tuple[str, ...]
     is_hard: bool
-    evidence: tuple[Evidence, ...]
+    evidence: tuple[ClauseEvidence, ...]
 
     @property
     def way(self) -> str:
@@ -175,7 +175,7 @@ class TreeRow(Record):
     figure: Figure
 
 
-class Total(Record):
+class CharacteristicTotals(Record):
     """The totals of one characteristic; the last row is for what belongs to none.
 
     Attributes:
@@ -213,7 +213,7 @@ class Overview(Record):
     qualities: tuple[QualityRow, ...]
     nodes: tuple[NodeRow, ...]
     trees: tuple[TreeRow, ...]
-    totals: tuple[Total, ...]
+    totals: tuple[CharacteristicTotals, ...]
     has_evidence: bool = False
     errors: int = 0
 

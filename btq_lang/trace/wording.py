@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.trace.overview import WAYS, Overview, QualityRow, RequirementRow, Use
+from btq_lang.trace.overview import WAYS, AppliedRequirement, Overview, QualityRow, RequirementRow
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def evidence_lines(requirement: RequirementRow) -> Iterator[tuple[Verdict, str]]
         yield each.verdict, f"{' '.join(parts)}: {each.result}" if parts else each.result
 
 
-def remarks(requirement: RequirementRow, use: Use) -> Iterator[str]:
+def remarks(requirement: RequirementRow, use: AppliedRequirement) -> Iterator[str]:
     """The remarks on a subject: how its requirement is attached, unless by `satisfies`, and how it is covered, unless
     that is the same for all.
     """

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     Piece: TypeAlias = tuple[int, int, int, int]
 
 
-class Places:
+class OriginMap:
     """Pieces of a generated text, each with its origin; computed on first use, and only those of the lines that are
     asked for, because most lines have no diagnostics to map.
 
@@ -80,7 +80,7 @@ class Places:
         return pieces[first : bisect_right(pieces, span.start, lo=first, key=_BEGIN)]
 
     def __reduce__(self) -> tuple[object, ...]:
-        return Places, (self.pieces, (), _as_they_are)
+        return OriginMap, (self.pieces, (), _as_they_are)
 
     def origin(self, span: Span) -> Span:
         """The span of the original for a span of the generated text: from the first piece in it to the last.

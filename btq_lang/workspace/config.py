@@ -22,7 +22,7 @@ from btq_lang.workspace.overrides import Override, severities_at
 
 if TYPE_CHECKING:
     from btq_lang.workspace.factories import Factory
-    from btq_lang.workspace.project_evidence import Evidence
+    from btq_lang.workspace.project_evidence import EvidenceSettings
 
 Kind: TypeAlias = "Literal['btq.toml', 'pyproject.toml']"
 PROJECT_FILES: tuple[Kind, ...] = ("btq.toml", "pyproject.toml")  # the first of those in a folder counts
@@ -75,7 +75,7 @@ class Project(Record):
     folders: tuple[str, ...] = ()
     pools: tuple[str, ...] = ()
     created: frozenset[str] = frozenset()
-    evidence: Evidence | None = None
+    evidence: EvidenceSettings | None = None
     factories: tuple[Factory, ...] = ()
     node_files: tuple[str, ...] = ()
     cpp: tuple[str, ...] = ()

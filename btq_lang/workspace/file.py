@@ -18,12 +18,12 @@ from btq_lang.parser import Parsed, parse, reparse
 from btq_lang.syntax.tree import Entry, Include, Item
 from btq_lang.util.record import Record
 from btq_lang.util.text import LineIndex, Placed, Span, changed
-from btq_lang.workspace.item_index import Facts, Name, Names, Said, Tally
+from btq_lang.workspace.item_index import Facts, Name, NameCounts, Names, Said
 from btq_lang.workspace.symbols import Symbol, Use
 
 if TYPE_CHECKING:
     from btq_lang.cpp.model import CppNode
-    from btq_lang.util.source_map import Places
+    from btq_lang.util.source_map import OriginMap
     from btq_lang.workspace.references import Mention
 
     Kept = TypeVar("Kept", bound=Item)
@@ -53,7 +53,7 @@ class File:
         self.origin = origin
         self._of_type: dict[type, tuple[Any, ...]] = {}
         self._first_users: dict[Kind, dict[str, Facts]] = {}
-        self._tallies: dict[Said, Tally] = {}
+        self._tallies: dict[Said, NameCounts] = {}
 
     def edited(self, text: str, origin: Origin | None = None) -> File:
         """The file after an edit, which shares what the edit does not touch.
@@ -199,7 +199,7 @@ class File:
     def said(self, of: Said) -> frozenset[str]:
         """The names of a kind that the file's items refer to, or those that their facts have of another sort."""
         if of not in self._tallies:
-            self._tallies[of] = Tally.of(self.facts.values(), of)
+            self._tallies[of] = NameCounts.of(self.facts.values(), of)
         return self._tallies[of].names
 
     @cached_property
@@ -417,7 +417,7 @@ class Origin(Record):
     """
 
     text: str
-    places: Places
+    places: OriginMap
     diagnostics: tuple[Diagnostic, ...]
     is_complete: bool
     defines: frozenset[str] = frozenset()

@@ -70,7 +70,7 @@ class Reported:
         return [_placed(each, starts[0] if starts else 0, of_item) for each in self.diagnostics]
 
 
-class Findings:
+class FileFindings:
     """The diagnostics of a file.
 
     Attributes:
@@ -83,7 +83,7 @@ class Findings:
         self._diagnostics: tuple[Diagnostic, ...] | None = None
 
     @classmethod
-    def placed(cls, diagnostics: Iterable[Diagnostic]) -> Findings:
+    def placed(cls, diagnostics: Iterable[Diagnostic]) -> FileFindings:
         """The diagnostics of a file that count from its start already."""
         reported = Reported(diagnostics)
         return cls([(reported, [])] if reported.diagnostics else [])

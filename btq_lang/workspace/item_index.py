@@ -81,7 +81,7 @@ class Facts:
         return used - {name} if used else used
 
 
-class Tally:
+class NameCounts:
     """For each of some names, the number of a file's items that have it."""
 
     def __init__(self, of: Said, counts: dict[str, int]) -> None:
@@ -89,7 +89,7 @@ class Tally:
         self._counts = counts
 
     @classmethod
-    def of(cls, items: Iterable[Facts], of: Said) -> Tally:
+    def of(cls, items: Iterable[Facts], of: Said) -> NameCounts:
         """A tally of the names of a kind that items use, or of another set of names in their facts."""
         names = [each.names_of(of) for each in items if type(each.item) not in _SAYING_NOTHING]
         counts: dict[str, int] = {}
@@ -97,7 +97,7 @@ class Tally:
             counts[name] = counts.get(name, 0) + 1
         return cls(of, counts)
 
-    def edited(self, gone: Iterable[Facts], come: Iterable[Facts]) -> Tally:
+    def edited(self, gone: Iterable[Facts], come: Iterable[Facts]) -> NameCounts:
         """The tally after an edit that replaced some items; the same object if it is equal."""
         changes: dict[str, int] = {}
         for facts, change in (*((each, 1) for each in come), *((each, -1) for each in gone)):
@@ -110,7 +110,7 @@ class Tally:
             counts[name] = counts.get(name, 0) + change
             if not counts[name]:
                 del counts[name]
-        return Tally(self._of, counts)
+        return NameCounts(self._of, counts)
 
     @cached_property
     def names(self) -> frozenset[str]:

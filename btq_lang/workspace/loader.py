@@ -51,7 +51,7 @@ class LoadProblem(Record):
         return f"{shown(self.path)}{place}: {self.message}"
 
 
-class Found(Record):
+class FoundProject(Record):
     """The project of a folder, and the file it was read from; None if there is no such file."""
 
     project: Project
@@ -59,7 +59,7 @@ class Found(Record):
     problems: tuple[LoadProblem, ...] = ()
 
 
-class Loaded(Record):
+class LoadedFiles(Record):
     """Files with all that they include.
 
     Attributes:
@@ -78,7 +78,7 @@ class Loaded(Record):
     problems: tuple[LoadProblem, ...] = ()
 
 
-def find_project(start: str, known: Mapping[str, str] | None = None) -> Found:
+def find_project(start: str, known: Mapping[str, str] | None = None) -> FoundProject:
     """The project of a file or folder: the nearest folder above with a btq.toml, or a pyproject.toml with `[tool.btq]`.
 
     If a folder has both, btq.toml counts.
@@ -99,15 +99,15 @@ def find_project(start: str, known: Mapping[str, str] | None = None) -> Found:
             if kind == "pyproject.toml" and not has_btq_table(known.get(path) or read(path)[0] or ""):
                 continue
             return _project_in(path, root, known)
-    return Found(Project(folder), None)
+    return FoundProject(Project(folder), None)
 
 
-def _project_in(path: str, root: str, known: Mapping[str, str]) -> Found:
+def _project_in(path: str, root: str, known: Mapping[str, str]) -> FoundProject:
     text, problem = (known[path], None) if path in known else read(path)
     project, problems = parse_project(text or "", "pyproject.toml" if keys_above(path) else "btq.toml", root)
     reported = tuple(LoadProblem(path, found.message, found.position) for found in problems)
     lost = tuple(folder for folder in project.include_paths if not os.path.isdir(folder))
-    return Found(replace(project, lost_paths=lost), path, (problem, *reported) if problem else reported)
+    return FoundProject(replace(project, lost_paths=lost), path, (problem, *reported) if problem else reported)
 
 
 def pool_of(folder: str, top: str) -> str:
@@ -159,7 +159,7 @@ def load(
     project: Project,
     includes_of: Callable[[str, str], Iterable[str]],
     known: Mapping[str, str] | None = None,
-) -> Loaded:
+) -> LoadedFiles:
     """Read files and folders, and all that the files include, directly or not.
 
     Args:
@@ -193,7 +193,7 @@ def load(
                 absent.update(dict.fromkeys(candidates))
             elif target not in texts and add(target):
                 waiting.append(target)
-    return Loaded(texts, readable, tuple(damaged), tuple(absent), tuple(problems))
+    return LoadedFiles(texts, readable, tuple(damaged), tuple(absent), tuple(problems))
 
 
 def collect(

@@ -17,7 +17,7 @@ from btq_lang.util.spelling import near
 from btq_lang.workspace.inputs import Declared
 
 
-class Meaning(Record):
+class NodeMeaning(Record):
     """What a node means.
 
     Attributes:
@@ -36,7 +36,7 @@ class Meaning(Record):
     behavior: NodeKind | None = None
 
 
-def meaning_of(node: Node, declared: Callable[[str], Declared]) -> Meaning:
+def meaning_of(node: Node, declared: Callable[[str], Declared]) -> NodeMeaning:
     """What a node means.
 
     Args:
@@ -45,18 +45,18 @@ def meaning_of(node: Node, declared: Callable[[str], Declared]) -> Meaning:
     name = node.id
     category = node.category.raw if node.category is not None else None
     if name is None or category == "SubTree":
-        return Meaning(None, category)
+        return NodeMeaning(None, category)
     if is_placeholder(node):
-        return Meaning(None, PLACEHOLDERS[name.raw])
+        return NodeMeaning(None, PLACEHOLDERS[name.raw])
     kind = kind_of(node)
     if kind is not None:
-        return Meaning(kind, category or kind.category, behavior=kind)
+        return NodeMeaning(kind, category or kind.category, behavior=kind)
     of_model, known_node = declared(name.text)
     known = KNOWN_WORDS.get(name.text) if of_model is None and not name.quoted else None
     if known is None:
-        return Meaning(None, category or of_model, of_model, behavior=known_node)
+        return NodeMeaning(None, category or of_model, of_model, behavior=known_node)
     kind = BUILTINS.get(known.replacement or "")
-    return Meaning(kind, category or known.category, is_outdated=kind is None and category is None, behavior=kind)
+    return NodeMeaning(kind, category or known.category, is_outdated=kind is None and category is None, behavior=kind)
 
 
 def kind_of(node: Node) -> NodeKind | None:

@@ -47,7 +47,7 @@ class SignalSource(Record):
     unit: Unit | None = None
 
 
-class Evidence(Record):
+class EvidenceSettings(Record):
     """What a project declares about logs.
 
     Attributes:
@@ -61,10 +61,10 @@ class Evidence(Record):
     signals: tuple[SignalSource, ...] = ()
 
 
-def read_evidence(table: object) -> tuple[Evidence, list[Complaint]]:
+def read_evidence(table: object) -> tuple[EvidenceSettings, list[Complaint]]:
     """The contents of a table, and what is wrong with it."""
     if not isinstance(table, dict):
-        return Evidence(), [("`evidence` must be a table", ())]
+        return EvidenceSettings(), [("`evidence` must be a table", ())]
     complaints: list[Complaint] = [
         (f"unknown key `evidence.{key}`{did_you_mean(near(key, KEYS, 1))}", (key,)) for key in table if key not in KEYS
     ]
@@ -85,7 +85,7 @@ def read_evidence(table: object) -> tuple[Evidence, list[Complaint]]:
         if not wrong:
             unit = source.get("unit")
             sources.append(SignalSource(name, **{**source, "unit": None if unit is None else parse_unit(unit)}))
-    return Evidence(tuple(logs or ()), store, tuple(sources)), complaints
+    return EvidenceSettings(tuple(logs or ()), store, tuple(sources)), complaints
 
 
 def _wrong(name: str, source: Any) -> Iterator[Complaint]:

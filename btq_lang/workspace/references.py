@@ -87,7 +87,7 @@ class Mention(Record):
 
 def mentions(item: syntax.Item) -> tuple[Mention, ...]:
     """All words of an item that name something, in the order of the text."""
-    listener = Listener()
+    listener = ReferenceListener()
     report(item, listener)
     return tuple(sorted(listener.mentions, key=attrgetter("span")))
 
@@ -99,7 +99,7 @@ def summarize(item: syntax.Item) -> Summary:
     return Summary(tuple(names.symbols), tuple(names.uses)) if names.symbols or names.uses else _NOTHING
 
 
-def report(item: syntax.Item, to: Listener) -> None:
+def report(item: syntax.Item, to: ReferenceListener) -> None:
     """Report the words of an item that name something, nearly in the order of the text."""
     if isinstance(item, syntax.Tree):
         to.word(What.TREE, item.name, defines=True)
@@ -146,7 +146,7 @@ def report(item: syntax.Item, to: Listener) -> None:
         to.word(What.INCLUDE, item.path)
 
 
-class Listener:
+class ReferenceListener:
     """Makes a mention of each word of an item that names something.  That would be too slow for some, who receive the
     words themselves.
 
@@ -185,7 +185,7 @@ class Listener:
         """The value of an attribute that as a whole names nothing; parts of it may follow, in the order of the text."""
 
 
-class _Names(Listener):
+class _Names(ReferenceListener):
     """The symbols and uses of a summary."""
 
     skips_values = True
@@ -217,12 +217,12 @@ class _Names(Listener):
         self.uses.append(Use(KIND_OF[what], ".".join([word.text for word in words]), span, node))
 
 
-def _model(model: syntax.Model, to: Listener) -> None:
+def _model(model: syntax.Model, to: ReferenceListener) -> None:
     to.word(What.NODE, model.name, defines=True, owner=model)
     _ports(model.ports, model, to)
 
 
-def _ports(ports: Iterable[syntax.Port], owner: syntax.Model | syntax.Tree, to: Listener) -> None:
+def _ports(ports: Iterable[syntax.Port], owner: syntax.Model | syntax.Tree, to: ReferenceListener) -> None:
     """The port of a tree is an entry of its blackboard."""
     for port in ports:
         name = port.id
@@ -235,7 +235,7 @@ def _ports(ports: Iterable[syntax.Port], owner: syntax.Model | syntax.Tree, to: 
 # ---- nodes ----
 
 
-def _node(node: syntax.Node, tree: syntax.Tree, to: Listener) -> None:
+def _node(node: syntax.Node, tree: syntax.Tree, to: ReferenceListener) -> None:
     if to.skips_values:
         run = called(node)
         to.word(What.NODE if run is None else What.TREE, run or node.id, node=node)
@@ -245,7 +245,7 @@ def _node(node: syntax.Node, tree: syntax.Tree, to: Listener) -> None:
         _clauses(node.clauses, node, to)
 
 
-def _words_of(node: syntax.Node, tree: syntax.Tree, to: Listener) -> None:
+def _words_of(node: syntax.Node, tree: syntax.Tree, to: ReferenceListener) -> None:
     kind, label = node.kind, node.label
     stands_for: syntax.Word | None = None
     if node.category is None and kind is not None and kind.raw not in _STANDING_FOR_OTHERS:  # nearly all
@@ -287,7 +287,7 @@ def placeholder(node: syntax.Node) -> syntax.Word | None:
 
 
 def _pair(
-    pair: syntax.Pair, node: syntax.Node, tree: syntax.Tree, stands_for: syntax.Word | None, to: Listener
+    pair: syntax.Pair, node: syntax.Node, tree: syntax.Tree, stands_for: syntax.Word | None, to: ReferenceListener
 ) -> None:
     key, value = pair.key.text, pair.value
     if key == "name":
@@ -331,7 +331,7 @@ def _keys_of(
     node: syntax.Node | None,
     tree: syntax.Tree | None,
     pair: syntax.Pair | None,
-    to: Listener,
+    to: ReferenceListener,
     root: bool = False,
 ) -> None:
     """`{key}`, `{@key}`, and `{=}`, which is the entry named as the port."""
@@ -347,7 +347,7 @@ def _keys_of(
     to.part(Mention(What.KEY, name, Span(start, start + len(name)), word, False, node, tree, pair, False, root))
 
 
-def _script(word: syntax.Word, node: syntax.Node, tree: syntax.Tree, pair: syntax.Pair, to: Listener) -> None:
+def _script(word: syntax.Word, node: syntax.Node, tree: syntax.Tree, pair: syntax.Pair, to: ReferenceListener) -> None:
     """The entries that a script reads and writes; not of one with escapes, whose offsets differ."""
     text = word.text
     if len(text) != len(word.raw) - (2 if word.quoted else 0):
@@ -370,7 +370,7 @@ def _variables(text: str) -> tuple[Variable, ...]:
     return variables(parse_script(text))
 
 
-def _clauses(clauses: Iterable[syntax.NodeClause], node: syntax.Node | None, to: Listener) -> None:
+def _clauses(clauses: Iterable[syntax.NodeClause], node: syntax.Node | None, to: ReferenceListener) -> None:
     for clause in clauses:
         if isinstance(clause, syntax.Tags):
             for name in clause.names:
@@ -389,14 +389,16 @@ def _clauses(clauses: Iterable[syntax.NodeClause], node: syntax.Node | None, to:
 # ---- requirements ----
 
 
-def _reference(reference: syntax.ReqRef, node: syntax.Node | None, to: Listener) -> None:
+def _reference(reference: syntax.ReqRef, node: syntax.Node | None, to: ReferenceListener) -> None:
     to.word(What.REQUIREMENT, reference.name, node=node)
     for argument in reference.arguments:
         to.word(What.PARAMETER, argument.name, owner=reference.name.text)
         _values(argument.value, None, to)
 
 
-def _requirement(requirement: syntax.Requirement, node: syntax.Node | None, attached: bool, to: Listener) -> None:
+def _requirement(
+    requirement: syntax.Requirement, node: syntax.Node | None, attached: bool, to: ReferenceListener
+) -> None:
     refers = attached and requirement.is_reference
     to.word(What.REQUIREMENT, requirement.name, defines=not refers, node=node, owner=requirement)
     _quality(requirement.quality, node, to)
@@ -410,13 +412,15 @@ def _requirement(requirement: syntax.Requirement, node: syntax.Node | None, atta
         _values(clause, requirement, to)
 
 
-def _quality(path: syntax.QualityPath | None, node: syntax.Node | None, to: Listener) -> None:
+def _quality(path: syntax.QualityPath | None, node: syntax.Node | None, to: ReferenceListener) -> None:
     if path is not None:
         to.words(What.QUALITY, path.names, path.span, node)
 
 
 def _values(
-    part: syntax.Clause | syntax.Parameter | syntax.Argument | object, owner: syntax.Requirement | None, to: Listener
+    part: syntax.Clause | syntax.Parameter | syntax.Argument | object,
+    owner: syntax.Requirement | None,
+    to: ReferenceListener,
 ) -> None:
     """The names and quantities in clauses, conditions and bounds."""
     for found in () if to.skips_values else syntax.walk(part):
@@ -438,13 +442,13 @@ def _values(
             to.word(What.PLACE, found.name)
 
 
-def _quantities(part: object, to: Listener) -> None:
+def _quantities(part: object, to: ReferenceListener) -> None:
     for found in () if to.skips_values else syntax.walk(part):
         if isinstance(found, syntax.Word) and found.kind == QUANTITY:
             to.word(What.QUANTITY, found)
 
 
-def _path(path: syntax.Path | None, to: Listener) -> None:
+def _path(path: syntax.Path | None, to: ReferenceListener) -> None:
     for name in path.names if path is not None else ():
         to.word(What.PLACE, name)
 

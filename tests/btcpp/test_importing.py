@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from xml_elements import elements
 
-from btq_lang.btcpp.document import Attribute, Comment, Document, Element, Text, escape, write
+from btq_lang.btcpp.document import Attribute, Document, Element, XmlComment, XmlText, escape, write
 from btq_lang.btcpp.export import export
 from btq_lang.btcpp.importing import import_xml
 from btq_lang.btcpp.reader import read
@@ -558,7 +558,7 @@ attributes = st.dictionaries(keys, values, max_size=4).map(
     lambda pairs: [Attribute(key, escape(value)) for key, value in pairs.items()]
 )
 comments = st.builds(
-    Comment,
+    XmlComment,
     st.text(st.characters(exclude_categories=("Cs", "Cc"), include_characters="\n\t"), max_size=12).filter(
         lambda text: "--" not in text and not text.endswith("-") and "*/" not in text
     ),
@@ -576,7 +576,7 @@ tree = st.builds(
     st.lists(node | comments, max_size=4),
 )
 port = st.builds(
-    lambda tag, found, text: Element(tag, found, [Text(text)] if text.strip() else []),
+    lambda tag, found, text: Element(tag, found, [XmlText(text)] if text.strip() else []),
     st.sampled_from(["input_port", "output_port", "inout_port", "port"]),
     st.dictionaries(st.sampled_from(["name", "type", "default", "x"]), values, max_size=4).map(
         lambda pairs: [Attribute(key, escape(value)) for key, value in pairs.items()]

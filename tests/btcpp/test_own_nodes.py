@@ -9,7 +9,7 @@ from btq_lang.btcpp.document import write
 from btq_lang.btcpp.export import export
 from btq_lang.btcpp.importing import import_xml
 from btq_lang.btcpp.restoring import restored
-from btq_lang.btcpp.side_file import Built, side_file
+from btq_lang.btcpp.side_file import BuiltFile, side_file
 from btq_lang.checks import check
 from btq_lang.workspace.workspace import Workspace
 
@@ -57,7 +57,7 @@ def test_an_edited_build_gives_back_what_is_said_of_it() -> None:
     workspace = Workspace.of({"main.btq": text})
     done = export(workspace, "main.btq")
     xml = write(done.document)
-    side = side_file(workspace, Built("main.btq", "main.xml", xml, (done.document,), done.elements))
+    side = side_file(workspace, BuiltFile("main.btq", "main.xml", xml, (done.document,), done.elements))
     assert side is not None
     edited = xml.replace('level="2"', 'level="3"')
     found = restored(edited, import_xml(edited).text, side)

@@ -17,8 +17,8 @@ from btq_lang.btcpp.as_built import as_built
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.export import export
 from btq_lang.btcpp.importing import import_xml
-from btq_lang.btcpp.restoring import Lost, restored
-from btq_lang.btcpp.side_file import Built, is_side_file, side_file, side_path
+from btq_lang.btcpp.restoring import LostClauses, restored
+from btq_lang.btcpp.side_file import BuiltFile, is_side_file, side_file, side_path
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.cli import main
 from btq_lang.projects.opening import Disk
@@ -58,7 +58,7 @@ def built(text: str, **others: str) -> tuple[str, str | None]:
     xml = write(exports[-1].document)
     elements = {key: element for each in exports for key, element in each.elements.items()}
     documents = tuple(each.document for each in exports)
-    return xml, side_file(workspace, Built("main.btq", "main.xml", xml, documents, elements))
+    return xml, side_file(workspace, BuiltFile("main.btq", "main.xml", xml, documents, elements))
 
 
 def said(text: str, **others: str) -> dict[str, Any]:
@@ -246,7 +246,7 @@ def test_of_xml_that_was_edited_the_rest_comes_back() -> None:
     edited = xml.replace('<Pick name="Again"/>', '<Pick name="Again" x="1"/>').replace("<Move ", "<Drive ")
     again = restored(edited, import_xml(edited).text, side)
     assert again is not None
-    assert (again.is_whole, again.lost) == (False, (Lost("satisfices ergonomics", None, 18),))
+    assert (again.is_whole, again.lost) == (False, (LostClauses("satisfices ergonomics", None, 18),))
     now, then = (Workspace.of({"main.btq": text}) for text in (again.text, MISSION))
     assert now.files["main.btq"].parsed.diagnostics == ()
     for kind in (Kind.SIGNAL, Kind.REQUIREMENT, Kind.TREE):

@@ -14,8 +14,8 @@ from lxml import etree
 from xml_elements import elements
 from xml_judges import judged_by
 
-from btq_lang.btcpp.document import Attribute, Comment, Document, Element, Text, escape, write
-from btq_lang.btcpp.reader import MAX_DEPTH, Read, read
+from btq_lang.btcpp.document import Attribute, Document, Element, XmlComment, XmlText, escape, write
+from btq_lang.btcpp.reader import MAX_DEPTH, XmlRead, read
 from btq_lang.util.text import LineIndex, Span
 
 STRICT = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False, encoding="utf-8")
@@ -51,7 +51,7 @@ def strict_elements(data: bytes) -> list[object]:
     return found + [comment.text for comment in around[1] if comment.tag is etree.Comment]
 
 
-def problems(done: Read, text: str) -> list[str]:
+def problems(done: XmlRead, text: str) -> list[str]:
     lines = LineIndex(text)
     return [
         f"{lines.position(each.span.start).line + 1}:{lines.position(each.span.start).column + 1} "
@@ -334,7 +334,7 @@ def test_where_things_stand() -> None:
     a = done.document.root
     b, t = a.children
     assert isinstance(b, Element)
-    assert isinstance(t, Text)
+    assert isinstance(t, XmlText)
     assert text[b.start : b.end] == "<b  x = \"1&lt;\"\n y='2'>"
     assert text[b.start : b.close] == "<b  x = \"1&lt;\"\n y='2'><!-- c --></b>"
     assert [text[b.place(each)[0] :].startswith(each.name) for each in b.attributes] == [True, True]
@@ -381,7 +381,7 @@ def test_hostile_files_are_read_once(hostile: str) -> None:
 
 names = st.from_regex(r"[A-Za-z_][A-Za-z0-9_.-]{0,5}", fullmatch=True)
 values = st.text(st.characters(exclude_categories=("Cs", "Cc"), include_characters="\n\t"), max_size=8)
-comments = values.filter(lambda text: "--" not in text and not text.endswith("-")).map(Comment)
+comments = values.filter(lambda text: "--" not in text and not text.endswith("-")).map(XmlComment)
 made = st.recursive(
     st.builds(
         Element,

@@ -11,7 +11,7 @@ from moving_pages import moving_pages
 
 from btq_lang.btcpp.opening import file_of
 from btq_lang.catalog import versions
-from btq_lang.catalog.changes import ANY, Change
+from btq_lang.catalog.changes import ANY, BehaviorChange
 from btq_lang.catalog.engine_changes import ENGINE_CHANGES
 from btq_lang.catalog.nav2 import DISTRIBUTIONS, PACKAGED
 from btq_lang.catalog.nav2.changes import CHANGES
@@ -50,7 +50,7 @@ def tree(*nodes: str) -> str:
     return "BehaviorTree Main\n    ->\n" + "".join(f"        {node}\n" for node in nodes)
 
 
-def sample(change: Change) -> str:
+def sample(change: BehaviorChange) -> str:
     node = WITH_PORT[change.port] if change.nodes == (ANY,) else change.nodes[0]
     if not change.port or change.value is None:
         return node
@@ -59,7 +59,7 @@ def sample(change: Change) -> str:
 
 
 @pytest.mark.parametrize("change", CHANGES, ids=lambda change: f"{change.since}-{change.nodes[0]}-{change.port}")
-def test_each_change_is_found_on_the_step_that_brings_it(change: Change) -> None:
+def test_each_change_is_found_on_the_step_that_brings_it(change: BehaviorChange) -> None:
     before = DISTRIBUTIONS[DISTRIBUTIONS.index(change.since) - 1]
     said = f"from {change.since.title()} on"
     found = found_moved(tree(sample(change)), before, change.since)
@@ -80,7 +80,7 @@ SAMPLES_OF_ENGINE = {
 }
 
 
-def engine_tree(row: Change, value: str) -> str:
+def engine_tree(row: BehaviorChange, value: str) -> str:
     """A tree with the first node that a row concerns."""
     needed = {"Precondition": 'if = "ready"', "SkipUnlessUpdated": "entry = {e}"}
     node = "M->" if row.nodes[0] == "SequenceWithMemory" else row.nodes[0]
@@ -96,12 +96,12 @@ def moved_engine(text: str, origin: str, target: str, given: str = "main.btq") -
     return show(text, [each for each in check(workspace, given) if each.rule.startswith("target-")])
 
 
-def row_id(row: Change) -> str:
+def row_id(row: BehaviorChange) -> str:
     return f"{row.since}-{row.nodes[0]}-{row.port}-{row.until}"
 
 
 @pytest.mark.parametrize("row", ENGINE_CHANGES, ids=row_id)
-def test_each_change_of_the_engine_is_found_where_it_is_between(row: Change) -> None:
+def test_each_change_of_the_engine_is_found_where_it_is_between(row: BehaviorChange) -> None:
     value = next((each for each in ("0", "1;2", "{q}", "5abc", "5") if row.port and row.matches(each)), "")
     text = engine_tree(row, value)
     before = max((each for each in LINES if not at_least(last_of(each), row.since)), key=numbers, default="3.8")
@@ -137,7 +137,9 @@ def test_each_change_of_the_engine_is_on_the_page_of_one_step() -> None:
     assert len(pages) == 3
     for what in {row.what for row in ENGINE_CHANGES} | {row.what for row in versions.CHANGES}:
         assert sum(what in page for page in pages) == 1, what
-    named = [each for name, each in vars(versions).items() if name.isupper() and isinstance(each, versions.Change)]
+    named = [
+        each for name, each in vars(versions).items() if name.isupper() and isinstance(each, versions.VersionChange)
+    ]
     assert named == [*versions.CHANGES]
 
 

@@ -13,7 +13,7 @@ from in_process import run_btq
 from btq_lang.ide.completion import complete
 from btq_lang.ide.hover import hover
 from btq_lang.ide.navigation import find_references, goto_definition
-from btq_lang.ide.rename import Refusal, prepare_rename
+from btq_lang.ide.rename import RenameRefusal, prepare_rename
 from btq_lang.projects.files import Files
 from btq_lang.projects.opening import open_workspace
 from btq_lang.workspace.workspace import Workspace
@@ -381,7 +381,7 @@ def test_editors_show_them(robot: Path) -> None:
     assert {"speed", "code"} <= {one.label for one in complete(workspace, path, text.index("goal")).proposals}
     for word in ("Drive", "goal"):
         reason = f"cannot rename `{word}`: its definition is in src/drive.cpp, which is C++"
-        assert prepare_rename(workspace, path, text.index(word)) == Refusal(reason)
+        assert prepare_rename(workspace, path, text.index(word)) == RenameRefusal(reason)
     at = text.index("Drive")
     references = [(each, span.start) for each, span in find_references(workspace, path, at, include_definition=False)]
     assert references == [(path, at)]

@@ -12,7 +12,7 @@ from btq_lang.catalog.nav2 import PACKAGED
 from btq_lang.ide.completion import complete
 from btq_lang.ide.hover import hover
 from btq_lang.ide.navigation import find_references, goto_definition
-from btq_lang.ide.rename import Refusal, prepare_rename
+from btq_lang.ide.rename import RenameRefusal, prepare_rename
 from btq_lang.projects.opening import open_workspace
 from btq_lang.workspace.config import parse_project
 
@@ -115,9 +115,9 @@ def test_editors_show_them(robot: Path) -> None:
     assert [target.path for target in goto_definition(workspace, path, at)] == [PACKAGED["nav2-jazzy"]]
     proposed = [each.label for each in complete(workspace, path, MISSION.index("controller_id = Fast")).proposals]
     assert "goal_checker_id" in proposed
-    assert prepare_rename(workspace, path, at) == Refusal("cannot rename `FollowPath`: Nav2 defines it")
+    assert prepare_rename(workspace, path, at) == RenameRefusal("cannot rename `FollowPath`: Nav2 defines it")
     of_port = prepare_rename(workspace, path, MISSION.index("controller_id"))
-    assert of_port == Refusal("cannot rename `controller_id`: Nav2 defines it")
+    assert of_port == RenameRefusal("cannot rename `controller_id`: Nav2 defines it")
     references = find_references(workspace, path, at, include_definition=False)
     assert [(each, span.start) for each, span in references] == [(path, at - 1)]
 

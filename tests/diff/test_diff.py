@@ -13,7 +13,7 @@ import pytest
 from in_process import run_btq
 
 from btq_lang.diff import as_json, as_markdown, as_text
-from btq_lang.diff.comparison import Comparison, Side, compared
+from btq_lang.diff.comparison import MissionComparison, Side, compared
 from btq_lang.diff.matching import common
 from btq_lang.workspace.workspace import Workspace
 
@@ -94,7 +94,7 @@ old.btq -> new.btq
 """
 
 
-def comparison(old: str, new: str) -> Comparison:
+def comparison(old: str, new: str) -> MissionComparison:
     sides = (
         Side(name, Workspace.of({name: text}), (name,), str) for name, text in (("old.btq", old), ("new.btq", new))
     )

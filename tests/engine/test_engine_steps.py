@@ -9,7 +9,7 @@ from typing import NamedTuple
 import pytest
 from engine_loader import Answer, Engine
 
-from btq_lang.catalog.changes import Change
+from btq_lang.catalog.changes import BehaviorChange
 from btq_lang.catalog.engine_changes import ENGINE_CHANGES
 from btq_lang.catalog.versions import at_least
 
@@ -100,7 +100,7 @@ def in_turn(node: str) -> Seen:
     return Seen(f"<{node}>{WHILE}</{node}>", ended, {"4.6": result, "4.7": "SKIPPED"}, ends_go=True)
 
 
-def seen(row: Change, node: str) -> Seen:
+def seen(row: BehaviorChange, node: str) -> Seen:
     """What shows a row."""
     if "Reactive" in node:
         return reactive(node)
@@ -134,7 +134,7 @@ SHOWN = [
 
 
 @pytest.mark.parametrize(("row", "node"), SHOWN, ids=lambda each: getattr(each, "since", each))
-def test_each_row_is_what_the_engine_does(any_engine: Engine, row: Change, node: str) -> None:
+def test_each_row_is_what_the_engine_does(any_engine: Engine, row: BehaviorChange, node: str) -> None:
     shown = seen(row, node)
     known = [what for since, what in shown.by_version.items() if at_least(any_engine.version, since)]
     if known:
@@ -152,7 +152,7 @@ def test_each_row_is_what_the_engine_does(any_engine: Engine, row: Change, node:
 
 
 @pytest.mark.parametrize(("row", "node"), SHOWN, ids=lambda each: getattr(each, "since", each))
-def test_each_row_names_the_version_in_which_something_is_seen(row: Change, node: str) -> None:
+def test_each_row_names_the_version_in_which_something_is_seen(row: BehaviorChange, node: str) -> None:
     changes = seen(row, node).by_version
     changed = [now for (_, before), (now, after) in pairwise(changes.items()) if before != after]
     assert {row.since, row.until, row.after} - {""} <= {*changed}

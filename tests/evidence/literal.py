@@ -15,7 +15,7 @@ from literal_verbs import OPEN, OUT, Judged, counted
 
 from btq_lang.evidence.model import ROOT
 from btq_lang.evidence.odds import lower_limit, upper_limit
-from btq_lang.requirements.model import Mission, Span, Target, Total
+from btq_lang.requirements.model import DurationSum, Interval, MissionRun, NodeTarget
 
 if TYPE_CHECKING:
     from literal_log import Truth
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from literal_runs import Activation
     from literal_verbs import Part, Verdict
 
-    from btq_lang.requirements.model import Applied, Claim, Requirement
+    from btq_lang.requirements.model import Applied, ResolvedClaim, ResolvedRequirement
 
 
 @dataclass(frozen=True)
@@ -43,17 +43,17 @@ class ClauseResult:
 class World(OverRuns):
     """A session, judged as if all began at their earliest, or at their latest."""
 
-    def judged(self, applied: Applied, claim: Claim, part: Part = None) -> list[Judged]:
+    def judged(self, applied: Applied, claim: ResolvedClaim, part: Part = None) -> list[Judged]:
         """What a claim at a node comes to, with its scopes, and with what its guards did.
 
         Args:
             part: the only end of `between` that counts.
         """
         requirement = applied.requirement
-        assert isinstance(applied.subject, Target | Mission)
+        assert isinstance(applied.subject, NodeTarget | MissionRun)
         found = []
         for uid in self.uids(applied.subject):
-            if isinstance(applied.subject, Mission) and claim.verb == "succeeds":
+            if isinstance(applied.subject, MissionRun) and claim.verb == "succeeds":
                 found += self.mission_succeeds(uid, claim, requirement)  # of a run whose start was refused, too
                 continue
             if claim.verb in ("tries", "runs", "follows"):
@@ -78,14 +78,14 @@ class Session:
         self.runs = self.late.runs
         self.activations = self.late.activations
 
-    def judged(self, applied: Applied, claim: Claim) -> list[Judged]:
+    def judged(self, applied: Applied, claim: ResolvedClaim) -> list[Judged]:
         """What a claim comes to."""
-        if isinstance(applied.subject, Span):
+        if isinstance(applied.subject, Interval):
             found = self.spent(
                 claim, [world.spans(applied.subject, claim, applied.requirement) for world in self.worlds]
             )
             return [each for each in found if each.verdict != OUT]
-        if isinstance(applied.subject, Total):
+        if isinstance(applied.subject, DurationSum):
             return self.total(applied.subject, claim, applied.requirement)
         found = self.at_both_ends(applied, claim)
         if claim.verb in ("takes", "uses") and claim.limit is not None and claim.limit.relation == "between":
@@ -96,7 +96,7 @@ class Session:
                 found += self.spent(claim, [world.reactions(uid, claim, applied.requirement) for world in self.worlds])
         return [each for each in found if each.verdict != OUT or claim.verb not in ("starts", "ends", "follows")]
 
-    def at_both_ends(self, applied: Applied, claim: Claim, part: Part = None) -> list[Judged]:
+    def at_both_ends(self, applied: Applied, claim: ResolvedClaim, part: Part = None) -> list[Judged]:
         """What it comes to, for each instance of the node and run, if the ends of the begins agree."""
         early, late = (world.judged(applied, claim, part) for world in self.worlds)
         found = []
@@ -112,7 +112,7 @@ class Session:
                 found.append(Judged(run, uid, None, end, end))
         return found
 
-    def spent(self, claim: Claim, found: Sequence[Sequence[Spent]]) -> list[Judged]:
+    def spent(self, claim: ResolvedClaim, found: Sequence[Sequence[Spent]]) -> list[Judged]:
         """Times between events, of both ends.  What is not answered is violated when the run has ended, and open when
         the log has."""
         judged = []
@@ -124,7 +124,7 @@ class Session:
                 judged.append(Judged(run.run, ROOT, None, run.end, run.end))
         return judged
 
-    def spent_between(self, claim: Claim, one: Spent, other: Spent) -> Judged:
+    def spent_between(self, claim: ResolvedClaim, one: Spent, other: Spent) -> Judged:
         """One of them, at the earliest and at the latest begin."""
         run = self.runs[other.at.run]
         times = one.least, one.most, other.least, other.most
@@ -143,7 +143,7 @@ class Session:
         decided = other.at.end if verdict is False and is_answered else other.until
         return Judged(run.run, other.at.uid, verdict, run.end, decided)
 
-    def total(self, total: Total, claim: Claim, requirement: Requirement) -> list[Judged]:
+    def total(self, total: DurationSum, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Judged]:
         """sum of X, Y: what they did in a run, together."""
         found: list[Judged] = []
         early, late = (world.parts(total, requirement) for world in self.worlds)
@@ -165,7 +165,7 @@ class Session:
             found.append(Judged(run.run, run.uid, verdict, run.end))
         return found
 
-    def kept(self, times: Sequence[int], claim: Claim, one: Activation, other: Activation) -> set[Truth]:
+    def kept(self, times: Sequence[int], claim: ResolvedClaim, one: Activation, other: Activation) -> set[Truth]:
         """Whether durations keep a limit, as it is read at the earliest and at the latest begin."""
         return {
             world.within(max(spent, 0) / 1e6, claim.limit, at)[0]
@@ -194,7 +194,7 @@ class Literal:
         self.runs = [run for session in sessions for run in session.runs]
         self.activations = [each for session in sessions for each in session.activations]
 
-    def clause(self, applied: Applied, claim: Claim) -> ClauseResult:
+    def clause(self, applied: Applied, claim: ResolvedClaim) -> ClauseResult:
         """A claim of an applied requirement, with its scopes, odds and window."""
         requirement = applied.requirement
         judged: list[Judged] = []
@@ -209,7 +209,7 @@ class Literal:
             of_runs = [[each.verdict for each in judged if each.run == run] for run in range(len(self.runs))]
             experiments = [all_of(verdicts) for verdicts in of_runs]
         verdict = self.verdict(requirement, experiments)
-        targets = applied.subject.targets if isinstance(applied.subject, Total) else ()
+        targets = applied.subject.targets if isinstance(applied.subject, DurationSum) else ()
         nodes = {uid for target in targets for uid in self.sessions[0].late.uids(target)} or {
             each.uid for each in judged
         }
@@ -218,7 +218,7 @@ class Literal:
             verdict = "never exercised"  # where others ran that it might have run in, or after
         return ClauseResult(verdict, tuple(judged), tuple(experiments))
 
-    def verdict(self, requirement: Requirement, experiments: Sequence[Verdict]) -> str:
+    def verdict(self, requirement: ResolvedRequirement, experiments: Sequence[Verdict]) -> str:
         """What experiments come to together."""
         odds = requirement.odds
         yes, no, maybe = (sum(each is truth for each in experiments) for truth in (True, False, None))
@@ -240,7 +240,7 @@ class Literal:
         verdicts = {judge(yes, yes + no + maybe), judge(yes + maybe, yes + no + maybe)}
         return verdicts.pop() if len(verdicts) == 1 else "unknown"
 
-    def last(self, requirement: Requirement, judged: list[Judged]) -> list[Judged]:
+    def last(self, requirement: ResolvedRequirement, judged: list[Judged]) -> list[Judged]:
         """Those in the window."""
         window = requirement.window
         if window is None:

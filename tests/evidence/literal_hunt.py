@@ -21,10 +21,10 @@ from random_runs import Case, case
 
 from btq_lang.catalog.units import to_si
 from btq_lang.evidence.evaluate import MissionEvaluation
-from btq_lang.evidence.model import Session
+from btq_lang.evidence.model import LogSession
 from btq_lang.evidence.odds import lower_limit, upper_limit
 from btq_lang.evidence.verdicts import ClauseVerdict
-from btq_lang.requirements.model import Applied, Claim, Requirement, Span, Target, Total
+from btq_lang.requirements.model import Applied, DurationSum, Interval, NodeTarget, ResolvedClaim, ResolvedRequirement
 
 NOT_JUDGED = ("the clause applies to no node", "it has a mistake; run btq check")
 WORST_FIRST = ("violated", "unknown", "undecided", "satisfied", "never exercised")
@@ -51,7 +51,7 @@ class Hunt:
         evaluation = MissionEvaluation(made.mission)
         read = 0
         for rows in made.sessions:
-            read += evaluation.read(Session(made.joined.tree, iter(rows)), made.joined, made.series, read + 1, "log")
+            read += evaluation.read(LogSession(made.joined.tree, iter(rows)), made.joined, made.series, read + 1, "log")
         literal = literal_of(made)
         found = made.mission.requirements
         for requirement in evaluation.result().requirements:
@@ -72,13 +72,13 @@ class Hunt:
                 )
 
     def compare(
-        self, made: Case, seed: int, literal: Literal, applied: Applied, claim: Claim, streamed: ClauseVerdict
+        self, made: Case, seed: int, literal: Literal, applied: Applied, claim: ResolvedClaim, streamed: ClauseVerdict
     ) -> str:
         """Compare a clause; its literal verdict."""
         judged = literal.clause(applied, claim)
-        what = {Span: "from … to", Total: "sum of"}.get(type(applied.subject), claim.verb)
+        what = {Interval: "from … to", DurationSum: "sum of"}.get(type(applied.subject), claim.verb)
         self.compared[f"{what}: {judged.verdict}"] += 1
-        has_path = streamed.unit != "runs" and not isinstance(applied.subject, Span | Total)
+        has_path = streamed.unit != "runs" and not isinstance(applied.subject, Interval | DurationSum)
         expected, got = expected_of(made, applied.requirement, judged, has_path), got_of(streamed, has_path)
         if expected != got:
             of_node = [f"{each}" for each in literal.activations if each.uid in {one.uid for one in judged.judged}]
@@ -108,14 +108,16 @@ def literal_of(made: Case) -> Literal:
         for name, values in made.samples.items()
     }
 
-    def instances(target: Target) -> list[int]:
+    def instances(target: NodeTarget) -> list[int]:
         return [uid for _, uid in made.joined.instances(target) if uid is not None]
 
     of_tree, known = (made.joined.tree, made.subtrees, made.delays), (samples, signals, instances, made.guards)
     return Literal([literal.Session(*of_tree, rows, *known) for rows in made.sessions])
 
 
-def expected_of(made: Case, requirement: Requirement, judged: ClauseResult, has_path: bool) -> dict[str, object]:
+def expected_of(
+    made: Case, requirement: ResolvedRequirement, judged: ClauseResult, has_path: bool
+) -> dict[str, object]:
     """What a clause came to, by the literal judge.
 
     Args:

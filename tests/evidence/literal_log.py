@@ -23,20 +23,20 @@ from btq_lang.requirements.model import (
     Flag,
     InContext,
     Minus,
-    Not,
-    Read,
+    Negation,
+    NodeTarget,
+    Quantity,
+    ResolvedTable,
     Running,
-    Table,
-    Target,
-    Text,
-    Value,
+    SignalRead,
+    TextValue,
 )
 
 if TYPE_CHECKING:
     from literal_runs import Moment
 
     from btq_lang.evidence.model import SampleValue, Transition
-    from btq_lang.requirements.model import Bounded, Condition, Mission, Number, Signal
+    from btq_lang.requirements.model import Bounded, Condition, MissionRun, Number, ResolvedSignal
 
     Measure = Callable[[Sequence[float]], float]
     Truth = bool | None
@@ -67,8 +67,8 @@ class Log:
         delays: Mapping[int, int],
         rows: Sequence[Transition],
         samples: Samples,
-        signals: Mapping[str, Signal],
-        instances: Callable[[Target], list[int]],
+        signals: Mapping[str, ResolvedSignal],
+        instances: Callable[[NodeTarget], list[int]],
         guards: Mapping[int, str],
     ) -> None:
         self.tree = tree
@@ -103,12 +103,12 @@ class Log:
         match condition:
             case Flag(value):
                 return value
-            case Read(signal):
+            case SignalRead(signal):
                 sample = self.sample(signal, moment[0], initially=initially)
                 return None if sample is None else bool(sample)
             case InContext(_, inner):
                 return self.holds(inner, moment, a, initially=initially)
-            case Not(inner):
+            case Negation(inner):
                 return negated(self.holds(inner, moment, a, initially=initially), True)
             case All(parts):
                 return both(*(self.holds(part, moment, a, initially=initially) for part in parts))
@@ -135,11 +135,11 @@ class Log:
     ) -> SampleValue | None:
         """A value in SI, at a time; initially: see `sample`."""
         match number:
-            case Value(_, si):
+            case Quantity(_, si):
                 return si
-            case Flag(value) | Text(value):
+            case Flag(value) | TextValue(value):
                 return value
-            case Read(signal):
+            case SignalRead(signal):
                 return self.sample(signal, moment[0], initially=initially)
             case Minus(operand):
                 amount = self.amount(operand, moment, a, initially=initially)
@@ -149,7 +149,7 @@ class Log:
                 if one is None or other is None or (operator == "/" and other == 0):
                     return None
                 return {"+": one + other, "-": one - other, "*": one * other, "/": other and one / other}[operator]
-            case Table(cases):
+            case ResolvedTable(cases):
                 for case in cases:
                     holds = case.condition is None or self.holds(case.condition, moment, a, initially=True)
                     if holds is None:
@@ -167,7 +167,7 @@ class Log:
         value = self.number(number, moment, a, initially=initially)
         return None if value is None else as_amount(value)
 
-    def sample(self, signal: Signal, time: int, *, initially: bool = False) -> SampleValue | None:
+    def sample(self, signal: ResolvedSignal, time: int, *, initially: bool = False) -> SampleValue | None:
         """The last sample up to a time, unless it is too old.
 
         Args:
@@ -181,7 +181,7 @@ class Log:
         at, value = earlier[-1]
         return None if signal.fresh is not None and time - at > micros(signal.fresh) else value
 
-    def aggregate(self, function: str, signal: Signal, a: Activation) -> float | None:
+    def aggregate(self, function: str, signal: ResolvedSignal, a: Activation) -> float | None:
         """Over what a signal was in an activation: as it began, if a sample tells that, and each sample since; `count`
         of samples alone."""
         if function == "count":
@@ -203,9 +203,9 @@ class Log:
         measures: dict[str, Measure] = {"max": max, "min": min, "mean": statistics.fmean, "stddev": statistics.pstdev}
         return measures[function](values)
 
-    def uids(self, subject: Target | Mission | None) -> list[int]:
+    def uids(self, subject: NodeTarget | MissionRun | None) -> list[int]:
         """The instances of a node; the mission is the written root, never a wrapper."""
-        if isinstance(subject, Target):
+        if isinstance(subject, NodeTarget):
             return self.instances(subject)
         return next([uid] for uid in self.tree.nodes if uid not in self.guards)
 

@@ -12,7 +12,7 @@ from literal_runs import Activation
 from literal_verbs import OPEN, OUT, Judged, OfActivations, counted
 
 from btq_lang.evidence.model import ROOT
-from btq_lang.requirements.model import Value
+from btq_lang.requirements.model import Quantity
 from btq_lang.util import record
 
 if TYPE_CHECKING:
@@ -20,7 +20,14 @@ if TYPE_CHECKING:
     from literal_runs import Moment
     from literal_verbs import Verdict
 
-    from btq_lang.requirements.model import Claim, Condition, Event, Requirement, Span, Total
+    from btq_lang.requirements.model import (
+        Condition,
+        DurationSum,
+        Interval,
+        ResolvedClaim,
+        ResolvedEvent,
+        ResolvedRequirement,
+    )
 
     Decided = tuple[Verdict, int]  # and when that was
 
@@ -78,7 +85,7 @@ class Spent:
 class OverRuns(OfActivations):
     """A session, and what each run of it comes to."""
 
-    def over_runs(self, uid: int, claim: Claim, requirement: Requirement) -> list[Judged]:
+    def over_runs(self, uid: int, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Judged]:
         """tries, runs, follows at one instance of a node."""
         judge = {"tries": self.tries, "runs": self.rate, "follows": self.follows}[claim.verb]
         found = []
@@ -89,10 +96,15 @@ class OverRuns(OfActivations):
         return found
 
     def tries(
-        self, uid: int, own: Sequence[Activation], run: Activation, claim: Claim, requirement: Requirement
+        self,
+        uid: int,
+        own: Sequence[Activation],
+        run: Activation,
+        claim: ResolvedClaim,
+        requirement: ResolvedRequirement,
     ) -> list[Decided]:
         """How many starts that count lie in each activation of the other node, or in the run."""
-        assert not isinstance(claim.per, Value)
+        assert not isinstance(claim.per, Quantity)
         around = [ROOT] if claim.per is None else self.nearest(uid, self.uids(claim.per))
         refused = [
             check
@@ -115,7 +127,7 @@ class OverRuns(OfActivations):
             found.append((verdict, too_many[0].shown[0] if verdict is False and too_many else p.end))
         return [*found, *((False, each.end) for each in refused[:1])]  # of those that no activation holds
 
-    def tried(self, p: Activation, number: int, claim: Claim) -> Verdict:
+    def tried(self, p: Activation, number: int, claim: ResolvedClaim) -> Verdict:
         """What an activation comes to that holds a number of starts that count: without any, no upper bound."""
         assert claim.limit is not None
         if number == 0 and claim.limit.relation in ("<", "<="):
@@ -130,7 +142,12 @@ class OverRuns(OfActivations):
         return not_above if not_above is not False or p.is_exact else None
 
     def rate(
-        self, uid: int, own: Sequence[Activation], run: Activation, claim: Claim, requirement: Requirement
+        self,
+        uid: int,
+        own: Sequence[Activation],
+        run: Activation,
+        claim: ResolvedClaim,
+        requirement: ResolvedRequirement,
     ) -> list[Decided]:
         """runs every d, runs at least m per d: in each stretch of a run that counts."""
         scopes = [each.condition for each in requirement.scopes if each.word == "while"]
@@ -148,7 +165,7 @@ class OverRuns(OfActivations):
             found += self.evenly(claim, part, [x for x, _ in inside]) if claim.every else self.often(claim, part, times)
         return found
 
-    def evenly(self, claim: Claim, stretch: Activation, starts: list[Activation]) -> list[Decided]:
+    def evenly(self, claim: ResolvedClaim, stretch: Activation, starts: list[Activation]) -> list[Decided]:
         """Each time between two starts, and from the last one to the end: the shortest and the longest it may be."""
         if not starts:
             return []
@@ -163,9 +180,9 @@ class OverRuns(OfActivations):
             found[-1] = (OPEN, end)
         return found
 
-    def often(self, claim: Claim, stretch: Activation, times: list[int]) -> list[Decided]:
+    def often(self, claim: ResolvedClaim, stretch: Activation, times: list[int]) -> list[Decided]:
         """Each window of the length."""
-        assert isinstance(claim.per, Value)
+        assert isinstance(claim.per, Quantity)
         length = micros(claim.per.si)
         last = stretch.end - length
         if last < stretch.begin:
@@ -182,7 +199,7 @@ class OverRuns(OfActivations):
         worst = numbers.index(max(numbers) if is_above else min(numbers))
         return [(False, inside[worst] + length)]
 
-    def reactions(self, uid: int, claim: Claim, requirement: Requirement) -> list[Spent]:
+    def reactions(self, uid: int, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Spent]:
         """starts within d after ev, ends within d after ev: the next start, or end, after each event."""
         assert claim.event is not None
         by_rows = claim.event.condition is None
@@ -209,7 +226,12 @@ class OverRuns(OfActivations):
         return found
 
     def follows(
-        self, uid: int, own: Sequence[Activation], run: Activation, claim: Claim, requirement: Requirement
+        self,
+        uid: int,
+        own: Sequence[Activation],
+        run: Activation,
+        claim: ResolvedClaim,
+        requirement: ResolvedRequirement,
     ) -> list[Decided]:
         """An event since the start before, or since the run began."""
         assert claim.event is not None
@@ -227,7 +249,7 @@ class OverRuns(OfActivations):
             before = start
         return found
 
-    def spans(self, span: Span, claim: Claim, requirement: Requirement) -> list[Spent]:
+    def spans(self, span: Interval, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Spent]:
         """from e1 to e2: each e1 opens one, the next e2 closes all that are open."""
         firsts = self.uids(span.first.subject) if span.first.condition is None else [ROOT]
         by_rows = span.first.condition is None and span.last.condition is None
@@ -262,7 +284,7 @@ class OverRuns(OfActivations):
             pass
         return uid
 
-    def parts(self, total: Total, requirement: Requirement) -> list[list[tuple[Activation, Truth]]]:
+    def parts(self, total: DurationSum, requirement: ResolvedRequirement) -> list[list[tuple[Activation, Truth]]]:
         """sum of X, Y: in each run their activations, and whether they count."""
         uids = {uid for target in total.targets for uid in self.uids(target)}
         return [
@@ -287,7 +309,9 @@ class OverRuns(OfActivations):
             found.append((between(run, run.uid, moments[index], end), now is True))
         return found
 
-    def events(self, event: Event, run: Activation, *, only: bool = False, by_rows: bool = True) -> list[Happening]:
+    def events(
+        self, event: ResolvedEvent, run: Activation, *, only: bool = False, by_rows: bool = True
+    ) -> list[Happening]:
         """An event in a run: of its nodes, those in the same use of a subtree as the run's uid; only: of this alone;
         by_rows: see `placed`."""
         if event.condition is not None:

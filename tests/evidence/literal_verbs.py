@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from literal_log import Truth
     from literal_runs import Activation, Moment
 
-    from btq_lang.requirements.model import Claim, Limit, Requirement
+    from btq_lang.requirements.model import Limit, ResolvedClaim, ResolvedRequirement
 
     Verdict = Truth | Literal["open", "out"]
     Part = Literal["upper", "lower"] | None
@@ -43,7 +43,9 @@ class Judged:
 class OfActivations(Log):
     """A session, and what each activation of a node comes to."""
 
-    def of_activations(self, uid: int, claim: Claim, requirement: Requirement, part: Part = None) -> list[Judged]:
+    def of_activations(
+        self, uid: int, claim: ResolvedClaim, requirement: ResolvedRequirement, part: Part = None
+    ) -> list[Judged]:
         """takes, succeeds, needs, keeps, never, leaves, uses at one instance of a node.
 
         Args:
@@ -58,7 +60,7 @@ class OfActivations(Log):
             for each in self.of(uid)
         ]
 
-    def is_stopped(self, a: Activation, claim: Claim, requirement: Requirement) -> bool:
+    def is_stopped(self, a: Activation, claim: ResolvedClaim, requirement: ResolvedRequirement) -> bool:
         """Whether the guard around the node for this clause has halted it: the nearest one above it that was not halted
         itself, and failed.
         """
@@ -73,7 +75,7 @@ class OfActivations(Log):
             uid = self.tree.parent[uid]
         return False
 
-    def is_refuted(self, a: Activation, claim: Claim, requirement: Requirement) -> bool:
+    def is_refuted(self, a: Activation, claim: ResolvedClaim, requirement: ResolvedRequirement) -> bool:
         """Whether the guard around the node for this clause has checked it after it succeeded, and failed."""
         return any(
             verb == claim.verb
@@ -82,7 +84,7 @@ class OfActivations(Log):
             for verb, guard, check in self.failed_checks(a.uid)
         )
 
-    def refused(self, uid: int, claim: Claim, requirement: Requirement) -> list[Judged]:
+    def refused(self, uid: int, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Judged]:
         """The starts of a node that guards around it have refused: each is a case of the clause that its guard
         enforces, unless that is judged by the run, and of `succeeds`, whosever guard it is."""
         return [
@@ -127,7 +129,7 @@ class OfActivations(Log):
                 return True
         return False
 
-    def mission_succeeds(self, uid: int, claim: Claim, requirement: Requirement) -> list[Judged]:
+    def mission_succeeds(self, uid: int, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Judged]:
         """`mission succeeds`: each run by the result of the root, whatever that is a guard of; from the begin of the
         written root to its end, where it started."""
         found = []
@@ -138,7 +140,7 @@ class OfActivations(Log):
             found.append(judged(a, False if is_stopped else self.scoped(a, self.whole(a, claim), requirement)))
         return found
 
-    def whole(self, a: Activation, claim: Claim, part: Part = None) -> Verdict:
+    def whole(self, a: Activation, claim: ResolvedClaim, part: Part = None) -> Verdict:
         """What one activation comes to, whatever the scope; not of keeps and never, where that is a matter of time."""
         if claim.verb == "takes":
             return self.bounded(a, (a.end - a.begin) / 1e6, claim.limit, part)
@@ -157,7 +159,7 @@ class OfActivations(Log):
         assert claim.verb == "uses"
         return self.bounded(a, self.used(claim, a), claim.limit, part)
 
-    def used(self, claim: Claim, a: Activation) -> float | None:
+    def used(self, claim: ResolvedClaim, a: Activation) -> float | None:
         """How much of its signal an activation used, in SI, by the samples from the last one before it to its end.
 
         Of a level: what it fell by, and all that it was recharged by.  A recharge is a rise from a trough to a peak of
@@ -178,7 +180,7 @@ class OfActivations(Log):
             return recharged(values, bound / 2) - risen
         return risen + sum(value for value, following in pairwise(values) if following < value / 2)
 
-    def keeps(self, a: Activation, claim: Claim, requirement: Requirement) -> Verdict:
+    def keeps(self, a: Activation, claim: ResolvedClaim, requirement: ResolvedRequirement) -> Verdict:
         """keeps, never: a sample in [b, e] with C that breaks it; it counts if C holds at all meanwhile."""
         moments = [
             (
@@ -216,18 +218,18 @@ class OfActivations(Log):
             below = None if low is None or measured is None else measured > low
         return (True if limit.relation in (">", ">=") else above), (True if limit.relation in ("<", "<=") else below)
 
-    def scoped(self, a: Activation, verdict: Verdict, requirement: Requirement) -> Verdict:
+    def scoped(self, a: Activation, verdict: Verdict, requirement: ResolvedRequirement) -> Verdict:
         """What an activation comes to where it may not count."""
         return counted(self.counts(a, requirement), verdict)
 
-    def counts(self, a: Activation, requirement: Requirement) -> Truth:
+    def counts(self, a: Activation, requirement: ResolvedRequirement) -> Truth:
         """Only activations with `when C` at their start, and `while C` throughout."""
         first, *later = (self.holds_all("while", requirement, moment, a) for moment in self.moments(a))
         if not a.is_exact:  # it may have ended right after its start
             later = [None if each is False else each for each in later]
         return both(self.holds_all("when", requirement, a.start, a), first, *later)
 
-    def holds_all(self, word: str, requirement: Requirement, moment: Moment, a: Activation) -> Truth:
+    def holds_all(self, word: str, requirement: ResolvedRequirement, moment: Moment, a: Activation) -> Truth:
         """The conditions of `while`, or of `when`, at a moment."""
         conditions = [each.condition for each in requirement.scopes if each.word == word]
         return both(*(self.holds(each, moment, a, initially=True) for each in conditions))

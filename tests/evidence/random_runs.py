@@ -28,7 +28,7 @@ from btq_lang.evidence.model import (
     RUNNING,
     SUCCESS,
     LoggedTree,
-    Series,
+    SampleSeries,
 )
 from btq_lang.workspace.resolved import ResolvedNode
 
@@ -65,9 +65,9 @@ class Case:
     samples: dict[str, list[tuple[int, SampleValue]]]
 
     @property
-    def series(self) -> dict[str, Series]:
+    def series(self) -> dict[str, SampleSeries]:
         """The samples as a file of them gives them."""
-        found = {name: Series() for name in self.samples}
+        found = {name: SampleSeries() for name in self.samples}
         for name, values in self.samples.items():
             for time, value in values:
                 found[name].add(time, value)

@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 import pytest
 from evidence_logs import rows
 
-from btq_lang.evidence.model import Activation, LoggedTree, Session
+from btq_lang.evidence.model import Activation, LoggedTree, LogSession
 from btq_lang.evidence.readers.btlog import read
 from btq_lang.evidence.runs import activations
 
@@ -32,7 +32,7 @@ def tree_of(text: str, delay: int | None = None) -> LoggedTree:
 
 def begins(tree: LoggedTree, log: str, uid: int) -> list[str]:
     """When the activations of a node began, in ms: `100`, or `100..200`; 0: the log does not say since when."""
-    found = [each for each in activations(Session(tree, iter(rows(log)))) if each.uid == uid]
+    found = [each for each in activations(LogSession(tree, iter(rows(log)))) if each.uid == uid]
     return [
         f"{each.begin / 1000:g}" if each.is_begin_known else f"{each.earliest / 1000:g}..{each.begin / 1000:g}"
         for each in found
@@ -149,7 +149,7 @@ def of_case(case: dict[str, Any]) -> list[Activation]:
 
     add(trees["Main"][0], 0)
     ticked = [(tick * SECOND, uid, after) for tick, uid, _, after in case["changes"] if tick < case["ticks"]]
-    return [*activations(Session(LoggedTree(nodes), iter(ticked)))]
+    return [*activations(LogSession(LoggedTree(nodes), iter(ticked)))]
 
 
 SECOND = 1_000_000

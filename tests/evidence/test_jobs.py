@@ -14,9 +14,9 @@ from random_runs import Case, case
 from seeds import seeds, share_of
 
 from btq_lang.evidence import parallel
-from btq_lang.evidence.evaluate import Findings, MissionEvaluation
+from btq_lang.evidence.evaluate import LogFindings, MissionEvaluation
 from btq_lang.evidence.judging import JudgedLog, Means, judge
-from btq_lang.evidence.model import Session
+from btq_lang.evidence.model import LogSession
 from btq_lang.evidence.verdicts import MissionVerdicts
 from btq_lang.util import processes
 from btq_lang.util.record import replace
@@ -29,7 +29,7 @@ def together(made: Case) -> MissionVerdicts:
     evaluation = MissionEvaluation(made.mission, with_timelines=True)
     runs = 0
     for number, rows in enumerate(made.sessions):
-        session = Session(made.joined.tree, iter(rows))
+        session = LogSession(made.joined.tree, iter(rows))
         runs += evaluation.read(session, made.joined, made.series, runs + 1, f"log {number}")
     return evaluation.result()
 
@@ -40,8 +40,8 @@ def added(made: Case) -> MissionVerdicts:
     runs = 0
     for number, rows in enumerate(made.sessions):
         one = MissionEvaluation(made.mission, with_timelines=True)
-        read = one.read(Session(made.joined.tree, iter(rows)), made.joined, made.series, 1, f"log {number}")
-        findings: Findings = pickle.loads(pickle.dumps(one.found))
+        read = one.read(LogSession(made.joined.tree, iter(rows)), made.joined, made.series, 1, f"log {number}")
+        findings: LogFindings = pickle.loads(pickle.dumps(one.found))
         evaluation.found.add(findings, runs)
         runs += read
     return evaluation.result()

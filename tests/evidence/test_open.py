@@ -17,7 +17,7 @@ from json_schema import violations
 from btq_lang.commands.verdict_formats import FORMATS
 from btq_lang.evidence.written_verdicts import read_verdicts
 from btq_lang.ide.meaning import Subject
-from btq_lang.ide.verdicts import Evidence, verdict_table, verdict_titles
+from btq_lang.ide.verdicts import ProjectVerdicts, verdict_table, verdict_titles
 from btq_lang.workspace.references import What
 from btq_lang.workspace.workspace import Workspace
 
@@ -181,7 +181,7 @@ def test_an_editor_shows_them_beside_verdicts(verify: Verify) -> None:
     verify.text(*folder(verify, JUDGED + OPEN), "--summary", "summary.json")
     (mission,) = read_verdicts((verify.folder / "summary.json").read_text(encoding="utf-8"))
     workspace = Workspace.of({"main.btq": JUDGED + OPEN + MAIN})
-    evidence = Evidence(str(verify.folder), {"main.btq": mission})
+    evidence = ProjectVerdicts(str(verify.folder), {"main.btq": mission})
     assert [title for _, title, _ in verdict_titles(workspace, "main.btq", evidence)] == [
         "held in 1 of 1 activations · worst 20 ms",
         "open: verified by analysis",

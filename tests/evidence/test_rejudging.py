@@ -20,10 +20,10 @@ from btq_lang.evidence.identity import Candidate, join
 from btq_lang.evidence.json_document import render
 from btq_lang.evidence.judging import Means
 from btq_lang.evidence.margins import Margins
-from btq_lang.evidence.model import Session
+from btq_lang.evidence.model import LogSession
 from btq_lang.evidence.outline import demands, outline
 from btq_lang.evidence.rejudging import shown_now
-from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, Report
+from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, VerdictReport
 from btq_lang.evidence.verifying import verify
 from btq_lang.evidence.written_verdicts import WrittenMission, read_verdicts
 
@@ -38,7 +38,7 @@ def judged(made: Case, mission: Candidate) -> MissionVerdicts:
     runs = 0
     for number, session in enumerate(made.sessions):
         one = MissionEvaluation(mission, with_measures=True)
-        read = one.read(Session(made.joined.tree, iter(session)), joined, made.series, 1, f"log {number}")
+        read = one.read(LogSession(made.joined.tree, iter(session)), joined, made.series, 1, f"log {number}")
         evaluation.found.add(one.found, runs)
         runs += read
     return evaluation.result()
@@ -46,7 +46,7 @@ def judged(made: Case, mission: Candidate) -> MissionVerdicts:
 
 def written(found: MissionVerdicts) -> WrittenMission:
     """The verdicts as a program reads them from the file."""
-    (mission,) = read_verdicts(render(Report((found,), (), ())))
+    (mission,) = read_verdicts(render(VerdictReport((found,), (), ())))
     return mission
 
 

@@ -12,7 +12,7 @@ from evidence_logs import MAIN, MAIN_XML, START, Row, Verify, btlog, rows, write
 from btq_lang.evidence import judging, readers
 from btq_lang.evidence.written_verdicts import read_verdicts
 from btq_lang.ide.runs import logged_run
-from btq_lang.ide.verdicts import Evidence
+from btq_lang.ide.verdicts import ProjectVerdicts
 from btq_lang.workspace.workspace import Workspace
 
 DEMAND = (
@@ -196,7 +196,7 @@ def test_the_number_of_a_run_in_its_log_counts_those_that_are_left_out(mission: 
         ("b.btlog", 2, ()),
     ]
     workspace = Workspace.of({"main.btq": DEMAND + MAIN})
-    evidence = Evidence("", {"main.btq": written})
+    evidence = ProjectVerdicts("", {"main.btq": written})
     runs = [logged_run(workspace, "main.btq", evidence, number) for number in (1, 2, 3)]
     assert [(run.log, run.number_in_log) for run in runs if run is not None] == [
         ("a.btlog", 2),

@@ -13,7 +13,7 @@ from evidence_logs import MAIN_XML, START, btlog, rows, sessions_of, write_db3
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btq_lang.evidence.model import GAP, PAUSE, Activation, LoggedTree, Session
+from btq_lang.evidence.model import GAP, PAUSE, Activation, LoggedTree, LogSession
 from btq_lang.evidence.runs import activations
 
 FILES = ("lab.btlog", "lab.db3", "lab_sessions.db3", "nav.btlog", "nav.db3", "nav_noidle.btlog", "nav_noidle.db3")
@@ -156,7 +156,7 @@ def test_whatever_rows_there_are(steps: list[tuple[int, int, int]]) -> None:
     for step, uid, status in steps:
         time += step
         transitions.append((time, uid, status))
-    found = [*activations(Session(TREE, iter(transitions)))]
+    found = [*activations(LogSession(TREE, iter(transitions)))]
     for uid in TREE.nodes:
         own = [each for each in found if each.uid == uid]
         results = [status for _, each, status in transitions if each == uid and status in (2, 3)]
@@ -178,7 +178,7 @@ def seen(text: str) -> str:
     for piece in re.split("([GP])", text):
         at = found[-1][0] if found else 0
         found += [(at, GAP if piece == "G" else PAUSE, 0)] if piece in ("G", "P") else rows(piece)
-    session = Session(LoggedTree([(1, "Sequence", "S", 0), (2, "A", "A", 1), (3, "B", "B", 1)]), iter(found))
+    session = LogSession(LoggedTree([(1, "Sequence", "S", 0), (2, "A", "A", 1), (3, "B", "B", 1)]), iter(found))
     kinds = [
         f"{each.uid}{each.outcome} {each.begin / 1000:g}..{each.end / 1000:g} {each.timing}"
         for each in activations(session)

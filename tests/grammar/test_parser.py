@@ -12,7 +12,7 @@ import pytest
 from syntax_asserts import assert_fix, assert_parse, dump
 
 from btq_lang.parser import parse
-from btq_lang.syntax.tree import Model, Root, Skipped, Tree, is_name, quote, unquote
+from btq_lang.syntax.tree import Model, Root, SkippedLines, Tree, is_name, quote, unquote
 
 # ---- File -----------------------------------------------------------------------------------------------------------
 
@@ -751,7 +751,7 @@ def test_walking_a_tree_in_document_order() -> None:
 def test_what_stands_behind_the_last_item_is_reported() -> None:
     parsed = parse("/*")
     assert [diagnostic.rule for diagnostic in parsed.diagnostics] == ["unclosed-comment"]
-    assert isinstance(parsed.entries[0].item, Skipped)
+    assert isinstance(parsed.entries[0].item, SkippedLines)
 
 
 @pytest.mark.parametrize("text", ["", "a", 'a"b', "a\\b", "a\tb", "a\nb", "a\\", "\\n", "'", "größe", '"""', '\\\\"'])

@@ -10,7 +10,7 @@ from syntax_asserts import apply_fix, assert_invariants, assert_parse, assert_sa
 
 from btq_lang.lexer import Lexer
 from btq_lang.parser import Parsed, parse
-from btq_lang.syntax.tree import Skipped, shape
+from btq_lang.syntax.tree import SkippedLines, shape
 
 IN_BRACKETS = (
     *("A", " (", ")", "p", " = ", " =", "=", ":", '"x"', '"a b"', '"', "'", "3", "30 s", ",", "{k}", "_skipIf", " "),
@@ -239,7 +239,7 @@ def test_what_forgotten_brackets_leave_behind_is_no_mistake_of_its_own() -> None
     """
     parsed = assert_parse(text, tree, "3:11 unclosed-bracket «(» missing `)` for this `(`",
                           "8:7 syntax-error «3» expected the end of the line, found `3`")  # fmt: skip
-    assert not any(isinstance(entry.item, Skipped) for entry in parsed.entries)
+    assert not any(isinstance(entry.item, SkippedLines) for entry in parsed.entries)
 
 
 def test_attributes_on_lines_of_their_own_without_brackets() -> None:

@@ -41,7 +41,7 @@ from btq_lang.ide.outline import Outline, document_symbols, workspace_symbols
 from btq_lang.ide.proposals import Proposal
 from btq_lang.ide.readiness import getting_ready
 from btq_lang.ide.refactor import Action
-from btq_lang.ide.rename import Refusal, prepare_rename, rename
+from btq_lang.ide.rename import RenameRefusal, prepare_rename, rename
 from btq_lang.ide.structure import document_links, folding_ranges, selection_range
 from btq_lang.lexer import tokens as tokens_of
 from btq_lang.parser import parse
@@ -150,7 +150,7 @@ def check_rename(text: str, name: str, after: str) -> None:
     """Renaming the word at the cursor changes the files to this; and renaming it back restores them."""
     fixture = Fixture(text)
     result = rename(*fixture.at, name)
-    assert not isinstance(result, Refusal), result.reason
+    assert not isinstance(result, RenameRefusal), result.reason
     files = dict(fixture.files)
     for path, edits in result.edits.items():
         assert list(edits) == sorted(edits, key=lambda edit: edit.span)
@@ -163,13 +163,13 @@ def check_no_rename(text: str, reason: str, name: str | None = None) -> None:
     fixture = Fixture(text)
     ready = prepare_rename(*fixture.at)
     if name is None:
-        assert isinstance(ready, Refusal)
+        assert isinstance(ready, RenameRefusal)
         assert ready.reason == reason
         name = "other"
     else:
-        assert not isinstance(ready, Refusal), ready.reason
+        assert not isinstance(ready, RenameRefusal), ready.reason
     result = rename(*fixture.at, name)
-    assert isinstance(result, Refusal)
+    assert isinstance(result, RenameRefusal)
     assert result.reason == reason
 
 
@@ -542,7 +542,7 @@ def answer_everything(
         assert _lies_in(span, whole)
     highlights(*at)
     renamed = rename(*at, "another")
-    if not isinstance(renamed, Refusal):
+    if not isinstance(renamed, RenameRefusal):
         for edits in renamed.edits.values():
             apply_edits(text, edits)
     found = hover(*at)

@@ -9,7 +9,7 @@ import pytest
 from feature_asserts import check_delta, check_tokens, decoded
 from seeds import seeds
 
-from btq_lang.ide.colours import Change, colours, delta
+from btq_lang.ide.colours import TokenEdit, colours, delta
 from btq_lang.lexer import tokens
 from btq_lang.syntax.tokens import COMMENT
 from btq_lang.util.text import LINE_END, LineIndex, Span
@@ -164,6 +164,6 @@ def test_each_place_that_has_changed_is_a_change_of_its_own() -> None:
         trees[number] = tree
         after = after.with_file("main.btq", "".join(trees))
     assert delta(shown, colours(after, "main.btq", "utf-16")) == [
-        Change(2 * 15 + 10, 5, [1, 4, 4, 7, 0]),  # a longer word
-        Change(7 * 15, 0, [1, 4, 2, 7, 0]),  # a line more, which stands before the next tree's first
+        TokenEdit(2 * 15 + 10, 5, [1, 4, 4, 7, 0]),  # a longer word
+        TokenEdit(7 * 15, 0, [1, 4, 2, 7, 0]),  # a line more, which stands before the next tree's first
     ]

@@ -12,7 +12,7 @@ from seeds import SEED, share_of
 from btq_lang.btcpp.opening import file_of, with_source
 from btq_lang.checks import check
 from btq_lang.ide.navigation import find_references
-from btq_lang.ide.rename import Refusal, prepare_rename, rename
+from btq_lang.ide.rename import RenameRefusal, prepare_rename, rename
 from btq_lang.util.text import apply_edits
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.workspace import Workspace
@@ -56,7 +56,7 @@ def renamed(workspace: Workspace, word: str, name: str) -> dict[str, str] | str:
     at = workspace.files["trees.xml"].from_disk(offset)
     assert at is not None
     done = rename(workspace, "trees.xml", at, name)
-    if isinstance(done, Refusal):
+    if isinstance(done, RenameRefusal):
         return done.reason
     for edits in done.edits.values():
         assert list(edits) == sorted(edits, key=lambda edit: edit.span)
@@ -106,7 +106,7 @@ def test_what_is_renamed(word: str, name: str, xml: str, mission: str | None) ->
 def test_a_name_is_renamed_in_xml_from_a_mission() -> None:
     workspace = workspace_of(trees_xml=XML, main_btq=MISSION)
     done = rename(workspace, "main.btq", MISSION.index("Dock"), "Park")
-    assert not isinstance(done, Refusal)
+    assert not isinstance(done, RenameRefusal)
     assert apply_edits(XML, done.edits["trees.xml"]) == XML.replace("Dock", "Park")
 
 
@@ -139,7 +139,9 @@ def test_xml_that_is_not_edited(other: str, reason: str) -> None:
     workspace = workspace_of(trees_xml=text, other_xml=other)
     found = renamed(workspace, 'ID="D|ock"', "Park")
     assert found == f"cannot rename `Dock`: other.xml, {reason}, may also use it"
-    assert isinstance(prepare_rename(workspace, "trees.xml", workspace.files["trees.xml"].text.index("Dock")), Refusal)
+    assert isinstance(
+        prepare_rename(workspace, "trees.xml", workspace.files["trees.xml"].text.index("Dock")), RenameRefusal
+    )
 
 
 def test_names_of_published_files(shared: Path) -> None:
@@ -156,7 +158,7 @@ def test_names_of_published_files(shared: Path) -> None:
         for entry, mention in chance.sample(mentions, min(len(mentions), 4)):
             at = mention.span.start + entry.start
             result = rename(workspace, "trees.xml", at, "another_1")
-            if isinstance(result, Refusal):
+            if isinstance(result, RenameRefusal):
                 continue
             done += 1
             after = with_source(workspace, "trees.xml", apply_edits(file.source, result.edits["trees.xml"]))
@@ -165,7 +167,7 @@ def test_names_of_published_files(shared: Path) -> None:
             start = after.files["trees.xml"].text.index("another_1")
             assert len(find_references(after, "trees.xml", start)) == len(find_references(workspace, "trees.xml", at))
             back = rename(after, "trees.xml", start, mention.name)
-            if isinstance(back, Refusal):
+            if isinstance(back, RenameRefusal):
                 assert back.reason.startswith(("the engine refuses", "the name of an entry must")), (path, mention)
                 continue
             assert apply_edits(after.files["trees.xml"].source, back.edits["trees.xml"]) == file.source, (path, mention)

@@ -22,7 +22,7 @@ from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.lsp.convert import Converter
 from btq_lang.lsp.editor import Server
 from btq_lang.util.text import Span
-from btq_lang.workspace.findings import Findings
+from btq_lang.workspace.findings import FileFindings
 from btq_lang.workspace.workspace import Workspace
 
 WRONG = "BehaviorTree Main\n    ->\n        Sequnce\n            Dock\n"
@@ -204,7 +204,7 @@ def test_a_diagnostic_says_where_its_rule_is_explained(editor: Editor) -> None:
 def test_what_is_said_beside_lines_and_columns_may_hold_signs_of_formats() -> None:
     workspace = Workspace.of({"/%d.btq": "ab\ncd\n", "/other.btq": "\n\nef\n"})
     related = (Related(Place(Span(0, 2)), "50 %"), Related(Place(Span(2, 4), "/other.btq"), "%s"))
-    found = Findings.placed([Diagnostic("unknown-node", Span(3, 5), "%d %% of it", related, ("%(a)s",))])
+    found = FileFindings.placed([Diagnostic("unknown-node", Span(3, 5), "%d %% of it", related, ("%(a)s",))])
     (told,) = json.loads(Converter().findings(workspace, "/%d.btq", found))
     assert (told["message"], told["range"]) == ("%d %% of it\n%(a)s", range_of((1, 0), (1, 2)))
     assert told["relatedInformation"] == [

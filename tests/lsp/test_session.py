@@ -11,7 +11,7 @@ import pytest
 from seeds import seeds
 
 from btq_lang.checks import _reported
-from btq_lang.ide.colours import Change, Colours, colours, delta
+from btq_lang.ide.colours import Colours, TokenEdit, colours, delta
 from btq_lang.ide.completion import complete
 from btq_lang.ide.navigation import find_references
 from btq_lang.ide.outline import document_symbols
@@ -237,7 +237,7 @@ def test_findings_follow_lines_that_come_and_go_in_either_file(folder: Path, lin
         assert '"relatedInformation": [{' in shown
 
 
-def patched(data: list[int], changes: list[Change]) -> list[int]:
+def patched(data: list[int], changes: list[TokenEdit]) -> list[int]:
     """The integers after changes that all refer to the original; the changes are in order and do not overlap."""
     patched, end = [], 0
     for one in changes:

@@ -8,12 +8,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btq_lang.nav2.yaml_reader import Value, YamlProblem, read_yaml
+from btq_lang.nav2.yaml_reader import YamlProblem, YamlValue, read_yaml
 
 Plain: TypeAlias = "str | list[Plain] | dict[str | None, Plain] | None"
 
 
-def plain(value: Value) -> Plain:
+def plain(value: YamlValue) -> Plain:
     if value.entries:
         return {key.text: plain(below) for key, below in value.entries}
     return [plain(each) for each in value.items] if value.text is None else value.text

@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 import pytest
 
 from btq_lang import __version__
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related, Tag, replace_fix
 from btq_lang.diagnostics.rules import RULES, Severity
 from btq_lang.render import Finding, Report, render, sarif
 from btq_lang.util.text import Position, Span
@@ -29,7 +29,7 @@ REPORT = Report(
                 notes=("a note\nof two lines",),
                 fixes=(
                     replace_fix("replace `Rety` by `Retry`", RETY, "Retry", safe=True),
-                    Fix("declare it", (Change(Place(Span(7, 7), "skills,1:2.btq"), "Action Rety\n"),)),
+                    Fix("declare it", (FixEdit(Place(Span(7, 7), "skills,1:2.btq"), "Action Rety\n"),)),
                 ),
             ),
         ),

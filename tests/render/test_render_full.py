@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.util.text import Span
@@ -267,36 +267,38 @@ def test_neighbours_of_a_cut_line_are_cut_alike() -> None:
     ("fix", "expected"),
     [
         (
-            Fix("rename", (Change(Place(Span(13, 21)), "main"), Change(Place(Span(0, 4), "other.btq"), "MAIN"))),
+            Fix("rename", (FixEdit(Place(Span(13, 21)), "main"), FixEdit(Place(Span(0, 4), "other.btq"), "MAIN"))),
             "rename\n1 - BehaviorTree mainTree\n1 + BehaviorTree main\n ::: other.btq\n1 - main\n1 + MAIN\n",
         ),
         (
-            Fix("remove", (Change(Place(span(MISSION, "        Charge\n")), ""),)),
+            Fix("remove", (FixEdit(Place(span(MISSION, "        Charge\n")), ""),)),
             "remove\n5 -         Charge\n",
         ),
         (
             Fix(
                 "wrap",
                 (
-                    Change(Place(span(MISSION, "    R?")), "    Inverter\n        R?"),
-                    Change(Place(span(MISSION, "Charge")), "Recharge"),
+                    FixEdit(Place(span(MISSION, "    R?")), "    Inverter\n        R?"),
+                    FixEdit(Place(span(MISSION, "Charge")), "Recharge"),
                 ),
             ),
             "wrap\n2 -     R?\n2 +     Inverter\n3 +         R?\n5 -         Charge\n6 +         Recharge\n",
         ),
         (
-            Fix("two on one line", (Change(Place(span(MISSION, "6")), "7"), Change(Place(span(MISSION, "Rety")), "X"))),
+            Fix(
+                "two on one line", (FixEdit(Place(span(MISSION, "6")), "7"), FixEdit(Place(span(MISSION, "Rety")), "X"))
+            ),
             "two on one line\n3 -         Rety (num_attempts = 6)\n3 +         X (num_attempts = 7)\n",
         ),
         (
-            Fix("impossible", (Change(Place(Span(0, 4)), ""), Change(Place(Span(2, 6)), ""))),
+            Fix("impossible", (FixEdit(Place(Span(0, 4)), ""), FixEdit(Place(Span(2, 6)), ""))),
             "impossible\n",
         ),
         (
-            Fix("long", (Change(Place(Span(0, 0)), "x\n" * 40),)),
+            Fix("long", (FixEdit(Place(Span(0, 0)), "x\n" * 40),)),
             "long\n" + "".join(f"{n:>2} + x\n" for n in range(1, 12)) + "   | ... 29 more lines\n",
         ),
-        (Fix("elsewhere", (Change(Place(Span(0, 1), "lost.btq"), ""),)), "elsewhere\n ::: lost.btq\n"),
+        (Fix("elsewhere", (FixEdit(Place(Span(0, 1), "lost.btq"), ""),)), "elsewhere\n ::: lost.btq\n"),
     ],
     ids=lambda value: value.title if isinstance(value, Fix) else "",
 )
@@ -307,7 +309,7 @@ def test_a_fix_that_its_title_does_not_tell_is_shown_as_a_diff(fix: Fix, expecte
 
 def test_colours_only_where_asked_for() -> None:
     diagnostic = Diagnostic(
-        "unknown-node", span(MISSION, "Rety"), "m", fixes=(Fix("x", (Change(Place(Span(0, 0)), "y"),)),)
+        "unknown-node", span(MISSION, "Rety"), "m", fixes=(Fix("x", (FixEdit(Place(Span(0, 0)), "y"),)),)
     )
     assert "\x1b" not in full(MISSION, diagnostic)
     coloured = full(MISSION, diagnostic, colour=True)
@@ -349,7 +351,7 @@ def test_paths_are_shown_as_asked() -> None:
         Span(0, 1),
         "m",
         related=(Related(other, "r"),),
-        fixes=(Fix("f", (Change(place, ""), Change(other, ""))),),
+        fixes=(Fix("f", (FixEdit(place, ""), FixEdit(other, ""))),),
     )
     plain = Diagnostic("unused-tree", Span(0, 1), "m")
     report = Report(

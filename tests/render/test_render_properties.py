@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, Tag
+from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related, Tag
 from btq_lang.diagnostics.rules import RULES
 from btq_lang.render import FORMATS, Finding, Report, render, sarif
 from btq_lang.render.cells import cut, laid_out, printable
@@ -32,7 +32,7 @@ DIAGNOSTICS = st.builds(
     st.lists(st.builds(Related, PLACES, TEXTS), max_size=2).map(tuple),
     st.lists(TEXTS, max_size=2).map(tuple),
     st.lists(
-        st.builds(Fix, TEXTS, st.lists(st.builds(Change, PLACES, TEXTS), max_size=3).map(tuple), st.booleans()),
+        st.builds(Fix, TEXTS, st.lists(st.builds(FixEdit, PLACES, TEXTS), max_size=3).map(tuple), st.booleans()),
         max_size=2,
     ).map(tuple),
     st.lists(st.sampled_from(tuple(Tag)), max_size=1).map(tuple),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from functools import cache
 from graphlib import TopologicalSorter
@@ -254,3 +255,13 @@ def test_a_small_file_is_checked_without_heavy_modules(tmp_path: Path) -> None:
     command = [sys.executable, "-S", "-c", program]
     run = subprocess.run(command, capture_output=True, text=True, check=True, cwd=PACKAGE.parent)
     assert run.stdout.splitlines()[-1] == "[]"
+
+
+def test_no_public_class_name_means_two_things() -> None:
+    names = Counter(
+        node.name
+        for path in MODULES.values()
+        for node in parsed(path).body
+        if isinstance(node, ast.ClassDef) and not node.name.startswith("_")
+    )
+    assert [name for name, count in names.items() if count > 1] == []

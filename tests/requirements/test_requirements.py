@@ -12,21 +12,21 @@ from btq_lang.requirements.model import (
     All,
     Applied,
     Arithmetic,
+    ClassicScript,
     Compare,
+    DurationSum,
     Flag,
     InContext,
+    Interval,
     Limit,
-    Mission,
-    Not,
-    Read,
+    MissionRun,
+    Negation,
+    NodeTarget,
+    Quantity,
+    ResolvedTable,
     Running,
-    Script,
-    Span,
-    Table,
-    Target,
-    Text,
-    Total,
-    Value,
+    SignalRead,
+    TextValue,
 )
 from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.workspace.workspace import Workspace
@@ -82,13 +82,13 @@ def test_the_worked_examples_mean_what_they_say() -> None:
     rq5 = one(found, "rq5").requirement
     (claim,) = rq5.claims
     assert claim.limit is not None
-    assert isinstance(claim.limit.value, Value)
+    assert isinstance(claim.limit.value, Quantity)
     assert (claim.limit.relation, claim.limit.value.si, claim.limit.value.text) == ("<=", 72000.0, "0.02 kWh")
     assert claim.signal is found.signals["energy"]
-    assert isinstance(rq5.goal, Value)
+    assert isinstance(rq5.goal, Quantity)
     assert rq5.goal.si == 54000.0
     span = one(found, "rq6").subject
-    assert isinstance(span, Span)
+    assert isinstance(span, Interval)
     assert (span.first.happening, span.last.happening) == ("starts", "succeeds")
     slow = applied(found, "slow")[1].requirement
     humans_near = found.contexts["humans_near"]
@@ -97,14 +97,14 @@ def test_the_worked_examples_mean_what_they_say() -> None:
     compare = slow.claims[0].condition
     assert isinstance(compare, Compare)
     assert compare.operators == ("<=",)
-    assert compare.operands[0] == Read(found.signals["speed"])
-    assert isinstance(compare.operands[1], Value)
+    assert compare.operands[0] == SignalRead(found.signals["speed"])
+    assert isinstance(compare.operands[1], Quantity)
     assert (compare.operands[1].si, slow.action, slow.reasons) == (0.1, "fail", ("movement next to people",))
     table = one(found, "fetch").requirement.claims[0].limit
     assert table is not None
-    assert isinstance(table.value, Table)
+    assert isinstance(table.value, ResolvedTable)
     assert [case.value.text for case in table.value.cases] == ["20 s", "30 s"]
-    assert table.value.cases[0].condition == Not(InContext("humans_near", humans_near))
+    assert table.value.cases[0].condition == Negation(InContext("humans_near", humans_near))
     assert table.value.cases[1].condition is None
     scope = one(found, "replan").requirement.scopes[0].condition
     assert isinstance(scope, Running)
@@ -171,7 +171,7 @@ def test_a_path_names_one_node(path: str, node: str, through: tuple[str, ...]) -
     found = resolved(PATHS.replace("{path}", path).replace('Alone "by itself"', 'Alone (name = "by itself")'))
     assert not problems_of(found)
     subject = one(found, "rq1").subject
-    assert isinstance(subject, Target)
+    assert isinstance(subject, NodeTarget)
     name = subject.node.node.name
     assert f"{subject.node.node.head.text} {name.text if name else '-'}" == node
     assert subject.through == through
@@ -199,9 +199,9 @@ def test_other_subjects() -> None:
     text = text.replace("{path} takes", "sum of Walk, Left takes") + "        Action Wave\n"
     found = resolved(text.replace("Action Wave", "").replace("Root", ""))
     mission, total = applied(found, "rq1")
-    assert isinstance(mission.subject, Mission)
+    assert isinstance(mission.subject, MissionRun)
     assert mission.node is found.nodes.find(("Main",))[0].node is found.mission
-    assert isinstance(total.subject, Total)
+    assert isinstance(total.subject, DurationSum)
     assert [target.node.node.head.text for target in total.subject.targets] == ["Walk", "Turn"]
     assert [claim.text for claim in total.requirement.claims] == ["sum of Walk, Left takes at most 30 s"]
 
@@ -347,23 +347,23 @@ def test_signals() -> None:
     found = resolved(SIGNALS.replace("{condition}", "ok")).signals
     speed = found["speed"]
     assert (speed.sort, speed.key, speed.behaviour, speed.fresh) == ("number", "speed", "gauge", 0.2)
-    assert isinstance(speed.initially, Value)
+    assert isinstance(speed.initially, Quantity)
     assert (speed.initially.si, speed.initially.text) == (1.0, "3.6 km/h")
     assert (found["ok"].sort, found["ok"].initially, found["ok"].key) == ("bool", Flag(False), None)
-    assert (found["zone"].sort, found["zone"].initially) == ("text", Text("hall"))
+    assert (found["zone"].sort, found["zone"].initially) == ("text", TextValue("hall"))
     assert [name for name, signal in found.items() if signal.behaviour == "counter"] == ["way"]
 
 
 def test_conditions() -> None:
     found = resolved(SIGNALS.replace("{condition}", "ok")).signals
-    speed = Read(found["speed"])
+    speed = SignalRead(found["speed"])
     near = condition("low <= speed < 2 m/s and not (ok or fast)")
     assert isinstance(near, All)
     first, second = near.conditions
     assert isinstance(first, Compare)
     assert first.operators == ("<=", "<")
     assert repr(first.operands[1]) == repr(speed)  # two workspaces: they say the same, at places of their own
-    assert isinstance(second, Not)
+    assert isinstance(second, Negation)
     ratio = condition("change(way) / 10 s <= mean(speed) + 2 * low")
     assert isinstance(ratio, Compare)
     assert isinstance(ratio.operands[0], Arithmetic)
@@ -498,8 +498,8 @@ def test_descriptions_that_are_clauses() -> None:
 
 def test_descriptions_that_are_scripts() -> None:
     assert classic("SuccessIf battery > 20 FailureIf stuck") == [
-        ("keeps", "SuccessIf battery > 20", Script("battery > 20")),
-        ("never", "FailureIf stuck", Script("stuck")),
+        ("keeps", "SuccessIf battery > 20", ClassicScript("battery > 20")),
+        ("never", "FailureIf stuck", ClassicScript("stuck")),
     ]
 
 

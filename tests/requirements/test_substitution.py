@@ -16,7 +16,7 @@ from btq_lang.btcpp.enforcement import enforced
 from btq_lang.btcpp.export import export
 from btq_lang.btcpp.importing import import_xml
 from btq_lang.btcpp.instances import instances
-from btq_lang.btcpp.side_file import Built, side_file
+from btq_lang.btcpp.side_file import BuiltFile, side_file
 from btq_lang.checks import check
 from btq_lang.cli import main
 from btq_lang.diff import compare
@@ -176,7 +176,7 @@ def test_what_forty_contexts_need_is_counted() -> None:
         xml = write(made.export.document)
         document = (made.export.document,)
         return side_file(
-            workspace, Built(MAIN, "main.xml", xml, document, made.export.elements, made.clauses)
+            workspace, BuiltFile(MAIN, "main.xml", xml, document, made.export.elements, made.clauses)
         ), import_xml(xml)
 
     built(Workspace.of({MAIN: contexts(2)}))

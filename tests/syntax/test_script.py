@@ -19,16 +19,16 @@ from btq_lang.syntax.script.check import check_script
 from btq_lang.syntax.script.parser import MAX_DEPTH, parse_script
 from btq_lang.syntax.script.tree import (
     Assign,
-    Binary,
     Bool,
-    Comparison,
     Expression,
-    Group,
     Name,
     Number,
     Script,
+    ScriptBinary,
+    ScriptComparison,
+    ScriptGroup,
+    ScriptText,
     Ternary,
-    Text,
     Unary,
     Variable,
     children,
@@ -114,11 +114,11 @@ def test_the_tree_knows_its_places() -> None:
             Name(0, 1, "x"),
             Ternary(
                 *(5, 39),
-                Group(
+                ScriptGroup(
                     *(5, 17),
-                    Comparison(6, 16, ("<", "<="), (Name(6, 7, "a"), Number(10, 11, "2"), Name(15, 16, "b"))),
+                    ScriptComparison(6, 16, ("<", "<="), (Name(6, 7, "a"), Number(10, 11, "2"), Name(15, 16, "b"))),
                 ),
-                Binary(20, 32, "..", Unary(20, 24, "-", Text(21, 24, "t")), Bool(28, 32, True)),
+                ScriptBinary(20, 32, "..", Unary(20, 24, "-", ScriptText(21, 24, "t")), Bool(28, 32, True)),
                 Number(35, 39, "0x10"),
             ),
         ),
@@ -533,7 +533,7 @@ leaves: st.SearchStrategy[Expression] = st.sampled_from(
     [
         *(Name(0, 0, name) for name in ("a", "@b", "trueish")),
         *(Number(0, 0, raw) for raw in ("1", "2.5")),
-        *(Text(0, 0, "t"), Text(0, 0, "é"), Bool(0, 0, True)),
+        *(ScriptText(0, 0, "t"), ScriptText(0, 0, "é"), Bool(0, 0, True)),
     ]
 )
 
@@ -542,15 +542,15 @@ def _larger(inside: st.SearchStrategy[Expression]) -> st.SearchStrategy[Expressi
     binary = st.sampled_from(["+", "-", "*", "/", "..", "&", "|", "^", "&&", "||"])
     comparison = st.sampled_from(["==", "!=", "<", ">", "<=", ">="])
     return st.one_of(
-        st.builds(partial(Group, 0, 0), inside),
+        st.builds(partial(ScriptGroup, 0, 0), inside),
         st.builds(partial(Unary, 0, 0), st.sampled_from(["-", "!", "~"]), inside),
-        st.builds(partial(Binary, 0, 0), binary, inside, inside),
-        st.builds(partial(Binary, 0, 0), binary, inside, inside),
+        st.builds(partial(ScriptBinary, 0, 0), binary, inside, inside),
+        st.builds(partial(ScriptBinary, 0, 0), binary, inside, inside),
         st.builds(
-            lambda operator, left, right: Comparison(0, 0, (operator,), (left, right)), comparison, inside, inside
+            lambda operator, left, right: ScriptComparison(0, 0, (operator,), (left, right)), comparison, inside, inside
         ),
         st.builds(
-            lambda operators, left, middle, right: Comparison(0, 0, operators, (left, middle, right)),
+            lambda operators, left, middle, right: ScriptComparison(0, 0, operators, (left, middle, right)),
             st.tuples(comparison, comparison),
             inside,
             inside,
@@ -697,7 +697,7 @@ def shapes(script: Script) -> list[object]:
 
 def shape(node: Expression) -> object:
     """An expression without places and brackets."""
-    while isinstance(node, Group):
+    while isinstance(node, ScriptGroup):
         node = node.inner
     if below := children(node):
         operator = getattr(node, "operator", None) or getattr(node, "operators", None)

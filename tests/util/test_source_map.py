@@ -9,7 +9,7 @@ import pytest
 
 from btq_lang.btcpp.importing import import_xml
 from btq_lang.projects.files import Files
-from btq_lang.util.source_map import Places
+from btq_lang.util.source_map import OriginMap
 from btq_lang.util.text import Span
 
 PIECES = ((0, 5, 10, 15), (6, 8, 20, 30), (8, 9, 40, 60), (9, 12, 50, 53))
@@ -25,12 +25,12 @@ GOLDEN = sorted((Path(__file__).parents[1] / "btcpp" / "golden").glob("*.xml"))
 )
 def test_back_to_the_text_that_was_made(offset: int, made: int | None, near: int | None) -> None:
     """As far into a piece, if both are as long; else, if that is enough, to its start; the shortest piece counts."""
-    places = Places(PIECES, (), lambda pieces, _: pieces)
+    places = OriginMap(PIECES, (), lambda pieces, _: pieces)
     assert (places.made(offset), places.made(offset, exact=False)) == (made, near)
 
 
 def test_nothing_was_made() -> None:
-    assert Places().made(0) is None
+    assert OriginMap().made(0) is None
 
 
 @pytest.mark.parametrize("path", GOLDEN, ids=lambda path: path.stem)
@@ -53,7 +53,7 @@ def test_a_span_is_mapped_by_its_lines_as_by_all_pieces(path: Path) -> None:
     xml = path.read_text(encoding="utf-8")
     done = import_xml(xml, for_people=False)
     pieces = import_xml(xml, for_people=False).places.pieces
-    whole = Places(pieces, (), lambda pieces, _: pieces)
+    whole = OriginMap(pieces, (), lambda pieces, _: pieces)
     draw = random.Random(1)
     for _ in range(300):
         start = draw.randrange(len(done.text) + 1)

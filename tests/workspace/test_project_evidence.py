@@ -7,7 +7,7 @@ from test_config import problems
 
 from btq_lang.catalog.units import parse_unit
 from btq_lang.workspace.config import parse_project
-from btq_lang.workspace.project_evidence import Evidence, SignalSource
+from btq_lang.workspace.project_evidence import EvidenceSettings, SignalSource
 
 WHOLE = """\
 [evidence]
@@ -23,7 +23,7 @@ energy  = { file = "power.csv", time = "t", column = "wh", unit = "Wh" }
 def test_every_key() -> None:
     project, wrong = parse_project(WHOLE)
     assert wrong == ()
-    assert project.evidence == Evidence(
+    assert project.evidence == EvidenceSettings(
         logs=("logs/**/*.btlog", "bags/*"),
         store="evidence",
         signals=(

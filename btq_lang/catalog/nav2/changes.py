@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from btq_lang.catalog.changes import ANY, Change
+from btq_lang.catalog.changes import ANY, BehaviorChange
 
 # The names after a release that renamed a node, or a port of one.
 RENAMED: Final = {("lyrical", "IsPathValid"): "ValidatePath", ("lyrical", "IsStopped"): "CheckStopStatus"}
@@ -23,16 +23,16 @@ _MOVES: Final = ("AssistedTeleop", "BackUp", "DriveOnHeading", "Spin", "Wait")
 _CLEARS: Final = ("ClearEntireCostmap", "ClearCostmapExceptRegion", "ClearCostmapAroundRobot", "ClearCostmapAroundPose")
 
 
-def _read_again(since: str, nodes: tuple[str, ...], *ports: str) -> tuple[Change, ...]:
+def _read_again(since: str, nodes: tuple[str, ...], *ports: str) -> tuple[BehaviorChange, ...]:
     what = "reads the entry in `{}` at each start, no longer only when the tree is created"
     instead = "write the value itself if the entry changes meanwhile and must not count"
-    return tuple(Change(since, nodes, what.format(port), instead, port, _ENTRY) for port in ports)
+    return tuple(BehaviorChange(since, nodes, what.format(port), instead, port, _ENTRY) for port in ports)
 
 
 CHANGES: Final = (
     # Iron
     *(
-        Change(
+        BehaviorChange(
             "iron",
             ("TransformAvailable",),
             f"without `{port}` is refused when the tree is created; Humble ended the process of bt_navigator",
@@ -44,7 +44,7 @@ CHANGES: Final = (
         for port in ("child", "parent")
     ),
     # Jazzy: BehaviorTree.CPP 4
-    Change(
+    BehaviorChange(
         "jazzy",
         ("RecoveryNode",),
         "tries again once with a negative `number_of_retries`, and no longer without end",
@@ -52,7 +52,7 @@ CHANGES: Final = (
         "number_of_retries",
         r"-\d+",
     ),
-    Change(
+    BehaviorChange(
         "jazzy",
         ("Wait",),
         "waits for parts of seconds too; before, it dropped them",
@@ -74,7 +74,7 @@ CHANGES: Final = (
     *_read_again("jazzy", ("IsBatteryLow",), "min_battery", "battery_topic", "is_voltage"),
     *_read_again("jazzy", ("TransformAvailable",), "child", "parent"),
     *_read_again("jazzy", ("IsPathValid",), "server_timeout"),
-    Change(
+    BehaviorChange(
         "jazzy",
         ("GoalReached", "RemovePassedGoals"),
         "does not use `global_frame` any more: the frame of the goal counts",
@@ -82,7 +82,7 @@ CHANGES: Final = (
         "global_frame",
         ".*",
     ),
-    Change(
+    BehaviorChange(
         "jazzy",
         ("DistanceController", "DistanceTraveled"),
         f"without `global_frame` {_FRAME.format('map')}",
@@ -90,7 +90,7 @@ CHANGES: Final = (
         value=None,
         keeps="map",
     ),
-    Change(
+    BehaviorChange(
         "jazzy",
         ("DistanceController", "DistanceTraveled", "GoalReached", "RemovePassedGoals"),
         f"without `robot_base_frame` {_FRAME.format('base_link')}",
@@ -98,7 +98,7 @@ CHANGES: Final = (
         value=None,
         keeps="base_link",
     ),
-    Change(
+    BehaviorChange(
         "jazzy",
         ("AreErrorCodesPresent",),
         "reads the list of codes, from 1.3.6 on; before, it always failed",
@@ -115,7 +115,7 @@ CHANGES: Final = (
     ),
     *_read_again("kilted", (ANY,), "service_name"),
     *(
-        Change(
+        BehaviorChange(
             "kilted",
             (ANY,),
             f"reads `{port}` in another form: each pose begins with `stamp;frame;`",
@@ -126,7 +126,7 @@ CHANGES: Final = (
         )
         for port in ("goals", "input_goals")
     ),
-    Change(
+    BehaviorChange(
         "kilted",
         ("RemovePassedGoals",),
         "keeps the status of waypoints only if it gets it: without, they stay pending to the end",
@@ -134,7 +134,7 @@ CHANGES: Final = (
         "input_waypoint_statuses",
         None,
     ),
-    Change(
+    BehaviorChange(
         "kilted",
         (ANY,),
         "writes its error where nobody collects it: results have only entries that end in `_error_code`",
@@ -143,14 +143,14 @@ CHANGES: Final = (
         r"\{(?!.*_error_code\}).+\}",
         when="collected",
     ),
-    Change(
+    BehaviorChange(
         "kilted",
         ("IsPathValid",),
         "ends the goal with an exception if there is no answer in time; before, it failed",
         "write a `server_timeout` that is long enough",
     ),
     # Lyrical
-    Change(
+    BehaviorChange(
         "lyrical",
         ("IsPathValid",),
         "without `max_cost` regards a cost up to 254 as free, no longer up to 253",
@@ -158,7 +158,7 @@ CHANGES: Final = (
         value=None,
         keeps="253",
     ),
-    Change(
+    BehaviorChange(
         "lyrical",
         ("RoundRobin",),
         "does not begin again after its last child: it then fails, even if that child has succeeded",
@@ -167,7 +167,7 @@ CHANGES: Final = (
         None,
         keeps="true",
     ),
-    Change(
+    BehaviorChange(
         "lyrical",
         ("TruncatePathLocal",),
         f"without a frame of the robot {_FRAME.format('base_link')}",
@@ -175,7 +175,7 @@ CHANGES: Final = (
         port="robot_frame",
         value=None,
     ),
-    Change(
+    BehaviorChange(
         "lyrical",
         ("TruncatePathLocal",),
         "takes a negative `distance_forward` for no limit",
@@ -183,13 +183,13 @@ CHANGES: Final = (
         port="distance_forward",
         value=r"-.+",
     ),
-    Change(
+    BehaviorChange(
         "lyrical",
         _CLEARS,
         "fails if the service answers that it has not succeeded; before, it succeeded",
         "write a ForceSuccess around it to go on all the same",
     ),
-    Change(
+    BehaviorChange(
         "lyrical",
         ("FollowPath", "GetPoseFromPath", "IsPathValid", "PathExpiringTimer", "PathLongerOnApproach"),
         "finds an empty path in `{path}` at the start of each goal, no longer that of the last goal",

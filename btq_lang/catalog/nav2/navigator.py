@@ -95,7 +95,7 @@ def outside_entries(
     return (*found.items(), *((code, "inout") for code in codes))
 
 
-class Parameter(Record):
+class NavigatorParameter(Record):
     """A parameter of bt_navigator.
 
     Attributes:
@@ -123,49 +123,57 @@ BOOLEAN: Final = "boolean"
 STRINGS: Final = "list of strings"
 
 # By name; `*` is a navigator.
-PARAMETERS: Final[Mapping[str, Parameter]] = {
-    "default_bt_xml_filename": Parameter("", "write `default_nav_to_pose_bt_xml`"),  # of distributions before these
-    "enable_groot_monitoring": Parameter("", "write it below each navigator, from Jazzy on"),
-    "groot_zmq_publisher_port": Parameter("", "write `navigate_to_pose.groot_server_port`, from Jazzy on"),
-    "groot_zmq_server_port": Parameter("", "write `navigate_to_pose.groot_server_port`, from Jazzy on"),
-    "navigators": Parameter("ijkl", type=STRINGS),
-    "*.plugin": Parameter("ijkl"),
-    "error_code_names": Parameter("ij", "write `error_code_name_prefixes`, without `_error_code`", "kl", STRINGS),
-    "error_code_name_prefixes": Parameter("kl", "write `error_code_names`, with `_error_code`", type=STRINGS),
-    "bt_search_directories": Parameter(
+PARAMETERS: Final[Mapping[str, NavigatorParameter]] = {
+    "default_bt_xml_filename": NavigatorParameter(
+        "", "write `default_nav_to_pose_bt_xml`"
+    ),  # of distributions before these
+    "enable_groot_monitoring": NavigatorParameter("", "write it below each navigator, from Jazzy on"),
+    "groot_zmq_publisher_port": NavigatorParameter("", "write `navigate_to_pose.groot_server_port`, from Jazzy on"),
+    "groot_zmq_server_port": NavigatorParameter("", "write `navigate_to_pose.groot_server_port`, from Jazzy on"),
+    "navigators": NavigatorParameter("ijkl", type=STRINGS),
+    "*.plugin": NavigatorParameter("ijkl"),
+    "error_code_names": NavigatorParameter(
+        "ij", "write `error_code_name_prefixes`, without `_error_code`", "kl", STRINGS
+    ),
+    "error_code_name_prefixes": NavigatorParameter("kl", "write `error_code_names`, with `_error_code`", type=STRINGS),
+    "bt_search_directories": NavigatorParameter(
         "l", "there each tree is loaded from one file and what that includes", type=STRINGS
     ),
-    "goal_blackboard_id": Parameter("hijk", "write `navigate_to_pose.goal_blackboard_id`"),
-    "goals_blackboard_id": Parameter("hijk", "write `navigate_through_poses.goals_blackboard_id`"),
-    "path_blackboard_id": Parameter("hijk", "write it below each navigator: `navigate_to_pose.path_blackboard_id`"),
-    "waypoint_statuses_blackboard_id": Parameter(
+    "goal_blackboard_id": NavigatorParameter("hijk", "write `navigate_to_pose.goal_blackboard_id`"),
+    "goals_blackboard_id": NavigatorParameter("hijk", "write `navigate_through_poses.goals_blackboard_id`"),
+    "path_blackboard_id": NavigatorParameter(
+        "hijk", "write it below each navigator: `navigate_to_pose.path_blackboard_id`"
+    ),
+    "waypoint_statuses_blackboard_id": NavigatorParameter(
         "k", "write `navigate_through_poses.waypoint_statuses_blackboard_id` in Lyrical"
     ),
-    "*.goal_blackboard_id": Parameter("l", "write `goal_blackboard_id` without the navigator"),
-    "*.goals_blackboard_id": Parameter("l", "write `goals_blackboard_id` without the navigator"),
-    "*.path_blackboard_id": Parameter("l", "write `path_blackboard_id` without the navigator"),
-    "*.waypoint_statuses_blackboard_id": Parameter("l", "write it without the navigator in Kilted"),
-    "*.tracking_feedback_blackboard_id": Parameter("l"),
-    "*.enable_groot_monitoring": Parameter("jkl", type=BOOLEAN),
-    "*.groot_server_port": Parameter("jkl", type=INTEGER),
+    "*.goal_blackboard_id": NavigatorParameter("l", "write `goal_blackboard_id` without the navigator"),
+    "*.goals_blackboard_id": NavigatorParameter("l", "write `goals_blackboard_id` without the navigator"),
+    "*.path_blackboard_id": NavigatorParameter("l", "write `path_blackboard_id` without the navigator"),
+    "*.waypoint_statuses_blackboard_id": NavigatorParameter("l", "write it without the navigator in Kilted"),
+    "*.tracking_feedback_blackboard_id": NavigatorParameter("l"),
+    "*.enable_groot_monitoring": NavigatorParameter("jkl", type=BOOLEAN),
+    "*.groot_server_port": NavigatorParameter("jkl", type=INTEGER),
     # Lyrical reads it without the point after the navigator.
-    "*.search_window": Parameter("", "Lyrical reads `navigate_to_posesearch_window`, without a point", default="2.0"),
-    "default_cancel_timeout": Parameter("jkl", type=INTEGER),
-    "bt_log_idle_transitions": Parameter("l", type=BOOLEAN),
-    "action_server_result_timeout": Parameter("ij", type=DOUBLE),
-    "filter_duration": Parameter("kl", type=DOUBLE),
-    "allow_navigator_preemption": Parameter("l", type=BOOLEAN),
-    "navigator_preemption_timeout": Parameter("l", type=INTEGER),
-    "service_introspection_mode": Parameter("k", "write `introspection_mode` in Lyrical"),
-    "introspection_mode": Parameter("l", "write `service_introspection_mode` in Kilted"),
-    **{name: Parameter("hijkl") for name in _OF_ALL},
+    "*.search_window": NavigatorParameter(
+        "", "Lyrical reads `navigate_to_posesearch_window`, without a point", default="2.0"
+    ),
+    "default_cancel_timeout": NavigatorParameter("jkl", type=INTEGER),
+    "bt_log_idle_transitions": NavigatorParameter("l", type=BOOLEAN),
+    "action_server_result_timeout": NavigatorParameter("ij", type=DOUBLE),
+    "filter_duration": NavigatorParameter("kl", type=DOUBLE),
+    "allow_navigator_preemption": NavigatorParameter("l", type=BOOLEAN),
+    "navigator_preemption_timeout": NavigatorParameter("l", type=INTEGER),
+    "service_introspection_mode": NavigatorParameter("k", "write `introspection_mode` in Lyrical"),
+    "introspection_mode": NavigatorParameter("l", "write `service_introspection_mode` in Kilted"),
+    **{name: NavigatorParameter("hijkl") for name in _OF_ALL},
     **{
-        name: Parameter("hijkl", type=INTEGER)
+        name: NavigatorParameter("hijkl", type=INTEGER)
         for name in ("bt_loop_duration", "default_server_timeout", "wait_for_service_timeout")
     },
-    "always_reload_bt_xml": Parameter("hijkl", type=BOOLEAN),
-    "transform_tolerance": Parameter("hijkl", type=DOUBLE),
-    "plugin_lib_names": Parameter("hijkl", type=STRINGS),
+    "always_reload_bt_xml": NavigatorParameter("hijkl", type=BOOLEAN),
+    "transform_tolerance": NavigatorParameter("hijkl", type=DOUBLE),
+    "plugin_lib_names": NavigatorParameter("hijkl", type=STRINGS),
 }
 # What other code of bt_navigator reads, with the distributions in which it does: some nodes of trees, and the classes
 # that all nodes of Nav2 or of ROS 2 are made of.

@@ -21,12 +21,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.compare.model import Comparison
+    from btq_lang.evidence.compare.model import RunComparison
 
 FORMATS: Final = ("table", "json", "markdown")
 
 
-def write(found: Sequence[Comparison], by: str, sides: tuple[str, str], form: str) -> str:
+def write(found: Sequence[RunComparison], by: str, sides: tuple[str, str], form: str) -> str:
     """Write what changed, in one of FORMATS.
 
     Args:

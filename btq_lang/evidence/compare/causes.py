@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.evidence.compare import failures
 from btq_lang.evidence.compare.chance import LEVEL, exact
 from btq_lang.evidence.compare.measures import difference, probability, rest
-from btq_lang.evidence.compare.model import Change, Key, is_time
+from btq_lang.evidence.compare.model import ComparedNumber, Key, is_time
 from btq_lang.util.grouping import grouped
 from btq_lang.util.record import replace
 
@@ -54,7 +54,7 @@ def chains(durations: Mapping[Key, Measure], leaves: Collection[Key]) -> list[li
     return chained
 
 
-def with_causes(changes: Sequence[Change], numbers: Numbers, at_least: float) -> list[Change]:
+def with_causes(changes: Sequence[ComparedNumber], numbers: Numbers, at_least: float) -> list[ComparedNumber]:
     """The changes, each with what explains it: a change in the same direction inside of it.
 
     Without that, what is left of the difference is less than counts, or chance may explain it.
@@ -77,18 +77,18 @@ def with_causes(changes: Sequence[Change], numbers: Numbers, at_least: float) ->
     return [replace(each, cause=causes.get(id(each))) for each in changes]
 
 
-def _reaches_above(change: Change) -> bool:
+def _reaches_above(change: ComparedNumber) -> bool:
     """Whether what happens in a node happens in those above it, too."""
     return change.what == "failures" or is_time(change.unit)
 
 
 def _explained(
-    changes: Sequence[Change],
+    changes: Sequence[ComparedNumber],
     inside: Mapping[Key, Collection[Key]],
     is_rest_chance: Callable[[Key, Sequence[Key]], bool],
-) -> Iterator[tuple[Change, Change]]:
+) -> Iterator[tuple[ComparedNumber, ComparedNumber]]:
     """Changes in one direction that others explain, each with the largest of these."""
-    causes: list[Change] = []
+    causes: list[ComparedNumber] = []
     for change in sorted(changes, key=lambda each: (not each.finding, len(inside[each.key]), bool(each.requirement))):
         within = [each for each in causes if each.key in inside[change.key]]
         # What is inside of another one is part of it.

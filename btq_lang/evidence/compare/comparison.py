@@ -11,7 +11,7 @@ from btq_lang.evidence.compare.chance import LEVEL, exact, expected, holm, is_to
 from btq_lang.evidence.compare.failures import totals
 from btq_lang.evidence.compare.measures import difference, probability, sizes
 from btq_lang.evidence.compare.mission_numbers import Numbers
-from btq_lang.evidence.compare.model import AT_LEAST, Change, Comparison, is_time
+from btq_lang.evidence.compare.model import AT_LEAST, ComparedNumber, RunComparison, is_time
 from btq_lang.evidence.compare.requirements import edited, turned, verdicts
 from btq_lang.evidence.store.tables import quoted
 from btq_lang.evidence.verdicts import UNKNOWN, VIOLATED
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 
-class Unknown(Exception):
+class UnknownSide(Exception):
     """A side has no runs; the message says which there are."""
 
 
-def compare(ask: Ask, by: str, sides: tuple[str, str], at_least: float = AT_LEAST) -> tuple[Comparison, ...]:
+def compare(ask: Ask, by: str, sides: tuple[str, str], at_least: float = AT_LEAST) -> tuple[RunComparison, ...]:
     """Compare two labels or robots, in every mission that both have run; what only one has run comes last.
 
     Args:
@@ -42,7 +42,7 @@ def compare(ask: Ask, by: str, sides: tuple[str, str], at_least: float = AT_LEAS
     for side in sides:
         if side not in names:
             named = ", ".join(filter(None, names)) or f"no {by}s"
-            raise Unknown(f"no run has the {by} {side}; there are {named}")
+            raise UnknownSide(f"no run has the {by} {side}; there are {named}")
     runs: dict[str, dict[str, Row]] = {}
     for row in ask(questions.RUNS.format(by=by, sides=", ".join(map(quoted, sides)))):
         runs.setdefault(row["mission"], {})[row["side"]] = row
@@ -53,7 +53,7 @@ def compare(ask: Ask, by: str, sides: tuple[str, str], at_least: float = AT_LEAS
         if len(rows) == len(sides)
     ]
     if not missions:
-        raise Unknown(f"no mission was run with both {sides[0]} and {sides[1]}")
+        raise UnknownSide(f"no mission was run with both {sides[0]} and {sides[1]}")
     number = sum(mission.comparisons for mission in missions)
     compared = [[*mission.changes(number)] for mission in missions]
     adjusted = iter(holm([each.p for changes in compared for each in changes]))
@@ -62,19 +62,21 @@ def compare(ask: Ask, by: str, sides: tuple[str, str], at_least: float = AT_LEAS
     return (*(mission.result(of, at_least) for mission, of in zip(missions, judged, strict=True)), *alone)
 
 
-def _judged(change: Change, p: float, at_least: float) -> Change:
+def _judged(change: ComparedNumber, p: float, at_least: float) -> ComparedNumber:
     is_change = p <= LEVEL and change.is_at_least(at_least)
     if change.what == "mean" and is_time(change.unit) and abs(change.difference) <= _RESOLUTION:
         is_change = False
     return replace(change, p=p, finding=change.direction if is_change else "")
 
 
-def _alone(mission: str, rows: Sequence[Row | None]) -> Comparison:
+def _alone(mission: str, rows: Sequence[Row | None]) -> RunComparison:
     """A mission that only one side ran."""
     first, second = ((row["runs"], len(row["robots"])) if row is not None else (0, 0) for row in rows)
     runs, robots = zip(first, second, strict=True)
     before, after = ((row["first_us"], row["last_us"]) if row is not None else None for row in rows)
-    return Comparison(mission, runs, robots, (before, after), (), "runs", 1, 0.0, (0, 0), (), (), ((), ()), (), (), ())
+    return RunComparison(
+        mission, runs, robots, (before, after), (), "runs", 1, 0.0, (0, 0), (), (), ((), ()), (), (), ()
+    )
 
 
 class _Mission:
@@ -115,7 +117,7 @@ class _Mission:
         self._measures: Final = [*chains(durations, self._numbers.leaves), *others]
         self.comparisons: Final = len(self._measures) + len(self._numbers.failures)
 
-    def changes(self, comparisons: int) -> Iterator[Change]:
+    def changes(self, comparisons: int) -> Iterator[ComparedNumber]:
         """All that is compared, with p-values before Holm.
 
         Args:
@@ -127,7 +129,7 @@ class _Mission:
             of = difference(measure, numbers.sides)
             p = probability(measure, numbers.units, numbers.shuffles, of.after > of.before, shuffles_for(comparisons))
             units = sizes(measure, numbers.sides)
-            yield Change(
+            yield ComparedNumber(
                 *key,
                 what="mean",
                 unit=numbers.symbol(key),
@@ -148,13 +150,13 @@ class _Mission:
             )
         yield from (_failed(each, comparisons) for each in numbers.failures)
 
-    def result(self, changes: Sequence[Change], at_least: float) -> Comparison:
+    def result(self, changes: Sequence[ComparedNumber], at_least: float) -> RunComparison:
         """The comparison, with p-values after Holm."""
         numbers = self._numbers
         labels = [dict(sorted(of["labels"].items())) for of in self._runs]
         is_mixed = self._by == "robot" and len({*labels[0], *labels[1]}) > 1
         tested = [self._tested(each, changes) for each in self._turned]
-        return Comparison(
+        return RunComparison(
             mission=self._name,
             runs=_pair(of["runs"] for of in self._runs),
             robots=_pair(len(of["robots"]) for of in self._runs),
@@ -172,7 +174,7 @@ class _Mission:
             changes=tuple(with_causes(changes, numbers, at_least)),
         )
 
-    def _tested(self, newly: Newly, changes: Sequence[Change]) -> Newly:
+    def _tested(self, newly: Newly, changes: Sequence[ComparedNumber]) -> Newly:
         """With how likely the violations of its clauses are by chance."""
         direction = "less reliable" if newly.after == VIOLATED else "more reliable"
         p = [
@@ -183,14 +185,14 @@ class _Mission:
         return replace(newly, p=min(p), may_be_chance=min(p) > LEVEL) if p else newly
 
 
-def _failed(of: FailedRuns, comparisons: int) -> Change:
+def _failed(of: FailedRuns, comparisons: int) -> ComparedNumber:
     """The failures of a node, or the violations of a clause."""
     (failed, before), (other, after) = totals(of.strata)
     shares = failed / before, other / after
     # Robots that fail more often may have run more on one side: then the shares differ the other way than their own.
     agrees = (failed < expected(of.strata)) == (shares[0] < shares[1])
     p = exact(of.strata) if agrees else 1.0
-    return Change(
+    return ComparedNumber(
         *of.key,
         what="failures",
         unit="%",

@@ -6,14 +6,14 @@ import json
 from collections.abc import Sequence
 from typing import Any, Final
 
-from btq_lang.evidence.compare.model import Change, Comparison
+from btq_lang.evidence.compare.model import ComparedNumber, RunComparison
 from btq_lang.util.fields import as_dict
 
 FORMAT: Final = "btq-comparison"
 VERSION: Final = 2
 
 
-def render(found: Sequence[Comparison], by: str, sides: tuple[str, str]) -> str:
+def render(found: Sequence[RunComparison], by: str, sides: tuple[str, str]) -> str:
     """Write the comparisons as JSON."""
     document = {
         "format": FORMAT,
@@ -32,7 +32,7 @@ def render(found: Sequence[Comparison], by: str, sides: tuple[str, str]) -> str:
     return json.dumps(document, indent=1, allow_nan=False) + "\n"
 
 
-def _change(change: Change) -> dict[str, Any]:
+def _change(change: ComparedNumber) -> dict[str, Any]:
     cause = change.cause._asdict() if change.cause is not None else None
     return {**as_dict(change), "same": [key._asdict() for key in change.same], "cause": cause}
 

@@ -8,7 +8,7 @@ from typing import Final
 
 from btq_lang.catalog.units import parse_unit
 from btq_lang.evidence.compare.chance import LEVEL
-from btq_lang.evidence.compare.model import WORSE, Change, Comparison, is_time
+from btq_lang.evidence.compare.model import WORSE, ComparedNumber, RunComparison, is_time
 from btq_lang.evidence.compare.requirements import Newly
 from btq_lang.evidence.verdicts import VIOLATED
 from btq_lang.evidence.wording import duration, first_of, quantity, share
@@ -17,7 +17,7 @@ from btq_lang.util.record import Record, replace
 from btq_lang.util.text import counted
 
 
-class Line(Record):
+class DifferenceLine(Record):
     """A difference in words.
 
     Attributes:
@@ -37,7 +37,7 @@ class Line(Record):
     more: str
 
 
-def certain(comparison: Comparison) -> list[Line]:
+def certain(comparison: RunComparison) -> list[DifferenceLine]:
     """What is certain and large enough: what is newly violated, what got worse by the largest share, then the rest.
 
     What another change explains has no line of its own; that of a requirement also says what is measured for it.
@@ -53,7 +53,7 @@ def certain(comparison: Comparison) -> list[Line]:
     )
     of_requirements = [replace(_turned(each), more="; ".join(measured.get(each.id, ()))) for each in turned]
     lines = [
-        Line(
+        DifferenceLine(
             finding=each.finding,
             is_worse=each.finding in WORSE,
             requirement=each.requirement,
@@ -68,7 +68,7 @@ def certain(comparison: Comparison) -> list[Line]:
     return [*newly, *sorted(lines, key=lambda each: not each.is_worse), *no_longer]
 
 
-def by_chance(comparison: Comparison) -> list[Line]:
+def by_chance(comparison: RunComparison) -> list[DifferenceLine]:
     """What differs most of what chance may explain: requirements, then the least likely differences."""
     turned = [
         replace(_turned(each), is_worse=False)
@@ -90,16 +90,16 @@ def by_chance(comparison: Comparison) -> list[Line]:
     quiet.sort(key=lambda each: each.p_alone)
     for each in quiet[:_MOST]:
         text = f"{_numbers(each, comparison)}, {_chance(each.p)}, alone {each.p_alone:.2g}"
-        turned.append(Line("", False, each.requirement, each.name, text, ""))
+        turned.append(DifferenceLine("", False, each.requirement, each.name, text, ""))
     return turned
 
 
-def percent(change: Change) -> str:
+def percent(change: ComparedNumber) -> str:
     """The difference as a share of the first number; empty if that is 0."""
     return f"{_sign(change.difference)}{share(abs(change.difference / change.before))}" if change.before else ""
 
 
-def _turned(newly: Newly) -> Line:
+def _turned(newly: Newly) -> DifferenceLine:
     """How a requirement came to be violated, or no longer."""
     first, second = (f"{k:,} of {n:,}" for k, n in zip(newly.violated, newly.counted, strict=True))
     is_worse = newly.after == VIOLATED
@@ -107,10 +107,10 @@ def _turned(newly: Newly) -> Line:
     chance = f", {_chance(newly.p)}" if newly.p is not None else ""
     name = f"{newly.id} {newly.title}".rstrip()
     finding = "newly violated" if is_worse else "no longer violated"
-    return Line(finding, is_worse, newly.id, name, f"{verdict}; violated in {first} → {second}{chance}", "")
+    return DifferenceLine(finding, is_worse, newly.id, name, f"{verdict}; violated in {first} → {second}{chance}", "")
 
 
-def _causes_in_requirements(changes: Sequence[Change]) -> dict[str, str]:
+def _causes_in_requirements(changes: Sequence[ComparedNumber]) -> dict[str, str]:
     """The names of the certain changes that requirements measure too, by requirement."""
     causes = {each.key: each.name for each in changes if each.finding and each.cause is None}
     same = {key.requirement: causes[each.key] for each in changes if each.key in causes for key in each.same}
@@ -118,7 +118,7 @@ def _causes_in_requirements(changes: Sequence[Change]) -> dict[str, str]:
     return {**explained, **same}
 
 
-def _folded(change: Change, changes: Sequence[Change]) -> str:
+def _folded(change: ComparedNumber, changes: Sequence[ComparedNumber]) -> str:
     """What is the same change, or comes of it."""
     of = [each for each in changes if each.cause == change.key and each.direction == change.direction]
     of.sort(key=lambda each: each.before)  # what is inside takes less time
@@ -131,7 +131,7 @@ def _folded(change: Change, changes: Sequence[Change]) -> str:
     return f"and {', and '.join(parts)}" if parts else ""
 
 
-def _numbers(change: Change, comparison: Comparison) -> str:
+def _numbers(change: ComparedNumber, comparison: RunComparison) -> str:
     """Both numbers, how they differ, and of how many runs, or what is shuffled in their place."""
     if change.failed is not None:
         verb = "violated" if change.requirement else "failed"
@@ -146,7 +146,7 @@ def _numbers(change: Change, comparison: Comparison) -> str:
     return f"mean {_shown(change.before, change)} → {_shown(change.after, change)} ({differs}) {over}"
 
 
-def _signed(si: float, change: Change) -> str:
+def _signed(si: float, change: ComparedNumber) -> str:
     return f"{_sign(si)}{_shown(abs(si), change)}"
 
 
@@ -158,7 +158,7 @@ def _chance(p: float) -> str:
     return f"p = {p:.2g}" if p >= 0.0001 else "p < 0.0001"
 
 
-def _shown(si: float, change: Change) -> str:
+def _shown(si: float, change: ComparedNumber) -> str:
     return duration(si) if is_time(change.unit) else quantity(si, parse_unit(change.unit))
 
 

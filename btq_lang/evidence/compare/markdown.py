@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from btq_lang.evidence.compare.lines import Line, by_chance, certain
-from btq_lang.evidence.compare.model import Comparison
+from btq_lang.evidence.compare.lines import DifferenceLine, by_chance, certain
+from btq_lang.evidence.compare.model import RunComparison
 from btq_lang.evidence.compare.words import BY_CHANCE, heading, remarks
 from btq_lang.render.gfm import code, escaped, table
 
 
-def render(found: Sequence[Comparison], by: str, sides: tuple[str, str]) -> str:
+def render(found: Sequence[RunComparison], by: str, sides: tuple[str, str]) -> str:
     """The comparisons of all missions."""
     return "\n\n".join("\n".join(_lines(each, sides)) for each in found) + "\n"
 
 
-def _lines(comparison: Comparison, sides: tuple[str, str]) -> Iterator[str]:
+def _lines(comparison: RunComparison, sides: tuple[str, str]) -> Iterator[str]:
     yield f"### {escaped(heading(comparison, sides))}"
     yield ""
     if changes := certain(comparison):
@@ -26,7 +26,7 @@ def _lines(comparison: Comparison, sides: tuple[str, str]) -> Iterator[str]:
     yield from (f"* {escaped(line)}" for line in remarks(comparison, sides))
 
 
-def _table(lines: Sequence[Line]) -> Iterator[str]:
+def _table(lines: Sequence[DifferenceLine]) -> Iterator[str]:
     rows = [
         (
             f"**{each.finding}**" if each.is_worse else each.finding,

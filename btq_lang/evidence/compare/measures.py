@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.compare.chance import Shuffles
 
 
-class Unit(NamedTuple):
+class ShuffledUnit(NamedTuple):
     """What is shuffled: a run, a group of runs, or a robot."""
 
     side: str
@@ -43,7 +43,7 @@ class Values(Record):
     end: float
 
 
-Measure: TypeAlias = Mapping[Unit, Values]
+Measure: TypeAlias = Mapping[ShuffledUnit, Values]
 
 
 class Difference(Record):
@@ -81,7 +81,7 @@ def difference(measure: Measure, sides: tuple[str, str]) -> Difference:
 
 
 def probability(
-    measure: Measure, units: Sequence[Unit], shuffles: Shuffles, is_more: bool, number: int = LEAST_SHUFFLES
+    measure: Measure, units: Sequence[ShuffledUnit], shuffles: Shuffles, is_more: bool, number: int = LEAST_SHUFFLES
 ) -> float:
     """The p-value of the sum of the ranks of the first side.
 
@@ -110,7 +110,7 @@ def rest(measure: Measure, parts: Sequence[Measure]) -> Measure:
         unit: of.number * of.mean - sum(part[unit].number * part[unit].mean for part in parts if unit in part)
         for unit, of in measure.items()
     }
-    ranks: dict[Unit, float] = {}
+    ranks: dict[ShuffledUnit, float] = {}
     for units in grouped((unit.stratum, unit) for unit in sums).values():
         places = grouped((sums[unit], place) for place, unit in enumerate(sorted(units, key=sums.__getitem__)))
         ranks |= {unit: sum(of := places[sums[unit]]) / len(of) for unit in units}

@@ -11,7 +11,7 @@ from typing import Final
 from btq_lang.evidence.compare import questions
 from btq_lang.evidence.compare.chance import Shuffles
 from btq_lang.evidence.compare.failures import FailedRuns, failed_runs
-from btq_lang.evidence.compare.measures import Measure, Unit, Values
+from btq_lang.evidence.compare.measures import Measure, ShuffledUnit, Values
 from btq_lang.evidence.compare.model import Key, Over, is_time
 from btq_lang.evidence.compare.requirements import Edited
 from btq_lang.evidence.store.queries import Ask, Row
@@ -103,7 +103,9 @@ def _over(first: set[str], second: set[str]) -> Over:
 
 def _measure(rows: Sequence[Row]) -> Measure:
     return {
-        Unit(row["side"], row["stratum"], row["unit"]): Values(row["number"], row["mean"], row["rank"], row["end_us"])
+        ShuffledUnit(row["side"], row["stratum"], row["unit"]): Values(
+            row["number"], row["mean"], row["rank"], row["end_us"]
+        )
         for row in rows
     }
 

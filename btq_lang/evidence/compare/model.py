@@ -34,7 +34,7 @@ class Key(NamedTuple):
         return f"{self.requirement}: {self.clause}" + (f" at {self.node}" if self.node else "")
 
 
-class Change(Record):
+class ComparedNumber(Record):
     """A number that is compared.
 
     Attributes:
@@ -99,7 +99,7 @@ class Change(Record):
         return "higher" if is_more else "lower"
 
 
-class Comparison(Record):
+class RunComparison(Record):
     """What changed in a mission; nothing is compared of one that only one side ran.
 
     Attributes:
@@ -132,7 +132,7 @@ class Comparison(Record):
     only: tuple[tuple[str, ...], tuple[str, ...]]
     unknown: tuple[str, ...]
     edited: tuple[Edited, ...]
-    changes: tuple[Change, ...]
+    changes: tuple[ComparedNumber, ...]
 
     @property
     def is_worse(self) -> bool:

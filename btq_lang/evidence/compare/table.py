@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Final
 
-from btq_lang.evidence.compare.lines import Line, by_chance, certain
-from btq_lang.evidence.compare.model import Comparison
+from btq_lang.evidence.compare.lines import DifferenceLine, by_chance, certain
+from btq_lang.evidence.compare.model import RunComparison
 from btq_lang.evidence.compare.words import BY_CHANCE, heading, remarks
 from btq_lang.render.cells import cells_of, printable
 
 
-def render(found: Sequence[Comparison], by: str, sides: tuple[str, str]) -> str:
+def render(found: Sequence[RunComparison], by: str, sides: tuple[str, str]) -> str:
     """The comparisons of all missions."""
     return "\n".join("".join(f"{printable(line)}\n" for line in _lines(each, sides)) for each in found)
 
 
-def _lines(comparison: Comparison, sides: tuple[str, str]) -> Iterator[str]:
+def _lines(comparison: RunComparison, sides: tuple[str, str]) -> Iterator[str]:
     yield heading(comparison, sides)
     if changes := certain(comparison):
         yield from ("", *_columns(changes))
@@ -26,7 +26,7 @@ def _lines(comparison: Comparison, sides: tuple[str, str]) -> Iterator[str]:
         yield from ("", *notes)
 
 
-def _columns(lines: Sequence[Line]) -> Iterator[str]:
+def _columns(lines: Sequence[DifferenceLine]) -> Iterator[str]:
     """The lines, with what belongs to each below it."""
     left = max(cells_of(each.finding) for each in lines)
     middle = max((width for each in lines if (width := cells_of(each.name)) <= _WIDEST), default=0)

@@ -7,12 +7,12 @@ from typing import Final
 
 from btq_lang.evidence.compare.chance import LEVEL
 from btq_lang.evidence.compare.lines import percent
-from btq_lang.evidence.compare.model import Comparison
+from btq_lang.evidence.compare.model import RunComparison
 from btq_lang.evidence.wording import first_of, period, share
 from btq_lang.util.text import counted
 
 
-def heading(comparison: Comparison, sides: tuple[str, str]) -> str:
+def heading(comparison: RunComparison, sides: tuple[str, str]) -> str:
     """What is compared, and when it was."""
     if not all(comparison.runs):
         ran, other = sides if comparison.runs[0] else sides[::-1]
@@ -27,7 +27,7 @@ def heading(comparison: Comparison, sides: tuple[str, str]) -> str:
     return f"{comparison.mission}: {runs}, durations compared by {over}"
 
 
-def remarks(comparison: Comparison, sides: tuple[str, str]) -> Iterator[str]:
+def remarks(comparison: RunComparison, sides: tuple[str, str]) -> Iterator[str]:
     """What was compared and not found to have changed, what could not be compared, and what has too few runs."""
     if not all(comparison.runs):
         return
@@ -68,7 +68,7 @@ def remarks(comparison: Comparison, sides: tuple[str, str]) -> Iterator[str]:
         yield f"too few to show any change: {', '.join(few)}"
 
 
-def untestable(comparison: Comparison) -> str:
+def untestable(comparison: RunComparison) -> str:
     """Why no measure can show a change; empty if one can, or none is compared."""
     measures = [each for each in comparison.changes if each.failed is None]
     if not measures or not all(each.too_few for each in measures):

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from types import ModuleType
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.model import LoggedTree, NamedLog, Series, Session
+from btq_lang.evidence.model import LoggedTree, LogSession, NamedLog, SampleSeries
 from btq_lang.evidence.readers import bag, btlog, sqlite, tree_log
 from btq_lang.evidence.readers.topics import Clock
 from btq_lang.evidence.readers.tree import NotALog as NotALog
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 SUFFIXES: Final = (".btlog", ".db3", ".btdb", ".mcap")  # of the files read below a folder
 
 
-def read(path: str, sources: Iterable[SignalSource] = ()) -> Iterator[Session | NamedLog]:
+def read(path: str, sources: Iterable[SignalSource] = ()) -> Iterator[LogSession | NamedLog]:
     """The sessions of a log, a file or the folder of a ROS 2 bag; each must be read before the next is requested.
 
     Args:
@@ -48,12 +48,12 @@ def trees(path: str) -> list[LoggedTree]:
 
 def samples_of_bags(
     paths: Iterable[str], sources: Sequence[SignalSource]
-) -> tuple[dict[str, Series], list[str], set[str]]:
+) -> tuple[dict[str, SampleSeries], list[str], set[str]]:
     """The samples of bags without a log of a tree, by signal, with notes about them, and which bags these are.
 
     A file that cannot be read is skipped; `read` reports it.
     """
-    found: dict[str, Series] = {}
+    found: dict[str, SampleSeries] = {}
     remarks: list[str] = []
     bags = set()
     for path in paths if any(source.topic for source in sources) else ():
@@ -65,7 +65,7 @@ def samples_of_bags(
             bags.add(path)
             remarks += samples[1]
             for signal, series in samples[0].items():
-                into = found.setdefault(signal, Series(series.unit))
+                into = found.setdefault(signal, SampleSeries(series.unit))
                 for time, value in zip(series.times, series.values, strict=True):
                     into.add(time, value)
     return found, remarks, bags

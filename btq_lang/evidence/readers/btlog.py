@@ -13,14 +13,14 @@ from collections.abc import Iterator
 from struct import Struct
 from typing import BinaryIO, Final
 
-from btq_lang.evidence.model import Session, Transition
+from btq_lang.evidence.model import LogSession, Transition
 from btq_lang.evidence.readers import klein
 from btq_lang.evidence.readers.tree import NotALog, read_tree
 
 MAGIC: Final = b"BTCPP4-FileLogger2"
 
 
-def read(path: str) -> Iterator[Session]:
+def read(path: str) -> Iterator[LogSession]:
     """The one session of a file.
 
     Raises:
@@ -42,7 +42,7 @@ def read(path: str) -> Iterator[Session]:
             raise NotALog(f"its tree and start should take {length} and {_START.size} bytes, and {left} are left")
         tree = read_tree(file.read(length))
         (start,) = _START.unpack(file.read(_START.size))
-        session = Session(tree, _transitions(file, start), *klein.read(path))
+        session = LogSession(tree, _transitions(file, start), *klein.read(path))
         if rest := (left - length - _START.size) % _RECORD.size:
             session.remarks.append(f"cut off: the last {rest} bytes are not a whole transition and are left out")
         yield session

@@ -12,10 +12,10 @@ import json
 import os
 from typing import Any, Final
 
-from btq_lang.evidence.model import Series, by_entry, is_sample
+from btq_lang.evidence.model import SampleSeries, by_entry, is_sample
 
 
-def read(log: str) -> tuple[dict[str, Series], list[str]]:
+def read(log: str) -> tuple[dict[str, SampleSeries], list[str]]:
     """The samples beside a log by entry, and notes about them; both empty without such a file."""
     path = f"{os.path.splitext(log)[0]}{SUFFIX}"
     name = os.path.basename(path)
@@ -27,7 +27,7 @@ def read(log: str) -> tuple[dict[str, Series], list[str]]:
             start = _time(header.get("first_timestamp"))
             if start is None:
                 return {}, [f"{name}: expected `first_timestamp` in the first line; left out"]
-            boards: dict[str, dict[str, Series]] = {}
+            boards: dict[str, dict[str, SampleSeries]] = {}
             malformed = 0
             for line in file:
                 malformed += not _add(boards, _object(line), start)
@@ -40,7 +40,7 @@ def read(log: str) -> tuple[dict[str, Series], list[str]]:
     return by_entry(boards, main if isinstance(main, str) else None), remarks
 
 
-def _add(boards: dict[str, dict[str, Series]], line: dict[str, Any] | None, start: int) -> bool:
+def _add(boards: dict[str, dict[str, SampleSeries]], line: dict[str, Any] | None, start: int) -> bool:
     """Add the sample of a line, if it is one; returns whether the line could be read."""
     if line is None:
         return False
@@ -49,7 +49,7 @@ def _add(boards: dict[str, dict[str, Series]], line: dict[str, Any] | None, star
         return False
     is_removed = line.get("removed") is True
     if is_removed or is_sample(line.get("value")):
-        series = boards.setdefault(board, {}).setdefault(key, Series())
+        series = boards.setdefault(board, {}).setdefault(key, SampleSeries())
         series.add(start + time, None if is_removed else line["value"])
     return is_removed or "value" in line
 

@@ -11,7 +11,7 @@ import os
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.model import SampleValue, Series, is_sample
+from btq_lang.evidence.model import SampleSeries, SampleValue, is_sample
 from btq_lang.evidence.readers import parquet
 from btq_lang.evidence.readers.parquet import NoSamples as NoSamples
 from btq_lang.util.spelling import did_you_mean, near
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from btq_lang.workspace.project_evidence import SignalSource
 
 
-def read(path: str, time: str = "") -> dict[str, Series]:
+def read(path: str, time: str = "") -> dict[str, SampleSeries]:
     """The samples of a file, by the names of their columns.
 
     Args:
@@ -49,7 +49,7 @@ def read(path: str, time: str = "") -> dict[str, Series]:
             raise NoSamples(f"line {lines.line_num}: {error}") from error
 
 
-def _table(names: list[str], time: str, rows: Iterable[tuple[str, Sequence[object]]]) -> dict[str, Series]:
+def _table(names: list[str], time: str, rows: Iterable[tuple[str, Sequence[object]]]) -> dict[str, SampleSeries]:
     """The columns of a table; rows: each with its place in the file."""
     if len(names) < 2:
         raise NoSamples(_NAMES)
@@ -57,7 +57,7 @@ def _table(names: list[str], time: str, rows: Iterable[tuple[str, Sequence[objec
     others = [name for column, name in enumerate(names) if column != at]
     if twice := next((name for name in others if others.count(name) > 1), None):
         raise NoSamples(f"two columns are named `{twice}`")
-    found = {name: Series() for name in others}
+    found = {name: SampleSeries() for name in others}
     for place, row in rows:
         moment = _time(row[at] if at < len(row) else None, place)
         for column, value in enumerate(row[: len(names)]):
@@ -66,15 +66,15 @@ def _table(names: list[str], time: str, rows: Iterable[tuple[str, Sequence[objec
     return found
 
 
-def read_sources(sources: Iterable[SignalSource], folder: str) -> dict[str, Series]:
+def read_sources(sources: Iterable[SignalSource], folder: str) -> dict[str, SampleSeries]:
     """The samples of signals that come from files, which are below a folder unless their paths are absolute.
 
     Raises:
         NoSamples: a file does not match its source.
         OSError: it cannot be read.
     """
-    files: dict[tuple[str, str], dict[str, Series]] = {}
-    found: dict[str, Series] = {}
+    files: dict[tuple[str, str], dict[str, SampleSeries]] = {}
+    found: dict[str, SampleSeries] = {}
     for source in sources:
         if not source.file:
             continue
@@ -85,7 +85,7 @@ def read_sources(sources: Iterable[SignalSource], folder: str) -> dict[str, Seri
             column = files[key][_known(source.column, files[key])]
         except NoSamples as error:
             raise NoSamples(f"{source.file}: {error}") from error
-        series = found[source.signal] = Series(source.unit)
+        series = found[source.signal] = SampleSeries(source.unit)
         for time, value in zip(column.times, column.values, strict=True):
             series.add(time, scaled(value, source))
     return found

@@ -18,13 +18,13 @@ from tempfile import TemporaryDirectory
 from typing import Final
 from urllib.request import pathname2url
 
-from btq_lang.evidence.model import Series, Session, Transition, is_sample
+from btq_lang.evidence.model import LogSession, SampleSeries, Transition, is_sample
 from btq_lang.evidence.readers.tree import NotALog, read_tree
 
 BESIDE: Final = ("-journal", "-wal")  # what the names of the files end with that belong to a database
 
 
-def read(path: str) -> Iterator[Session]:
+def read(path: str) -> Iterator[LogSession]:
     """The sessions of a database, in their order.
 
     Raises:
@@ -36,9 +36,9 @@ def read(path: str) -> Iterator[Session]:
         if missing := sorted({"Definitions", "Transitions"} - tables(database)):
             raise NotALog(f"expected the tables of SqliteLogger; missing: {', '.join(missing)}")
         for number, xml in _definitions(database, of_file):
-            samples: dict[str, Series] = {}
+            samples: dict[str, SampleSeries] = {}
             remarks = [*of_file]
-            yield Session(read_tree(str(xml)), _transitions(database, number, samples, remarks), samples, remarks)
+            yield LogSession(read_tree(str(xml)), _transitions(database, number, samples, remarks), samples, remarks)
 
 
 def is_bag(path: str) -> bool:
@@ -182,7 +182,7 @@ def _definitions(database: sqlite3.Connection, remarks: list[str]) -> list[tuple
 
 
 def _transitions(
-    database: sqlite3.Connection, session: int, samples: dict[str, Series], remarks: list[str]
+    database: sqlite3.Connection, session: int, samples: dict[str, SampleSeries], remarks: list[str]
 ) -> Iterator[Transition]:
     """The transitions of a session; samples and remarks are appended while they are read."""
     malformed = 0
@@ -200,7 +200,7 @@ def _transitions(
         remarks.append(f"rows whose time, uid or state is not a whole number, left out: {malformed}")
 
 
-def _add_samples(samples: dict[str, Series], time: int, extra: object) -> None:
+def _add_samples(samples: dict[str, SampleSeries], time: int, extra: object) -> None:
     """Add the samples in a row's extra data, from a logger's callback: each number, text or bool of a JSON object."""
     try:
         values = json.loads(extra) if isinstance(extra, str) else None
@@ -208,7 +208,7 @@ def _add_samples(samples: dict[str, Series], time: int, extra: object) -> None:
         return
     for name, value in values.items() if isinstance(values, dict) else ():
         if is_sample(value):
-            samples.setdefault(name, Series()).add(time, value)
+            samples.setdefault(name, SampleSeries()).add(time, value)
 
 
 _DAMAGED: Final = (sqlite3.Error, UnicodeDecodeError)  # reading an error message may raise the latter

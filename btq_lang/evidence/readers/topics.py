@@ -11,7 +11,7 @@ from array import array
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
-from btq_lang.evidence.model import SampleValue, Series, is_sample
+from btq_lang.evidence.model import SampleSeries, SampleValue, is_sample
 from btq_lang.evidence.readers.samples import scaled
 from btq_lang.evidence.readers.tree import NotALog
 from btq_lang.util.spelling import did_you_mean, near
@@ -96,13 +96,13 @@ class Topics:
         for field in self._of[topic]:
             field.add(received, message)
 
-    def series(self, namespace: str, clock: Clock) -> dict[str, Series]:
+    def series(self, namespace: str, clock: Clock) -> dict[str, SampleSeries]:
         """The samples of a robot by signal.
 
         Raises:
             NotALog: they cannot be placed on the clock.
         """
-        found: dict[str, Series] = {}
+        found: dict[str, SampleSeries] = {}
         for source in self._sources:
             for topic in (_inside(namespace, source.topic), source.topic):
                 fields = [each for each in self._of.get(topic, ()) if each.source is source]
@@ -149,11 +149,11 @@ class _Field:
         self._stamped.append(_stamp(message))
         self._values.append(value)
 
-    def series(self, clock: Clock, remarks: list[str]) -> Series:
+    def series(self, clock: Clock, remarks: list[str]) -> SampleSeries:
         """The samples in the order of their times."""
         from numpy import argsort
 
-        found = Series(self.source.unit)
+        found = SampleSeries(self.source.unit)
         if self._values:
             times = self._placed(clock, remarks)
             for index in argsort(times, kind="stable").tolist():

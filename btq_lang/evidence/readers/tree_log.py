@@ -12,7 +12,7 @@ from array import array
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any, Final
 
-from btq_lang.evidence.model import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, LoggedTree, NamedLog, Series
+from btq_lang.evidence.model import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, LoggedTree, NamedLog, SampleSeries
 from btq_lang.evidence.readers.bag import TEXT, TREE_LOG, opened
 from btq_lang.evidence.readers.topics import Clock, Topics
 from btq_lang.evidence.readers.tree import NotALog, read_tree
@@ -82,7 +82,7 @@ def _add_tree(message: Any, found: dict[str, LoggedTree]) -> str:
     return ""
 
 
-def samples(path: str, sources: Iterable[SignalSource]) -> tuple[dict[str, Series], list[str]] | None:
+def samples(path: str, sources: Iterable[SignalSource]) -> tuple[dict[str, SampleSeries], list[str]] | None:
     """The samples in a bag without a log of a tree, and notes about them; None if it has one.
 
     Raises:
@@ -159,7 +159,7 @@ class _Changes:
         topic: str,
         is_one_of_several: bool,
         trees: list[LoggedTree],
-        signals: dict[str, Series],
+        signals: dict[str, SampleSeries],
         remarks: list[str],
     ) -> NamedLog:
         """The log of the added changes, in order."""

@@ -12,7 +12,7 @@ from btq_lang.catalog.units import from_si, to_si
 from btq_lang.evidence.wording import measured as written
 from btq_lang.evidence.wording import moment
 from btq_lang.render.axis import round_values
-from btq_lang.render.chart import Chart, Level, Mark, Series, drawn
+from btq_lang.render.chart import Chart, ChartMark, ChartSeries, Level, drawn
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
@@ -44,10 +44,10 @@ def bars(
         kind="trend",
         label=f"by {steps.name}: {change}, at most {shown(highest)}{began}",
         size=_SMALL,
-        series=(Series("bars", values, titles),),
+        series=(ChartSeries("bars", values, titles),),
         ticks=((0.0, shown(0.0)), (highest, shown(highest))),
         ends=(dates[0], dates[-1]),
-        marks=tuple(Mark((start - steps.origin) / steps.length, name or NO_NAME) for name, start in labels),
+        marks=tuple(ChartMark((start - steps.origin) / steps.length, name or NO_NAME) for name, start in labels),
     )
     return drawn(chart), f"at most {shown(highest)}"
 
@@ -81,9 +81,9 @@ def _chart(measured: MeasureTrend) -> str:
         pairs = zip(dates, values, strict=True)
         return tuple("" if each is None else f"{day}: {of}{written(each, unit)}" for day, each in pairs)
 
-    series = [Series("dots", measured.worst, titles(measured.worst, "worst "))]
+    series = [ChartSeries("dots", measured.worst, titles(measured.worst, "worst "))]
     middle = measured.medians if measured.medians is not None else measured.worst
-    series.insert(0, Series("line", middle, titles(middle, "median ")))
+    series.insert(0, ChartSeries("line", middle, titles(middle, "median ")))
     values = [each for each in (*measured.worst, *middle) if each is not None]
     levels = [Level(kind.rpartition(" ")[2], f"{kind} {written(si, unit)}", si) for kind, si in measured.levels]
     every = [from_si(each, unit) for each in (*values, *(level.value for level in levels))]
@@ -97,7 +97,7 @@ def _chart(measured: MeasureTrend) -> str:
             ticks=tuple((to_si(each, unit), _number(each, unit.symbol)) for each in ticks),
             ends=(dates[0], dates[-1]),
             levels=tuple(levels),
-            marks=tuple(Mark(place, name or NO_NAME) for name, place in measured.labels),
+            marks=tuple(ChartMark(place, name or NO_NAME) for name, place in measured.labels),
         )
     )
 

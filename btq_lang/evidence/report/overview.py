@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from btq_lang.evidence.compare.comparison import Unknown, compare
-from btq_lang.evidence.compare.model import Comparison
+from btq_lang.evidence.compare.comparison import UnknownSide, compare
+from btq_lang.evidence.compare.model import RunComparison
 from btq_lang.evidence.report.measures import MeasureTrend, measures
 from btq_lang.evidence.report.trends import Steps, Trends, steps_of, trends
 from btq_lang.evidence.store.queries import OVERVIEW, Ask, Row, only
@@ -19,7 +19,7 @@ from btq_lang.util.grouping import grouped
 from btq_lang.util.record import Record
 
 
-class Part(Record):
+class RunGroup(Record):
     """Runs of a mission: those with a label, or those of a robot.
 
     Attributes:
@@ -44,7 +44,7 @@ class Part(Record):
         return sum(each.verdict == VIOLATED for each in self.verdicts.requirements)
 
 
-class Node(Record):
+class ReportedNode(Record):
     """A node; runs: of each part of the mission, how many of its runs are counted."""
 
     name: str
@@ -63,15 +63,15 @@ class MissionOverview(Record):
     """
 
     name: str
-    parts: tuple[Part, ...]
-    robots: tuple[Part, ...]
-    failures: tuple[Node, ...]
-    nodes: tuple[Node, ...]
+    parts: tuple[RunGroup, ...]
+    robots: tuple[RunGroup, ...]
+    failures: tuple[ReportedNode, ...]
+    nodes: tuple[ReportedNode, ...]
     trends: Trends
     measures: tuple[MeasureTrend, ...]
 
 
-class Overview(Record):
+class StoreOverview(Record):
     """A store.
 
     Attributes:
@@ -87,7 +87,7 @@ class Overview(Record):
     steps: Steps
     missions: tuple[MissionOverview, ...]
     sides: tuple[str, str] | None
-    comparisons: tuple[Comparison, ...]
+    comparisons: tuple[RunComparison, ...]
 
     @property
     def is_worse(self) -> bool:
@@ -95,7 +95,7 @@ class Overview(Record):
         return any(each.is_worse for each in self.comparisons)
 
 
-def overview(ask: Ask, store: str, by: Sequence[str], sides: Sequence[str] = ()) -> Overview:
+def overview(ask: Ask, store: str, by: Sequence[str], sides: Sequence[str] = ()) -> StoreOverview:
     """The overview of a store.
 
     Args:
@@ -114,7 +114,7 @@ def overview(ask: Ask, store: str, by: Sequence[str], sides: Sequence[str] = ())
     last = (names[-2], names[-1]) if len(names) > 1 else None
     try:
         comparisons = compare(ask, "label", last) if last is not None else ()
-    except Unknown:
+    except UnknownSide:
         if sides:
             raise
         comparisons = ()  # each mission was run with one of them
@@ -137,10 +137,10 @@ def overview(ask: Ask, store: str, by: Sequence[str], sides: Sequence[str] = ())
                 measures=tuple(measured.get(name, ())),
             )
         )
-    return Overview(store, tuple(by), labels_at, steps, tuple(missions), last, comparisons)
+    return StoreOverview(store, tuple(by), labels_at, steps, tuple(missions), last, comparisons)
 
 
-def _parts(ask: Ask, store: str, labels: Sequence[str] | None) -> dict[str, list[Part]]:
+def _parts(ask: Ask, store: str, labels: Sequence[str] | None) -> dict[str, list[RunGroup]]:
     """The parts of each mission.
 
     Args:
@@ -151,7 +151,7 @@ def _parts(ask: Ask, store: str, labels: Sequence[str] | None) -> dict[str, list
         (row["mission"], row.get("label", "")): int(row["nodes"])
         for row in ask(OVERVIEW["exercised"].format(by=", ".join(("mission", *by))))
     }
-    found: dict[str, list[Part]] = {}
+    found: dict[str, list[RunGroup]] = {}
     for row, verdicts in parted(ask, store, by, 1):
         label = row.get("label", "")
         part = _part(row, verdicts, label, exercised.get((row["mission"], label), 0))
@@ -161,7 +161,7 @@ def _parts(ask: Ask, store: str, labels: Sequence[str] | None) -> dict[str, list
     return found
 
 
-def _robots(ask: Ask, store: str, mission: str, labels: Sequence[str] | None) -> Sequence[Part]:
+def _robots(ask: Ask, store: str, mission: str, labels: Sequence[str] | None) -> Sequence[RunGroup]:
     """The robots that ran a mission, with its last label, those with the most violated requirements first, then those
     with the most failures.
     """
@@ -170,16 +170,16 @@ def _robots(ask: Ask, store: str, mission: str, labels: Sequence[str] | None) ->
     return sorted(found, key=lambda each: (-each.violated, -each.failed / each.runs, each.name))
 
 
-def _part(row: Row, verdicts: MissionVerdicts, name: str, exercised: int = 0) -> Part:
+def _part(row: Row, verdicts: MissionVerdicts, name: str, exercised: int = 0) -> RunGroup:
     nodes = (exercised, int(row["nodes"])) if row["trees"] == 1 else None
-    return Part(name, int(row["robots"]), int(row["failed"]), nodes, verdicts)
+    return RunGroup(name, int(row["robots"]), int(row["failed"]), nodes, verdicts)
 
 
-def _nodes(rows: Iterable[Row], labels: Sequence[str] | None) -> list[Node]:
+def _nodes(rows: Iterable[Row], labels: Sequence[str] | None) -> list[ReportedNode]:
     """The runs of each node, by label or all together."""
     places = {label: place for place, label in enumerate(labels or ())}
     found: dict[str, list[int]] = {}
     for row in rows:
         runs = found.setdefault(row["node"] or "", [0] * max(len(places), 1))
         runs[places.get(row["label"], 0)] += int(row["runs"])
-    return [Node(name, tuple(runs)) for name, runs in found.items()]
+    return [ReportedNode(name, tuple(runs)) for name, runs in found.items()]

@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.compare.lines import Line, by_chance, certain
-from btq_lang.evidence.compare.model import WORSE, Comparison
+from btq_lang.evidence.compare.lines import DifferenceLine, by_chance, certain
+from btq_lang.evidence.compare.model import WORSE, RunComparison
 from btq_lang.evidence.compare.words import BY_CHANCE, heading, remarks, untestable
 from btq_lang.evidence.report.charts import NO_NAME, bars, measure_figures
 from btq_lang.evidence.sentences import explained, result, worst_violation
@@ -20,11 +20,11 @@ from btq_lang.util.record import Record, replace
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.report.overview import MissionOverview, Node, Overview, Part
+    from btq_lang.evidence.report.overview import MissionOverview, ReportedNode, RunGroup, StoreOverview
     from btq_lang.evidence.report.trends import Values
 
 
-def render(overview: Overview) -> str:
+def render(overview: StoreOverview) -> str:
     """The whole page."""
     return page(
         "evidence/report/page.html.j2",
@@ -36,7 +36,7 @@ def render(overview: Overview) -> str:
     )
 
 
-def _extent(overview: Overview) -> str:
+def _extent(overview: StoreOverview) -> str:
     """What is in the store."""
     sources = [source for mission in overview.missions for part in mission.parts for source in part.verdicts.sources]
     times = period(min(each.begin or 0 for each in sources), max(each.end or 0 for each in sources))
@@ -50,7 +50,7 @@ def _extent(overview: Overview) -> str:
 # ---- what got worse ----
 
 
-def _tiles(overview: Overview) -> list[tuple[str, int | str, str]]:
+def _tiles(overview: StoreOverview) -> list[tuple[str, int | str, str]]:
     """The numbers of what got worse, where something is compared, and of what is violated: class, number and words."""
     tiles: list[tuple[int | str, str]] = []
     if compared := overview.comparisons:
@@ -64,7 +64,7 @@ def _tiles(overview: Overview) -> list[tuple[str, int | str, str]]:
     return [("" if number in (0, _NOT_TESTED) else "bad", number, words) for number, words in tiles]
 
 
-def _changes(overview: Overview) -> PageData | None:
+def _changes(overview: StoreOverview) -> PageData | None:
     """What changed between two labels; None if there is one."""
     if overview.sides is None:
         return None
@@ -78,7 +78,7 @@ def _changes(overview: Overview) -> PageData | None:
     }
 
 
-def _comparison(comparison: Comparison, sides: tuple[str, str], keys: dict[str, str]) -> PageData:
+def _comparison(comparison: RunComparison, sides: tuple[str, str], keys: dict[str, str]) -> PageData:
     lines = certain(comparison) if all(comparison.runs) else ()
     worse, others = ([each for each in lines if each.is_worse is is_worse] for is_worse in (True, False))
     chance = BY_CHANCE.capitalize()
@@ -100,7 +100,7 @@ def _comparison(comparison: Comparison, sides: tuple[str, str], keys: dict[str, 
     }
 
 
-def _difference(line: Line, keys: dict[str, str]) -> PageData:
+def _difference(line: DifferenceLine, keys: dict[str, str]) -> PageData:
     name = line.requirement or ""
     return {"line": line, "name": name, "key": keys.get(name, ""), "about": line.name.removeprefix(name)}
 
@@ -120,7 +120,7 @@ class Cell(Record):
 class _Mission:
     """The sections of a mission."""
 
-    def __init__(self, overview: Overview, mission: MissionOverview) -> None:
+    def __init__(self, overview: StoreOverview, mission: MissionOverview) -> None:
         self._overview: Final = overview
         self._mission: Final = mission
         self._parts: Final = mission.parts[-_LABELS:]
@@ -166,7 +166,7 @@ class _Mission:
 
     def _runs(self) -> list[PageData]:
         def row(
-            head: str, value: Callable[[Part], str], values: Values, shown: Callable[[float], str] = _number
+            head: str, value: Callable[[RunGroup], str], values: Values, shown: Callable[[float], str] = _number
         ) -> PageData:
             return {"head": head, **self._row([Cell(value(part)) for part in self._parts], values, shown)}
 
@@ -184,7 +184,7 @@ class _Mission:
         ]
 
     def _failures(self) -> PageData:
-        def cell(number: int, part: Part) -> Cell:
+        def cell(number: int, part: RunGroup) -> Cell:
             if not part.failed:
                 return Cell("no failed run")
             return Cell(_of(number, part.failed), share=f"{number / part.failed:.1%}")
@@ -208,7 +208,7 @@ class _Mission:
     def _nodes(self) -> list[PageData]:
         return [self._of_node(node, lambda number, part: Cell(_of(number, part.runs))) for node in self._mission.nodes]
 
-    def _of_node(self, node: Node, cell: Callable[[int, Part], Cell]) -> PageData:
+    def _of_node(self, node: ReportedNode, cell: Callable[[int, RunGroup], Cell]) -> PageData:
         runs = node.runs[-len(self._parts) :]
         return {"head": node.name or "(unknown)", **self._row([*map(cell, runs, self._parts)])}
 
@@ -260,7 +260,7 @@ def _worst(clauses: Sequence[ClauseVerdict]) -> ClauseVerdict:
     return replace(worst, worst=replace(worst.worst, run=None)) if worst.worst is not None else worst
 
 
-def _robot(robot: Part, keys: dict[str, str]) -> PageData:
+def _robot(robot: RunGroup, keys: dict[str, str]) -> PageData:
     violated = [each for each in robot.verdicts.requirements if each.verdict == VIOLATED]
     return {
         "head": robot.name or NO_NAME,
@@ -274,7 +274,7 @@ def _robot(robot: Part, keys: dict[str, str]) -> PageData:
     }
 
 
-def _exercised(part: Part) -> str:
+def _exercised(part: RunGroup) -> str:
     if part.exercised is None:
         return "several trees"
     number, nodes = part.exercised
@@ -291,7 +291,7 @@ def _of(number: int, total: int) -> str:
     return f"{number:,} of {total:,}, {share(number / total)}" if total else "0 of 0"
 
 
-def _name(part: Part, overview: Overview) -> str:
+def _name(part: RunGroup, overview: StoreOverview) -> str:
     return (part.name or NO_NAME) if "label" in overview.by else "All runs"
 
 
@@ -299,7 +299,7 @@ def _number(value: float) -> str:
     return f"{value:,.0f}" if value >= _LARGE or value == int(value) else f"{value:.3g}"
 
 
-def _keys(overview: Overview, mission: str) -> dict[str, str]:
+def _keys(overview: StoreOverview, mission: str) -> dict[str, str]:
     """The ids of the rows of a mission's requirements on the page."""
     names = [each.name for each in overview.missions]
     (of_name,) = (each for each in overview.missions if each.name == mission)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.clause import JudgedClause
     from btq_lang.evidence.verbs import Judgement
     from btq_lang.evidence.verdicts import ClauseVerdict
-    from btq_lang.requirements.model import Requirement, Value
+    from btq_lang.requirements.model import Quantity, ResolvedRequirement
 
 
 class Rows(ExitStack):
@@ -48,19 +48,19 @@ class Rows(ExitStack):
         self.run = 1
         self.clauses = 0  # how many the parts have
 
-    def part(self, mission: str, robot: str) -> Part:
+    def part(self, mission: str, robot: str) -> MissionRows:
         """The rows of a mission and a robot in the log."""
-        return Part(self, mission, robot)
+        return MissionRows(self, mission, robot)
 
 
-class Part:
+class MissionRows:
     """The rows of one mission that one robot ran."""
 
     def __init__(self, rows: Rows, mission: str, robot: str) -> None:
         self._rows: Final = rows
         self._whose: Final = (mission, robot)
         self._clauses: Final[list[_Clause]] = []
-        self._open: Sequence[Requirement] = ()
+        self._open: Sequence[ResolvedRequirement] = ()
         self._tree: tuple[object, ...] = ()
         self._nodes: dict[int, tuple[object, ...]] = {}
         self._names: Final[dict[str, dict[str, None]]] = {}  # of all nodes by their paths, in all trees of the log
@@ -131,11 +131,11 @@ class Part:
     def _write(
         self,
         clause: _Clause,
-        requirement: Requirement,
+        requirement: ResolvedRequirement,
         verdict: ClauseVerdict,
         has_run: bool,
         missing: str,
-        marks: Mapping[str, Value],
+        marks: Mapping[str, Quantity],
     ) -> None:
         """Write a clause.
 

@@ -27,26 +27,26 @@ from btq_lang.evidence.verdicts import (
     VIOLATED,
     Bounded,
     ClauseVerdict,
+    EvidenceFile,
     MissionVerdicts,
     Repeats,
-    Report,
     RequirementVerdict,
     RunValue,
-    Source,
     Verdict,
+    VerdictReport,
     Violation,
     Worst,
     worst_of,
 )
 from btq_lang.evidence.wording import measured, quantity
-from btq_lang.requirements.model import Odds, Value
+from btq_lang.requirements.model import Quantity, ResolvedOdds
 from btq_lang.util.grouping import grouped
 from btq_lang.util.text import Span, counted
 
 _VIOLATIONS: Final = 10  # named of each clause
 
 
-def summary(ask: Ask, store: str, parts: Sequence[str] = (), *, by_run: bool = False) -> Report:
+def summary(ask: Ask, store: str, parts: Sequence[str] = (), *, by_run: bool = False) -> VerdictReport:
     """The verdicts of all runs in a store.
 
     Args:
@@ -55,7 +55,7 @@ def summary(ask: Ask, store: str, parts: Sequence[str] = (), *, by_run: bool = F
         parts: `label` and `robot`, as far as those have verdicts of their own.
         by_run: as of `parted`.
     """
-    return Report(tuple(mission for _, mission in parted(ask, store, parts, by_run=by_run)), (), ())
+    return VerdictReport(tuple(mission for _, mission in parted(ask, store, parts, by_run=by_run)), (), ())
 
 
 def parted(
@@ -104,7 +104,7 @@ def _mission(
     if repeated is not None:
         number, logs = counted(int(repeated["runs"]), "run"), counted(int(repeated["logs"]), "log")
         remarks.append(f"{number} of {logs} also in others of the same label, and not counted again")
-    source = Source(
+    source = EvidenceFile(
         file=store,
         runs=int(part["runs"]),
         first_run=1,
@@ -211,7 +211,7 @@ def _tally(row: Row) -> Tally:
     """An empty tally for a clause."""
     odds = None
     if row["odds"] is not None:
-        odds = Odds(row["relation"], row["odds"], row["experiments"], "", Place(Span(0, 0)))
+        odds = ResolvedOdds(row["relation"], row["odds"], row["experiments"], "", Place(Span(0, 0)))
     is_of_odds = odds is None or odds.experiments == row["last_of"]
     is_windowed = row["last_number"] is not None or row["last_seconds"] is not None
     limits: Limits = "window" if is_windowed else "every look"  # a store is looked at again when it has grown
@@ -242,7 +242,7 @@ def _measure(row: Row, unit: Unit) -> Measure | None:
     if si is None:
         return None
     relation = ">=" if (si > bound) == (row["verdict"] == SATISFIED) else "<="
-    return Measure(si, relation, Value(quantity(bound, unit), bound, unit), unit)
+    return Measure(si, relation, Quantity(quantity(bound, unit), bound, unit), unit)
 
 
 _RANKS: Final[tuple[Verdict, ...]] = (VIOLATED, UNKNOWN, SATISFIED)  # as in `BY_RUN`

@@ -10,7 +10,7 @@ from btq_lang.catalog.versions import NEW_SCRIPTS, VERSIONS
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.script import mistakes
-from btq_lang.syntax.script.tree import Assign, Expression, Number, Script, Ternary, Text, ungrouped
+from btq_lang.syntax.script.tree import Assign, Expression, Number, Script, ScriptText, Ternary, ungrouped
 from btq_lang.syntax.script.versions import version_problems
 from btq_lang.util.text import Span
 
@@ -48,7 +48,7 @@ def _value_problems(node: Expression, text: str) -> list[Diagnostic]:
     if isinstance(node, Ternary):
         return _value_problems(node.then, text) + _value_problems(node.otherwise, text)
     span = Span(node.start, node.end)
-    if isinstance(node, Text):
+    if isinstance(node, ScriptText):
         return [
             mistakes.error(span, "a condition must evaluate to 0 or 1: with a string, the engine fails at the tick")
         ]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, replace_fix
 from btq_lang.util.text import Span
 
 # Spellings of other languages, of XML and of typeset text, and what they mean here.
@@ -195,4 +195,4 @@ def two_operands(text: str, left: Span, right: Span) -> Diagnostic:
 
 
 def _write(meant: str, span: Span, before: str = "", after: str = "") -> Fix:
-    return Fix(f"Write `{meant}`", (Change(Place(span), f"{before}{meant}{after}"),), safe=True)
+    return Fix(f"Write `{meant}`", (FixEdit(Place(span), f"{before}{meant}{after}"),), safe=True)

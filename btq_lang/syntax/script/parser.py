@@ -19,16 +19,16 @@ from btq_lang.syntax.script.tree import (
     RANK,
     TERNARY,
     Assign,
-    Binary,
     Bool,
-    Comparison,
     Expression,
-    Group,
     Name,
     Number,
     Script,
+    ScriptBinary,
+    ScriptComparison,
+    ScriptGroup,
+    ScriptText,
     Ternary,
-    Text,
     Unary,
     ungrouped,
 )
@@ -129,7 +129,7 @@ class _Parser:
             elif rank > TERNARY:
                 self.at += 1
                 right = self.expression(rank + 1)
-                left = Binary(left.start, right.end, kind, left, right)
+                left = ScriptBinary(left.start, right.end, kind, left, right)
                 height = max(height, self.height)
             elif rank == TERNARY:
                 left, height = self.ternary(left, height)
@@ -152,7 +152,7 @@ class _Parser:
             self.at += 1
             operands.append(self.expression(COMPARISON + 1))
             height = max(height, self.height)
-        return Comparison(left.start, operands[-1].end, tuple(operators), tuple(operands)), height
+        return ScriptComparison(left.start, operands[-1].end, tuple(operators), tuple(operands)), height
 
     def ternary(self, condition: Expression, height: int) -> tuple[Expression, int]:
         """`a ? b : c`"""
@@ -190,7 +190,7 @@ class _Parser:
             if kind == NUMBER:
                 return Number(start, end, self.text[start:end] if meant is None else meant)
             if kind == TEXT:
-                return Text(start, end, self.text[start + 1 : end - 1] if meant is None else meant)
+                return ScriptText(start, end, self.text[start + 1 : end - 1] if meant is None else meant)
             return Bool(start, end, self.text[start:end] == "true")
         if kind == "(":
             self.at += 1
@@ -199,10 +199,10 @@ class _Parser:
                 self.unclosed(mistakes.unclosed_bracket(self.text, Span(start, end), self.span(self.at)))
             self.at += 1
             # Brackets around an operator are not counted, or adding required ones could exceed the limit.
-            self.height += not isinstance(inner, Unary | Binary | Comparison | Ternary | Assign)
+            self.height += not isinstance(inner, Unary | ScriptBinary | ScriptComparison | Ternary | Assign)
             if self.height > MAX_DEPTH:
                 self.stop(mistakes.too_deep(Span(start, end), MAX_DEPTH))
-            return Group(start, self.ends[self.at - 1], inner)
+            return ScriptGroup(start, self.ends[self.at - 1], inner)
         if kind == "-" or kind == "!" or kind == "~":
             return self.prefixed()
         if kind == "+" and (self.kinds[at + 1] in BEGINS or self.kinds[at + 1] in ("+", "-")):

@@ -48,7 +48,7 @@ class Number(Part):
         return int(self.raw) if self.raw.isdecimal() and len(self.raw) < 400 else float(self.raw)
 
 
-class Text(Part):
+class ScriptText(Part):
     """`'charger'`; `value` is the text between the quotes: there are no escapes."""
 
     value: str
@@ -66,7 +66,7 @@ class Name(Part):
     name: str
 
 
-class Group(Part):
+class ScriptGroup(Part):
     """`( inner )`: kept because older engines need more brackets than the newest one."""
 
     inner: Expression
@@ -79,7 +79,7 @@ class Unary(Part):
     operand: Expression
 
 
-class Binary(Part):
+class ScriptBinary(Part):
     """`a + b`, and `-`, `*`, `/`, `..`, `&`, `|`, `^`, `&&`, `||`."""
 
     operator: str
@@ -87,7 +87,7 @@ class Binary(Part):
     right: Expression
 
 
-class Comparison(Part):
+class ScriptComparison(Part):
     """`a < b <= c`: one more operand than operators, and true where every neighbouring pair is."""
 
     operators: tuple[str, ...]
@@ -110,7 +110,9 @@ class Assign(Part):
     value: Expression
 
 
-Expression: TypeAlias = Number | Text | Bool | Name | Group | Unary | Binary | Comparison | Ternary | Assign
+Expression: TypeAlias = (
+    Number | ScriptText | Bool | Name | ScriptGroup | Unary | ScriptBinary | ScriptComparison | Ternary | Assign
+)
 
 # How tightly an operator binds in the newest engine.
 RANK: Final = {
@@ -177,8 +179,8 @@ def operands(script: Script) -> Iterator[Name]:
         if isinstance(node, Assign):
             values: tuple[Expression, ...] = (node.value,)
         else:
-            is_equality = isinstance(node, Comparison) and node.operators in (("==",), ("!=",))
-            values = node.operands[1:] if is_equality and isinstance(node, Comparison) else ()
+            is_equality = isinstance(node, ScriptComparison) and node.operators in (("==",), ("!=",))
+            values = node.operands[1:] if is_equality and isinstance(node, ScriptComparison) else ()
         yield from (value for value in map(ungrouped, values) if isinstance(value, Name))
 
 
@@ -191,6 +193,6 @@ def children(node: Expression) -> tuple[Expression, ...]:
 
 def ungrouped(node: Expression) -> Expression:
     """An expression without the brackets around it."""
-    while isinstance(node, Group):
+    while isinstance(node, ScriptGroup):
         node = node.inner
     return node

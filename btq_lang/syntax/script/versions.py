@@ -14,7 +14,7 @@ from itertools import combinations, pairwise, zip_longest
 from typing import Final, TypeGuard
 
 from btq_lang.catalog.versions import NEW_SCRIPTS, SCRIPT_RANKS
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place
+from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.script import tree
 from btq_lang.util.record import Record
@@ -54,9 +54,9 @@ def _targets(versions: Iterable[str]) -> _Targets:
 
 def _node(node: tree.Expression, parent: tree.Expression | None, text: str, targets: _Targets) -> Iterable[Diagnostic]:
     """The problems of a single operator or name."""
-    if isinstance(node, tree.Binary):
+    if isinstance(node, tree.ScriptBinary):
         rank = tree.RANK[node.operator]
-        if node.operator == "||" and isinstance(node.right, tree.Binary) and node.right.operator == "&&":
+        if node.operator == "||" and isinstance(node.right, tree.ScriptBinary) and node.right.operator == "&&":
             yield _one_rank(node, node.right, text, targets)
         elif rank >= tree.RANK["+"] and not (_is_sum_or_product(parent, rank) and parent.left is node):
             yield from _chain(node, text, targets)
@@ -70,23 +70,23 @@ def _node(node: tree.Expression, parent: tree.Expression | None, text: str, targ
         yield _refused(_brackets([node]), node, "two assignments in one without brackets", targets.old, targets)
     elif isinstance(node, tree.Name) and node.name.startswith(("true", "false")):
         yield _refused(None, node, "a name that begins with `true` or `false`", targets.old, targets)
-    elif isinstance(node, tree.Text) and not node.value.isascii():
+    elif isinstance(node, tree.ScriptText) and not node.value.isascii():
         yield _refused(None, node, "a string with characters outside ASCII", targets.old, targets)
 
 
 # ---- operators with another precedence in older engines ----
 
 
-def _one_rank(node: tree.Binary, conjunction: tree.Binary, text: str, targets: _Targets) -> Diagnostic:
+def _one_rank(node: tree.ScriptBinary, conjunction: tree.ScriptBinary, text: str, targets: _Targets) -> Diagnostic:
     """`a || b && c`: the two have equal precedence up to 4.8, and are read from left to right."""
     first: tree.Expression = conjunction
-    while isinstance(first, tree.Binary) and first.operator == "&&":
+    while isinstance(first, tree.ScriptBinary) and first.operator == "&&":
         first = first.left
     other = f"({text[node.start : first.end]}){text[first.end : node.end]}"
     return _misread(_brackets([conjunction]), node, other, targets.old, text)
 
 
-def _chain(top: tree.Binary, text: str, targets: _Targets) -> Iterable[Diagnostic]:
+def _chain(top: tree.ScriptBinary, text: str, targets: _Targets) -> Iterable[Diagnostic]:
     """`a - b + c`, read from the right by 4.7 and 4.8; `a .. b + c`, where `..` binds less tightly up to 4.6."""
     chain = [top]
     while _is_sum_or_product(left := chain[-1].left, tree.RANK[top.operator]):
@@ -106,8 +106,8 @@ def _chain(top: tree.Binary, text: str, targets: _Targets) -> Iterable[Diagnosti
         yield _misread(_brackets([left for left, _ in loose]), node, other, targets.early, text)
 
 
-def _is_sum_or_product(node: tree.Expression | None, rank: int) -> TypeGuard[tree.Binary]:
-    return isinstance(node, tree.Binary) and tree.RANK[node.operator] == rank
+def _is_sum_or_product(node: tree.Expression | None, rank: int) -> TypeGuard[tree.ScriptBinary]:
+    return isinstance(node, tree.ScriptBinary) and tree.RANK[node.operator] == rank
 
 
 # ---- operators that older engines do not mix ----
@@ -130,7 +130,7 @@ def _scope(root: tree.Expression, scopes: list[tree.Expression]) -> _Members:
     stack: _Members = [(root, None)]
     while stack:
         node, parent = stack.pop()
-        if isinstance(node, tree.Group):
+        if isinstance(node, tree.ScriptGroup):
             scopes.append(node.inner)
             continue
         members.append((node, parent))
@@ -162,9 +162,9 @@ def _mixed(members: _Members, text: str, targets: _Targets) -> Iterable[Diagnost
 
 
 def _group(node: tree.Expression | None) -> str | None:
-    if isinstance(node, tree.Comparison):
+    if isinstance(node, tree.ScriptComparison):
         return _COMPARISON
-    return _GROUP.get(node.operator) if isinstance(node, tree.Unary | tree.Binary) else None
+    return _GROUP.get(node.operator) if isinstance(node, tree.Unary | tree.ScriptBinary) else None
 
 
 def _to_separate(members: _Members) -> list[tree.Expression]:
@@ -176,9 +176,9 @@ def _to_separate(members: _Members) -> list[tree.Expression]:
 
 
 def _symbol(node: tree.Expression) -> str:
-    if isinstance(node, tree.Comparison):
+    if isinstance(node, tree.ScriptComparison):
         return node.operators[0]
-    return node.operator if isinstance(node, tree.Unary | tree.Binary) else ""
+    return node.operator if isinstance(node, tree.Unary | tree.ScriptBinary) else ""
 
 
 def _place(node: tree.Expression) -> int:
@@ -197,26 +197,26 @@ def _separators(script: tree.Script, targets: _Targets) -> list[Diagnostic]:
         end = len(text) if after is None else after.start
         count = text.count(";", before.end, end)
         if after is not None and count == 0:
-            fix = Fix("Add the `;`", (Change(Place(Span(before.end, before.end)), ";"),), safe=True)
+            fix = Fix("Add the `;`", (FixEdit(Place(Span(before.end, before.end)), ";"),), safe=True)
             found.append(_refused(fix, after, "a statement without a `;` before it", targets.old, targets))
         elif count > (after is not None):
             first = text.index(";", before.end)
             if after is not None:
                 first = text.index(";", first + 1)
             span = Span(first, text.rindex(";", first, end) + 1)
-            fix = Fix("Remove it", (Change(Place(span), ""),), safe=True)
+            fix = Fix("Remove it", (FixEdit(Place(span), ""),), safe=True)
             what = "a `;` after the last statement" if after is None else "more than one `;` between statements"
             found.append(_refused(fix, span, what, targets.old, targets))
     return found
 
 
-def _glued_number(node: tree.Binary, text: str, targets: _Targets) -> Iterable[Diagnostic]:
+def _glued_number(node: tree.ScriptBinary, text: str, targets: _Targets) -> Iterable[Diagnostic]:
     """`2..'x'`, which older engines read as an invalid number."""
     last = node.left
-    while not isinstance(last, tree.Group) and (inside := tree.children(last)):
+    while not isinstance(last, tree.ScriptGroup) and (inside := tree.children(last)):
         last = inside[-1]
     if isinstance(last, tree.Number) and text.startswith("..", last.end) and last.raw[:2] not in ("0x", "0X"):
-        fix = Fix("Put a space between them", (Change(Place(Span(last.end, last.end)), " "),), safe=True)
+        fix = Fix("Put a space between them", (FixEdit(Place(Span(last.end, last.end)), " "),), safe=True)
         yield _refused(fix, last, "a number with `..` at its end", targets.old, targets)
 
 
@@ -245,7 +245,7 @@ def _brackets(nodes: Iterable[tree.Expression]) -> Fix:
     for node in nodes:
         inserted[node.start] = inserted.get(node.start, "") + "("
         inserted[node.end] = inserted.get(node.end, "") + ")"
-    changes = tuple(Change(Place(Span(at, at)), inserted[at]) for at in sorted(inserted))
+    changes = tuple(FixEdit(Place(Span(at, at)), inserted[at]) for at in sorted(inserted))
     return Fix("Add the brackets", changes, safe=True)
 
 

@@ -14,7 +14,7 @@ from seeds import seeds
 
 from btq_lang.evidence.compare.comparison import compare
 from btq_lang.evidence.compare.lines import certain
-from btq_lang.evidence.compare.model import Comparison
+from btq_lang.evidence.compare.model import RunComparison
 from btq_lang.evidence.store import engine
 
 RUNS = 45
@@ -45,7 +45,7 @@ SCIPY = (
 )
 
 
-def compared(store: Path, before: list[list[Activation]], after: list[list[Activation]]) -> Comparison:
+def compared(store: Path, before: list[list[Activation]], after: list[list[Activation]]) -> RunComparison:
     """Two sides, each of one log."""
     keep(store, "a", before)
     keep(store, "b", after)

@@ -15,9 +15,18 @@ from btq_lang.cli import main
 from btq_lang.commands.candidates import candidates
 from btq_lang.evidence.json_document import render
 from btq_lang.evidence.judging import Means
-from btq_lang.evidence.model import GAP, PAUSE, Session
+from btq_lang.evidence.model import GAP, PAUSE, LogSession
 from btq_lang.evidence.readers import read
-from btq_lang.evidence.readers.groot2.following import Began, Came, Event, Following, Lost, Notice, Passed, Sampled
+from btq_lang.evidence.readers.groot2.following import (
+    Began,
+    Came,
+    Event,
+    Following,
+    LostTransitions,
+    Notice,
+    Passed,
+    Sampled,
+)
 from btq_lang.evidence.readers.groot2.messages import Reply, reply, request
 from btq_lang.evidence.readers.groot2.publisher import NoAnswer
 from btq_lang.evidence.readers.groot2.sessions import sessions_of
@@ -102,7 +111,7 @@ def test_a_full_buffer_is_a_gap() -> None:
     line.step()
     line.step("1R")
     events = line.step("2R 2S 2I " * (KEPT // 3) + "2R")
-    assert events[0] == Lost(START + 100_000, SEVERAL)
+    assert events[0] == LostTransitions(START + 100_000, SEVERAL)
     assert ms(events).startswith("100:gap 100:2R 100:2S")
     assert line.following.pause == 0.0
     assert ms(line.step("2S")) == "150:2S"
@@ -117,7 +126,7 @@ def test_what_another_program_takes_while_more_comes_is_a_gap() -> None:
     line.robot.change(2, 2)
     line.robot.drain()
     events = line.step("2R")  # it ran already, as far as is known
-    assert events[0] == Lost(START + 100_000, NO_MORE)
+    assert events[0] == LostTransitions(START + 100_000, NO_MORE)
     assert ms(events) == "100:gap 100:2R"
 
 
@@ -131,7 +140,7 @@ def test_what_another_program_takes_before_a_rest_is_a_gap() -> None:
     line.robot.drain()
     assert line.step() == []  # only now all statuses are asked for
     events = line.step()
-    assert [type(each) for each in events] == [Lost, Came]
+    assert [type(each) for each in events] == [LostTransitions, Came]
     assert ms(events) == "200:gap"
     assert ms(line.step("3R")) == "250:3R"
 
@@ -143,7 +152,7 @@ def test_a_recording_stopped_by_another_program_goes_on() -> None:
     line.step()
     line.ask("r", "stop")
     line.step("2S 3R")
-    assert [type(each) for each in line.step()] == [Lost, Came]
+    assert [type(each) for each in line.step()] == [LostTransitions, Came]
     assert ms(line.step("3S 1S")) == "250:3S 250:1S"
 
 
@@ -154,7 +163,9 @@ def test_a_recording_restarted_by_another_program_has_other_times() -> None:
         line.step()
     line.ask("r", "start")
     lost, came = line.step("1R 2R")
-    assert lost == Lost(START + 2_050_000, "another program has restarted the recording, or the robot's clock was set")
+    assert lost == LostTransitions(
+        START + 2_050_000, "another program has restarted the recording, or the robot's clock was set"
+    )
     assert ms([came]) == "2050:gap"
     assert ms(line.step("2S 3R")) == "2100:2S 2100:3R"
 
@@ -170,7 +181,7 @@ def test_a_publisher_that_comes_back_has_a_gap() -> None:
     assert [*line.following.step()] == []
     line.robot = robot
     lost, came = line.step("2S 3R")
-    assert lost == Lost(START + 150_000, "the publisher had not answered for a while")
+    assert lost == LostTransitions(START + 150_000, "the publisher had not answered for a while")
     assert ms([came]) == "150:gap"
     assert ms(line.step("3S 1S")) == "150:3S 150:1S"
 
@@ -309,7 +320,9 @@ def test_a_log_judged_live_has_the_verdicts_of_its_file(
     data = log.read_bytes()
     length = int.from_bytes(data[19:23], "little")
     line = Line(data[23 : 23 + length].decode())
-    rows_of_log = [each for session in read(str(log)) if isinstance(session, Session) for each in session.transitions]
+    rows_of_log = [
+        each for session in read(str(log)) if isinstance(session, LogSession) for each in session.transitions
+    ]
 
     def events() -> Iterator[Event]:
         yield from line.following.step()

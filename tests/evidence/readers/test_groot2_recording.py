@@ -13,7 +13,7 @@ from groot2_recording import RECORDINGS, Exchange, exchanges, meaning, read
 from groot2_robot import Publisher
 from seeds import seeds, share_of
 
-from btq_lang.evidence.readers.groot2.following import Began, Came, Following, Lost, Notice, Sampled
+from btq_lang.evidence.readers.groot2.following import Began, Came, Following, LostTransitions, Notice, Sampled
 from btq_lang.evidence.readers.groot2.messages import Reply, reply, request
 from btq_lang.evidence.readers.groot2.sessions import sessions_of
 from btq_lang.evidence.runs import activations
@@ -80,7 +80,7 @@ def test_damaged_replies_do_no_harm() -> None:
             for _ in activations(session):
                 pass
         assert any(isinstance(event, Began) for event in events)
-    assert kinds == {Began, Came, Lost, Sampled, Notice}
+    assert kinds == {Began, Came, LostTransitions, Sampled, Notice}
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ from random_runs import Case, case
 from seeds import seeds, share_of
 
 from btq_lang.evidence.evaluate import MissionEvaluation
-from btq_lang.evidence.model import Session
+from btq_lang.evidence.model import LogSession
 from btq_lang.evidence.store import engine
 from btq_lang.evidence.store.fleet import asked_by
 from btq_lang.evidence.store.rows import Rows
@@ -38,7 +38,7 @@ def judged_and_kept(made: Case, store: Path) -> MissionVerdicts:
         folder.mkdir()
         with Rows(str(folder)) as written:
             one = MissionEvaluation(made.mission, listeners=[written.part(made.mission.name, "")])
-            read = one.read(Session(made.joined.tree, iter(transitions)), made.joined, made.series, 1, "log")
+            read = one.read(LogSession(made.joined.tree, iter(transitions)), made.joined, made.series, 1, "log")
             one.end()
         engine.write_parquet(str(folder), {"log": folder.name, "label": "", "source": f"log {number}"})
         evaluation.found.add(one.found, runs)

@@ -39,7 +39,7 @@ class Sampled(Record):
     values: Mapping[str, SampleValue | None]
 
 
-class Lost(Record):
+class LostTransitions(Record):
     """Why transitions may have been lost, before those that come next."""
 
     time: int
@@ -58,7 +58,7 @@ class Passed(Record):
     time: int
 
 
-Event: TypeAlias = Began | Came | Sampled | Lost | Notice | Passed
+Event: TypeAlias = Began | Came | Sampled | LostTransitions | Notice | Passed
 
 
 class Following:
@@ -225,7 +225,7 @@ class Following:
     def _lost(self, why: str, time: int | None = None) -> Iterator[Event]:
         time = self._started if time is None else time
         self._statuses = {}
-        yield Lost(time, why)
+        yield LostTransitions(time, why)
         yield Came([(time, GAP, IDLE)])
 
     def _samples(self) -> Iterator[Event]:

@@ -12,8 +12,17 @@ from threading import Event as Flag
 from threading import Thread
 from typing import Final
 
-from btq_lang.evidence.model import IDLE, UNTIL, LoggedTree, Series, Session, Transition
-from btq_lang.evidence.readers.groot2.following import Began, Came, Event, Following, Lost, Notice, Passed, Sampled
+from btq_lang.evidence.model import IDLE, UNTIL, LoggedTree, LogSession, SampleSeries, Transition
+from btq_lang.evidence.readers.groot2.following import (
+    Began,
+    Came,
+    Event,
+    Following,
+    LostTransitions,
+    Notice,
+    Passed,
+    Sampled,
+)
 from btq_lang.evidence.readers.groot2.publisher import NotAPublisher, Publisher
 from btq_lang.evidence.runs import Oddities
 
@@ -25,7 +34,7 @@ def sessions(
     tell: Callable[[str], None],
     wait: Callable[[], None],
     look: Callable[[int], None] = lambda time: None,
-) -> Iterator[Session]:
+) -> Iterator[LogSession]:
     """The sessions of the robots that publish at an address, until it is stopped.
 
     Args:
@@ -40,7 +49,7 @@ def sessions(
 
 def sessions_of(
     events: Iterator[Event], tell: Callable[[str], None], look: Callable[[int], None] = lambda time: None
-) -> Iterator[Session]:
+) -> Iterator[LogSession]:
     """The sessions that the events of a `Following` make; each must be read before the next is requested.
 
     Args:
@@ -60,19 +69,21 @@ def _session(
     after: list[Began],
     tell: Callable[[str], None],
     look: Callable[[int], None],
-) -> Session:
-    samples: dict[str, Series] = {}
+) -> LogSession:
+    samples: dict[str, SampleSeries] = {}
     remarks: list[str] = []
     if began.is_amid:
         remarks.append("it was running already, so what was active then is left out")
         tell("a run is open already; what is active now is left out")
-    return Session(began.tree, _transitions(began.tree, events, samples, remarks, after, tell, look), samples, remarks)
+    return LogSession(
+        began.tree, _transitions(began.tree, events, samples, remarks, after, tell, look), samples, remarks
+    )
 
 
 def _transitions(
     tree: LoggedTree,
     events: Iterator[Event],
-    samples: dict[str, Series],
+    samples: dict[str, SampleSeries],
     remarks: list[str],
     after: list[Began],
     tell: Callable[[str], None],
@@ -87,11 +98,11 @@ def _transitions(
             yield from event.transitions
         elif isinstance(event, Sampled):
             for entry, value in event.values.items():
-                samples.setdefault(entry, Series()).add(event.time, value)
+                samples.setdefault(entry, SampleSeries()).add(event.time, value)
         elif isinstance(event, Passed):
             passed = event.time
             look(passed)
-        elif isinstance(event, Lost):
+        elif isinstance(event, LostTransitions):
             yield passed, UNTIL, IDLE
             before = gaps.count(f"gaps: {event.why}", event.time)
             if time.monotonic() >= silent_until:
