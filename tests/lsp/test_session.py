@@ -172,8 +172,8 @@ def test_what_is_told_is_what_a_new_session_finds(folder: Path, seed: int, monke
             for feature in (complete, find_references):
                 mine, fresh = (feature(each, path, at) for each in workspaces if each is not None)
                 assert mine == fresh
-            outline, outline_anew = (document_symbols(each, path) for each in workspaces if each is not None)
-            assert outline == outline_anew
+            outlines = [document_symbols(each, path) for each in workspaces if each is not None]
+            assert outlines[0] == outlines[1]
             coloured, anew = (colours(each, path, "utf-16") for each in workspaces if each is not None)
             assert coloured.data == anew.data
             assert patched(known.get(path, coloured).data, delta(known.get(path, coloured), coloured)) == coloured.data
