@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.catalog.foreign_names import ForeignName, foreign_name, is_of_leaves, statement
+from btq_lang.catalog.foreign_names import ForeignName, branch, foreign_name, is_of_leaves, statement
 from btq_lang.catalog.kinds import CHILDREN
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
@@ -68,7 +68,7 @@ def unknown_node(view: View) -> Iterator[Diagnostic]:
                 else "outside of trees, at the start of a line"
             )
             yield Diagnostic("unknown-node", name.span, f"an include goes {place}")
-        elif (how := statement(name.text)) and not name.quoted and not seen.node.category:
+        elif how := _in_other_words(view, seen, name):
             label = seen.node.label
             removed = (
                 [Span(name.start, label.start)] if label is not None and label.kind == NAME and not view.is_xml else []
@@ -465,6 +465,17 @@ def _bare_subtrees(view: View) -> Iterator[Diagnostic]:
 def _is_own_tree(view: View, name: Word) -> bool:
     """Whether it is the name of the tree itself, which then is the mistake."""
     return view.tree_name is not None and view.tree_name.text == name.text
+
+
+def _in_other_words(view: View, seen: ResolvedNode, name: Word) -> str:
+    """How a tree says what a word of programming languages does; empty if the node may be one of the program."""
+    if name.quoted or seen.node.category:
+        return ""
+    how = branch(name.text)
+    if not how or not view.ask(inputs.is_complete) or view.project.hides_nodes:
+        return statement(name.text)
+    are_declared = view.ask(lookups.has_palette) or view.ask(lookups.most_have_models)
+    return how if seen.node.children or are_declared else ""
 
 
 def _is_plain_call(view: View, seen: ResolvedNode, name: Word) -> bool:
