@@ -158,6 +158,10 @@ class NodeParser(AttributeParser):
 
     def node(self, level: int) -> Node | None:
         """Kind [ Label ] [ Attributes ] { NodeClause } NL"""
+        if self.is_after_dashes():
+            self.other_comment(self.here().start + 2)
+            self.end_line()
+            return None
         if self.kind == OPERATOR:
             self.skip_dash()
         start = self.starts[self.index] - self.base
@@ -223,6 +227,12 @@ class NodeParser(AttributeParser):
         """Whether the line is a triple-quoted string, as in Python."""
         following = self.index + 1
         return self.raw in ('""', "''") and self.kinds[following] == STRING and self.adjacent(following)
+
+    def is_after_dashes(self) -> bool:
+        """Whether the line is a comment in the syntax of SQL, Lua and others: `-- drives home`."""
+        start = self.here().start
+        after = self.text[start + 2 : start + 3]
+        return self.at("-") and self.text.startswith("--", start) and (after.isalpha() or after.isspace())
 
     def other_comment(self, inner: int) -> None:
         """Report a comment of another language, which begins at the current token; its text begins at `inner`."""

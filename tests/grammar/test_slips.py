@@ -973,6 +973,32 @@ def test_a_time_of_several_numbers_in_a_port(written: str, meant: list[str]) -> 
     assert [after(text, fix) for fix in found.fixes] == [text.replace(written, each) for each in meant]
 
 
+@pytest.mark.parametrize("topic", ["/battery", "/bot/battery", '"/battery"', '"/bot_1/battery"'])
+@pytest.mark.parametrize("rest", ["", " level"])
+def test_a_signal_from_a_topic(topic: str, rest: str) -> None:
+    text = tree("Go") + f"signal b : % from {topic}{rest}\n"
+    (found,) = parse(text).diagnostics
+    assert found.notes == (
+        "the topic from which `btq verify` takes samples goes under `[evidence.signals]` in btq.toml",
+    )
+    assert [after(text, fix) for fix in found.fixes] == [text.replace(topic, "{battery}")]
+
+
+@pytest.mark.parametrize("indent", ["", "    "])
+def test_a_comment_after_dashes(indent: str) -> None:
+    text = f"BehaviorTree Main\n    Go\n{indent}-- drives home\n"
+    (found,) = parse(text).diagnostics
+    assert (found.message, found.notes) == ("a comment begins with `#`", ())
+    assert [after(text, fix) for fix in found.fixes] == [text.replace("--", "#")]
+
+
+@pytest.mark.parametrize("word", ["Action", "Condition", "Control", "Decorator"])
+def test_a_model_with_the_name_of_a_class(word: str) -> None:
+    text = f"{word}Node Go\n    input a : int\n" + tree("Turn")
+    (found,) = parse(text).diagnostics
+    assert [after(text, fix) for fix in found.fixes] == [text.replace("Node", "")]
+
+
 BRANCH: Final = "the third child of an IfThenElse is the else branch"
 
 
