@@ -67,6 +67,7 @@ def _never_written(view: View, here: list[ResolvedSignal], guards: Sequence[Guar
     written = view.ask(written_keys)
     writes = [write for each in view.ask(all_entries) for write in each.writes] if guards else []
     guarding = {signal.name for signals, *_ in guards for signal in signals}
+    related: tuple[Related, ...]
     for signal in here:
         key = signal.entry
         if key in written and signal.name in guarding and (writer := isolated(view, writes, key)) is not None:
@@ -83,7 +84,7 @@ def _never_written(view: View, here: list[ResolvedSignal], guards: Sequence[Guar
         message = f"no port and no script writes `{key}`, the entry of `{signal.name}`"
         notes = (f"did you mean `{likely[0]}`?" if likely else "ignore this if the robot's program writes it",)
         lost, port = (None, "") if likely else _unconnected(view, signal)
-        related: tuple[Related, ...] = ()
+        related = ()
         if lost is not None:
             notes = (f"connect the output `{port}` of {lost.shown_kind}: `{port} = {{@{key.removeprefix('@')}}}`",)
             related = (Related(lost.place, f"writes `{port}` nowhere"),)
