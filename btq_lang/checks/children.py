@@ -57,6 +57,8 @@ def child_count(view: View) -> Iterator[Diagnostic]:
             notes = ("the engine loads this and throws when the node is ticked",)
         if seen.flow == "switch" and count == least - 1:
             notes += ("its last child is the default: add one, such as an AlwaysFailure",)
+        if category == "Control" and most is not None and 1 < most < count and seen.flow != "switch":
+            notes += (_in_one(seen, most),)
         notes += tuple(_remapped(view, seen))
         related = model_related(view, seen, "declared by its model") if seen.node.category is None else ()
         if most is not None and count > most:
@@ -72,6 +74,14 @@ def child_count(view: View) -> Iterator[Diagnostic]:
             beside, below_it = ((), ()) if as_child else _beside(view, seen, most)
             notes, fixes = notes + as_child + beside, fixes + below_it
         yield Diagnostic("child-count", seen.node.head.span, message, related=related, notes=notes, fixes=fixes)
+
+
+def _in_one(seen: ResolvedNode, most: int) -> str:
+    """What to do with more children than a control node takes: one child of it takes several."""
+    if seen.flow == "choice":
+        return "put the nodes of each branch below a Sequence"
+    first = f"the first {most - 1}" if most > 2 else "the first one"
+    return f"put those after {first} below one Sequence, or a RoundRobin, which takes turns"
 
 
 def _beside(view: View, seen: ResolvedNode, most: int | None) -> tuple[tuple[str, ...], tuple[Fix, ...]]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.catalog.foreign_names import ForeignName, foreign_name, is_of_leaves, statement
+from btq_lang.catalog.foreign_names import ForeignName, branch, foreign_name, is_of_leaves, statement
 from btq_lang.catalog.kinds import CHILDREN
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
@@ -15,7 +15,7 @@ from btq_lang.catalog.nav2 import FILES, ports_of
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, available, lookup
 from btq_lang.catalog.versions import VERSIONS, at_least, is_before_4, last_of
 from btq_lang.checks import calls, lookups
-from btq_lang.checks.engines import is_for_version_3, old_words
+from btq_lang.checks.engines import is_for_version_3, is_for_version_4, old_words
 from btq_lang.checks.lookups import Declaration
 from btq_lang.checks.missing_ids import missing_id
 from btq_lang.checks.one_parent import TOO_FAR, dedented
@@ -55,7 +55,7 @@ def unknown_node(view: View) -> Iterator[Diagnostic]:
         elif name is None:
             continue
         elif view.ask(lookups.is_defined, Kind.TREE, name.text):
-            if view.tree_name is None or view.tree_name.text != name.text:  # else the tree's name is the mistake
+            if not _is_own_tree(view, name):
                 yield _tree_as_node(view, seen, name)
         elif view.is_pooled(Kind.MODEL, name.text):
             continue  # models that differ: whichever the program means, it is known
@@ -68,7 +68,7 @@ def unknown_node(view: View) -> Iterator[Diagnostic]:
                 else "outside of trees, at the start of a line"
             )
             yield Diagnostic("unknown-node", name.span, f"an include goes {place}")
-        elif (how := statement(name.text)) and not name.quoted and not seen.node.category:
+        elif how := _in_other_words(view, seen, name):
             label = seen.node.label
             removed = (
                 [Span(name.start, label.start)] if label is not None and label.kind == NAME and not view.is_xml else []
@@ -83,6 +83,7 @@ def unknown_node(view: View) -> Iterator[Diagnostic]:
             continue  # child_count says what replaced it
         elif not (_is_refused(view, seen, name) or _is_clause(seen) or misspelt_clause(seen.node)):
             yield from _unknown(view, seen, name)
+    yield from _bare_subtrees(view)
 
 
 def not_an_engine_node(view: View) -> Iterator[Diagnostic]:
@@ -447,7 +448,34 @@ def _tree_as_node(view: View, seen: ResolvedNode, name: Word) -> Diagnostic:
     message = f"`{name.text}` is a tree, not a node"
     fixes = (replace_fix(f"Write `SubTree {written(name.text)}`", span, text, safe=_is_plain_call(view, seen, name)),)
     related = view.declared_at(Kind.TREE, name.text, "tree definition")
+    related = related or view.declared_at(Kind.MODEL, name.text, "its model")
     return Diagnostic("unknown-node", name.span, message, related=related, fixes=fixes, severity=Severity.ERROR)
+
+
+def _bare_subtrees(view: View) -> Iterator[Diagnostic]:
+    """`PickPlace` where only a model `SubTree PickPlace` declares it: version 3 runs the tree, version 4 knows no such
+    node."""
+    bare = [seen for seen in view.seen.subtrees if seen.node.category is None]
+    if bare and (not view.is_xml or view.ask(is_for_version_4)):
+        for seen in bare:
+            if seen.id is not None and not _is_own_tree(view, seen.id):
+                yield _tree_as_node(view, seen, seen.id)
+
+
+def _is_own_tree(view: View, name: Word) -> bool:
+    """Whether it is the name of the tree itself, which then is the mistake."""
+    return view.tree_name is not None and view.tree_name.text == name.text
+
+
+def _in_other_words(view: View, seen: ResolvedNode, name: Word) -> str:
+    """How a tree says what a word of programming languages does; empty if the node may be one of the program."""
+    if name.quoted or seen.node.category:
+        return ""
+    how = branch(name.text)
+    if not how or not view.ask(inputs.is_complete) or view.project.hides_nodes:
+        return statement(name.text)
+    are_declared = view.ask(lookups.has_palette) or view.ask(lookups.most_have_models)
+    return how if seen.node.children or are_declared else ""
 
 
 def _is_plain_call(view: View, seen: ResolvedNode, name: Word) -> bool:

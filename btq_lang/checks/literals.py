@@ -30,6 +30,7 @@ _NUMBER = re.compile(r"-?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")
 _WHOLE = re.compile(r"(?:-?[0-9]+(?:\.0*)?\s*(?:;|$))+")  # integers that are written as reals, too
 _JSON = re.compile(r"[\"'\[\],]|:\s|^{")  # no name of an entry has any of that
 _FRACTION = re.compile(r"[0-9]*\.[0-9]*[1-9][0-9]*")
+_DECIMAL_COMMA = re.compile(r"-?[0-9]+,[0-9]+")
 _ENDLESS = frozenset(
     (
         "inf",
@@ -128,6 +129,8 @@ def invalid_literal(view: View) -> Iterator[Diagnostic]:
             message = f"the engine reads `{text}` as {problem.reads} and silently drops the rest"
             fixes = _as_quantity(value, target, problem.reads, is_xml=view.is_xml)
             in_unit = (f"`{target.port}` is in ms",) if _is_in_seconds(target, text) else ()
+            if not target.unit and parse_quantity(text.strip()) is not None:
+                in_unit = ("write the number in the unit that the node expects",)
             severity = Severity.HINT if _WHOLE.fullmatch(text) else None
             yield Diagnostic(
                 "trailing-text-in-number", value.span, message, notes=in_unit, fixes=fixes, severity=severity
@@ -242,7 +245,12 @@ def _accepted(target: _Target, value: Word, version: str) -> tuple[Fix, ...]:
 
 
 def _as_quantity(value: Word, target: _Target, reads: str | None, *, is_xml: bool) -> tuple[Fix, ...]:
-    """`"30 sec"` on a port in ms was meant as 30 s, and `0.5` as 0.5 s; of `"5 apples"` only the number counts."""
+    """`"30 sec"` on a port in ms was meant as 30 s, `0.5` as 0.5 s, and `0,5` as 0.5 on a port for reals; of
+    `"5 apples"` only the number counts, but a number without its unit means something else."""
+    if _DECIMAL_COMMA.fullmatch(value.text):
+        meant = value.text.replace(",", ".")
+        takes = check_literal(target.type, meant) is None
+        return (replace_fix(f"Write `{meant}`", value.span, meant),) if takes else ()
     fixes = []
     is_in_seconds = _is_in_seconds(target, value.text)
     quantity = parse_quantity(f"{float(value.text)} s" if is_in_seconds else value.text.strip())
@@ -254,7 +262,7 @@ def _as_quantity(value: Word, target: _Target, reads: str | None, *, is_xml: boo
             fixes.append(replace_fix(f"Write `{number}`, which is {quantity_text}", value.span, number))
         else:
             fixes.append(replace_fix(f"Write the quantity `{quantity_text}`", value.span, quantity_text))
-    if reads is not None and not (is_in_seconds and reads == "0"):
+    if reads is not None and not (is_in_seconds and reads == "0") and (quantity is None or is_in_seconds):
         fixes.append(replace_fix(f"Write what the engine reads: `{reads}`", value.span, _as_value(reads)))
     return tuple(fixes)
 

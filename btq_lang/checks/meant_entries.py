@@ -35,6 +35,9 @@ def meant_entry(view: View) -> Iterator[Diagnostic]:
     names: frozenset[str] | None = None
     for seen, pair, value in view.seen.values():
         text = value.text
+        if "$(" in text and (replaced := _of_launch(view, seen, pair, value)) is not None:
+            yield replaced
+            continue
         if text.isidentifier():
             names = _names(view) if names is None else names
             if text not in names:
@@ -51,6 +54,20 @@ def meant_entry(view: View) -> Iterator[Diagnostic]:
         meant = _bare_entry(view, seen, pair, value) if text.isidentifier() else entry_in(view, value)
         if meant is not None:
             yield _diagnostic(value, meant)
+
+
+def _of_launch(view: View, seen: ResolvedNode, pair: Pair, value: Word) -> Diagnostic | None:
+    """A substitution of launch files, which nothing replaces in a tree: `$(var planner)`."""
+    launch = _LAUNCH.search(value.text)
+    port = port_of(view, seen, pair.key.text)
+    is_text = port is not None and port.content != "value"
+    if launch is None or is_text or seen.is_placeholder or not is_port_name(pair.key.text):
+        return None
+    if port is not None and check_literal(port.literal or port.type, value.text, view.target):
+        return None  # an invalid literal
+    message = f"`{launch[0]}` is a text here: only launch files have such substitutions"
+    notes = ("write the value itself, or an entry that the robot's program sets: `{key}`",)
+    return Diagnostic("misspelt-entry", value.span, message, notes=notes)
 
 
 def with_entries(view: View, reported: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
@@ -175,6 +192,8 @@ def _entries_of(store: Store[Workspace], viewpoint: str, tree: str) -> frozenset
 
 _WORD: Final = r"[^\W\d]\w*"
 _NAME: Final = f"({_WORD})"
+# Source: the substitutions of launch_xml, launch_ros and roslaunch; others look like commands of a shell.
+_LAUNCH: Final = re.compile(r"\$\((?:var|arg|env|optenv|anon|find|find-pkg-share|find-pkg-prefix) +\w[\w.-]*\)")
 _HALF: Final = re.compile(rf"\{{(@?{_WORD})|(@?{_WORD})\}}")
 _SIGN_OUTSIDE: Final = re.compile(rf"@\{{{_NAME}\}}")
 _DECORATED: Final = re.compile(

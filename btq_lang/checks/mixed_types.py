@@ -15,13 +15,15 @@ from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import callers
+from btq_lang.checks.entries import mentions
 from btq_lang.checks.pointers import passed_on, pointed_at
 from btq_lang.checks.view import View, port_of
-from btq_lang.diagnostics.model import Diagnostic, Place, Related
+from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Pair
 from btq_lang.util.reach import reached
 from btq_lang.util.record import Record
+from btq_lang.util.spelling import did_you_mean
 from btq_lang.workspace import inputs
 from btq_lang.workspace.inputs import of_scope
 from btq_lang.workspace.port_types import is_text
@@ -170,11 +172,24 @@ def _clashes(view: View, tree: str, key: str, meetings: list[_Meeting]) -> Itera
             f"`{port.key.text}` of {seen.shown_kind} creates `{{{key}}}` as {first.type}, "
             f"but `{later_port.key.text}` of {later_seen.shown_kind} has the type {later.type}"
         )
-        notes = (
-            "BehaviorTree.CPP refuses to load this tree; use an entry for each type, "
-            "and copy the value in a script: `other := entry`",
-        )
-        yield Diagnostic("entry-with-two-types", span, message, related=tuple(related), notes=notes, severity=severity)
+        unless = "" if severity is Severity.ERROR else ", unless one of the types is an alias for the other"
+        refuses = f"BehaviorTree.CPP refuses to load this tree{unless}"
+        notes = (f"{refuses}; use an entry for each type, and copy the value in a script: `other := entry`",)
+        fixes: tuple[Fix, ...] = ()
+        if later.given is not None and later.port.tree == tree and (meant := _meant(view, tree, later.type)):
+            message += did_you_mean((meant,))
+            notes, fixes = (refuses,), (replace_fix(f"Write `{meant}`", span, meant),)
+        yield Diagnostic("entry-with-two-types", span, message, tuple(related), notes, fixes, severity=severity)
+
+
+def _meant(view: View, tree: str, type_: str) -> str | None:
+    """The only entry of a tree that has a type and is written, but not read."""
+    found = view.ask(inputs.definition, Kind.TREE, tree)
+    named = view.ask(mentions, *found) if found is not None else ()
+    read = {each.name for each in named if each.reads or each.node.is_subtree}
+    of_type = {key for key, meetings in view.ask(_types, tree).items() if [each.type for each in meetings] == [type_]}
+    unread = {each.name for each in named if each.writes and each.name not in read and each.name in of_type}
+    return f"{{{unread.pop()}}}" if len(unread) == 1 else None
 
 
 def _port(view: View, port: _Port) -> tuple[ResolvedNode, Pair]:
@@ -194,6 +209,8 @@ def _severity(first: str, later: str) -> Severity | None:
         return Severity.ERROR
     if any(_VECTOR(one) and _MESSAGE(other) for one, other in ((first, later), (later, first))):
         return Severity.WARNING  # a message of ROS is a class of its own
+    if _MESSAGE(first) and _MESSAGE(later) and first.rpartition("::")[2] != later.rpartition("::")[2]:
+        return Severity.ERROR
     if "<" in first + later or first.rpartition("::")[2].casefold() == later.rpartition("::")[2].casefold():
         return None
     return Severity.WARNING

@@ -18,6 +18,7 @@ from btq_lang.util.spelling import near
 from btq_lang.workspace import inputs
 from btq_lang.workspace.port_types import is_text
 from btq_lang.workspace.queries import Store
+from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
 _READING = words(operands=("condition", "use"))
@@ -66,6 +67,7 @@ def _never_written(view: View, here: list[ResolvedSignal], guards: Sequence[Guar
     written = view.ask(written_keys)
     writes = [write for each in view.ask(all_entries) for write in each.writes] if guards else []
     guarding = {signal.name for signals, *_ in guards for signal in signals}
+    related: tuple[Related, ...]
     for signal in here:
         key = signal.entry
         if key in written and signal.name in guarding and (writer := isolated(view, writes, key)) is not None:
@@ -81,8 +83,26 @@ def _never_written(view: View, here: list[ResolvedSignal], guards: Sequence[Guar
             continue
         message = f"no port and no script writes `{key}`, the entry of `{signal.name}`"
         notes = (f"did you mean `{likely[0]}`?" if likely else "ignore this if the robot's program writes it",)
-        severity = None if likely else Severity.HINT
-        yield found_at(signal.place, "signal-never-written", message, notes=notes, severity=severity)
+        lost, port = (None, "") if likely else _unconnected(view, signal)
+        related = ()
+        if lost is not None:
+            notes = (f"connect the output `{port}` of {lost.shown_kind}: `{port} = {{@{key.removeprefix('@')}}}`",)
+            related = (Related(lost.place, f"writes `{port}` nowhere"),)
+        severity = None if likely or lost is not None else Severity.HINT
+        yield found_at(signal.place, "signal-never-written", message, related, notes, severity=severity)
+
+
+def _unconnected(view: View, signal: ResolvedSignal) -> tuple[ResolvedNode | None, str]:
+    """The first node that has an output of the name of a signal or of its entry and writes it nowhere, and the name."""
+    names = dict.fromkeys((signal.name, signal.entry.removeprefix("@")))
+    for path, tree in view.ask(inputs.trees):
+        for node in [node for node in view.seen_in(path, tree).all if node.is_defined]:
+            given = {pair.key.text for pair in node.node.attributes}
+            for name in [name for name in names if name not in given]:
+                port = port_of(view, node, name)
+                if port is not None and port.direction == "output":
+                    return node, name
+    return None, ""
 
 
 def _near_keys(store: Store[Workspace], viewpoint: str, key: str) -> tuple[str, ...]:

@@ -63,19 +63,35 @@ def _told(view: View, named: Sequence[EntryMention]) -> set[str]:
 
 def _uncreated(view: View, tree: str, named: Sequence[EntryMention], but: set[str]) -> Iterator[Diagnostic]:
     """The first assignment to each entry that nothing creates."""
-    created = {each.name for each in named if each.creates} | but
+    assigning = [each for each in named if each.in_script and each.writes and _is_created_later(each, named)]
+    later = {each.name for each in assigning if view.ask(_is_of_tree_alone, tree, each.name)}
+    created = ({each.name for each in named if each.creates} - later) | but
     for name, mention in _first([each for each in named if each.in_script and each.writes], created).items():
         use = view.ask(uses, tree, name)
-        if use & (EntryUse.CREATED | EntryUse.GIVEN | EntryUse.OPEN):
+        is_created = name not in later and use & EntryUse.CREATED
+        if is_created or use & (EntryUse.GIVEN | EntryUse.OPEN):
             continue
         if use & EntryUse.OUTSIDE and next(each for each in named if each.name == name) is not mention:
             continue  # programs set what scripts read first
         is_certain = not use & EntryUse.STRANGE and (not use & EntryUse.OUTSIDE or _is_known_root(view, tree))
-        message = f"a script assigns to `{name}`, which nothing creates"
+        message = f"a script assigns to `{name}`, which nothing creates{' before' * (name in later)}"
         creating, fixes = _creating(view, mention)
         notes = (f"the engine throws when it runs the script; {creating}",)
         severity = None if is_certain else Severity.HINT
         yield Diagnostic("uncreated-entry", mention.span, message, notes=notes, fixes=fixes, severity=severity)
+
+
+def _is_created_later(mention: EntryMention, named: Sequence[EntryMention]) -> bool:
+    """Whether only scripts that run later create an entry, and no port does when the engine creates the tree."""
+    of_name = [each for each in named if each.name == mention.name]
+    creating = [each for each in of_name if each.creates]
+    return (
+        bool(creating)
+        and mention.name.isidentifier()
+        and of_name[0] is mention
+        and all(each.in_script for each in of_name)
+        and all(_runs_first(mention.node, each.node) for each in creating)
+    )
 
 
 def _creating(view: View, mention: EntryMention) -> tuple[str, tuple[Fix, ...]]:
@@ -107,6 +123,8 @@ def _unset(view: View, tree: str, named: Sequence[EntryMention], but: set[str]) 
         if use & EntryUse.WRITTEN:
             if not view.ask(callers, tree) and view.ask(_is_before_all, tree, name):
                 outside.append(mention)
+            elif not use & (EntryUse.OUTSIDE | EntryUse.STRANGE) and _is_too_early(view, tree, mention):
+                yield _too_early(mention, named)
             continue
         if not use & EntryUse.READ:
             continue  # trees get it that do not read it
@@ -134,6 +152,23 @@ def _lost(view: View, mention: EntryMention, writers: Sequence[ResolvedNode], us
     fixes = adding_fix(view, seen.node, f"Pass on `{name}`", f"{written(name)} = {{{name}}}")
     severity = Severity.HINT if use & EntryUse.STRANGE else None
     return Diagnostic("unset-entry", mention.span, message, related, fixes=fixes, severity=severity)
+
+
+def _is_too_early(view: View, tree: str, mention: EntryMention) -> bool:
+    """Whether a node surely reads an entry of its tree alone before the tree writes it."""
+    name = mention.name
+    if mention.in_script or not _is_needed(view, mention) or not view.ask(_is_before_all, tree, name):
+        return False
+    of_tree = [each for each in view.ask(mentions, view.path, view.facts) if each.name == name]
+    return all(_runs_first(mention.node, each.node) for each in of_tree if each.writes)
+
+
+def _too_early(mention: EntryMention, named: Sequence[EntryMention]) -> Diagnostic:
+    """An entry that is written only after it is read."""
+    message = f"nothing writes `{mention.name}` before it is read here"
+    writer = next(each for each in named if each.name == mention.name and each.writes)
+    related = (Related(Place(writer.node.node.head.span), "writes it, but runs later"),)
+    return Diagnostic("unset-entry", mention.span, message, related)
 
 
 def _not_given(view: View, tree: str, mention: EntryMention) -> Diagnostic:
@@ -230,15 +265,23 @@ def _is_before_all(store: Store[Workspace], viewpoint: str, tree: str, name: str
     """Whether a tree reads an entry of the root blackboard before it writes it: at an earlier child of one Sequence."""
     view = View(store, viewpoint)
     found = view.ask(inputs.definition, Kind.TREE, tree)
-    if found is None or view.ask(of_program, name) & EntryUse.WRITTEN:
+    if found is None or not view.ask(_is_of_tree_alone, tree, name):
         return False
     named = [each for each in view.ask(mentions, *found) if each.name == name]
-    own = view.ask(handling, tree)
-    if any(call.passed(name) is not None or name in call.given.values() for call in own.calls) or name in own.named:
-        return False
     first, others = named[0], [each for each in named if each.writes]
     is_read_first = first.reads and not first.writes and bool(others)
     return is_read_first and all(_is_earlier(first.node, each.node) for each in others)
+
+
+def _is_of_tree_alone(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
+    """Whether no other tree gets an entry from a tree or gives it to it, nor the program."""
+    view = View(store, viewpoint)
+    own = view.ask(handling, tree)
+    if view.ask(of_program, name) & EntryUse.WRITTEN or name in own.named:
+        return False
+    if any(call.passed(name) is not None or name in call.given.values() for call in own.calls):
+        return False
+    return not any(call.passed(name) is not None or name in call.values for _, call in calls_of(view, tree))
 
 
 def _is_earlier(seen: ResolvedNode, other: ResolvedNode) -> bool:
@@ -253,6 +296,16 @@ def _is_earlier(seen: ResolvedNode, other: ResolvedNode) -> bool:
         and seen not in above
         and other not in _above(seen)
     )
+
+
+def _runs_first(seen: ResolvedNode, other: ResolvedNode) -> bool:
+    """Whether one node has run whenever another begins: it is below nothing but Sequences, and nothing skips it."""
+    if not _is_earlier(seen, other):
+        return False
+    above = [*_above(other)]
+    own = (seen, *(each for each in _above(seen) if each not in above))
+    is_skipped = any(pair.key.text[:1] == "_" for each in own for pair in each.node.attributes)
+    return not is_skipped and all(each.flow == "sequence" for each in own[1:])
 
 
 def _above(seen: ResolvedNode) -> Iterator[ResolvedNode]:

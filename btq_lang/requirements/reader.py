@@ -312,7 +312,9 @@ class Reader(PathReader):
         if self._has_unknown_unit(term):
             return
         number = term.word.raw
-        fix = write_fix(f"{number} {unit}", term.span)
+        is_share = unit == "%" and 0 < float(number) < 1
+        amount = f"{float(number) * 100:.10g}" if is_share else number
+        fix = write_fix(f"{amount} {unit}", term.span)
         self.complain("number-without-unit", term.span, f"missing unit after `{number}`; {message}", fixes=(fix,))
 
     def _has_unknown_unit(self, term: Term) -> bool:
