@@ -12,22 +12,18 @@ from typing import TYPE_CHECKING, Final, Protocol
 
 from btq_lang.evidence.clause import JudgedClause
 from btq_lang.evidence.clause_findings import ClauseFindings
-from btq_lang.evidence.contexts import Contexts
-from btq_lang.evidence.coverage import Coverage
+from btq_lang.evidence.coverage import Contexts, Coverage
 from btq_lang.evidence.explain import Explainer
 from btq_lang.evidence.guards import Guards
 from btq_lang.evidence.history import History, Nearby
 from btq_lang.evidence.model import ROOT, Activation, LogSession, Outcome, SampleSeries
 from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.odds import Limits
-from btq_lang.evidence.open_verdicts import open_clauses, unread_clauses
-from btq_lang.evidence.outline import demands, outline
+from btq_lang.evidence.outline import demands, open_clauses, outline, unread_clauses
 from btq_lang.evidence.runs import activations
-from btq_lang.evidence.session_remarks import clock_remarks, sample_remarks
-from btq_lang.evidence.signal_lines import read_signals
 from btq_lang.evidence.signals import Signals
 from btq_lang.evidence.tally import Run
-from btq_lang.evidence.timeline import OpenRun
+from btq_lang.evidence.timeline import OpenRun, read_signals
 from btq_lang.evidence.verdicts import (
     OUTCOMES,
     ClauseVerdict,
@@ -224,11 +220,8 @@ class MissionEvaluation:
                 self._ran(run.number)
                 run_ended(activation)
         session.remarks.extend(remark for each in self._clauses for remark in each.remarks(tree, session.keeping))
-        session.remarks.extend(clock_remarks(coverage.durations()))
-        read = (
-            (name, each.fresh, signals.sampled_times(each, begin or 0, end)) for name, each in self._signals.items()
-        )
-        session.remarks.extend(sample_remarks(read, end))
+        session.remarks.extend(coverage.clock_remarks())
+        session.remarks.extend(signals.remarks(self._signals, begin or 0, end))
         self.found.add_source(
             EvidenceFile(
                 file=source,

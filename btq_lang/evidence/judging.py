@@ -1,4 +1,4 @@
-"""Judges one log by all missions, each run with the mission it belongs to.
+"""Judges logs by all missions, each run with the mission it belongs to: one log, or many in several processes.
 
 One invariant: a log is judged by itself, its runs numbered from 1, so that logs may be judged in any process and added
 up in their order.
@@ -30,6 +30,7 @@ from btq_lang.workspace.loader import shown
 if TYPE_CHECKING:
     from btq_lang.evidence.store.sets import Draft, Keeping
     from btq_lang.evidence.watching import Watched
+
 NO_SERIES: Final[Mapping[str, SampleSeries]] = {}
 NOTHING_DECLARED: Final = Declared()
 NOTHING: Final[Mapping[tuple[str, int], Sequence[tuple[int, int, int]]]] = {}
@@ -232,4 +233,37 @@ class Judging:
         return VerdictReport(found, tuple(self._foreign.values()), tuple(self._problems), renamed)
 
 
+def judge_all(logs: Sequence[str], means: Means, jobs: int) -> Iterator[JudgedLog]:
+    """What was found in each log, in order; if a process is ended from outside, a problem instead of the rest."""
+    from concurrent.futures.process import BrokenProcessPool
+
+    from btq_lang.util.processes import pool
+
+    # DuckDB, which may have threads here already, does not work in a forked process.
+    start = None if means.keeping is None else "spawn"
+    try:
+        processes = pool(min(jobs, len(logs)), _take_means, (means,), start)
+    except NotImplementedError:  # there are no processes in a browser
+        yield from (judge(log, means) for log in logs)
+        return
+    with processes:
+        try:
+            yield from processes.map(_judge_by_means, logs)
+        except BrokenProcessPool:
+            yield JudgedLog(0, (), (), (_ENDED,))
+
+
+def _take_means(means: Means) -> None:
+    """Begin a process, in which logs are judged by these means."""
+    global _means
+    _means = means
+
+
+def _judge_by_means(log: str) -> JudgedLog:
+    assert _means is not None, "every process begins with _take_means"
+    return judge(log, _means)
+
+
+_means: Means | None = None  # of a process that judges one log after another
 _NONE: Final = (0, 1 << 63, 1 << 63)  # a run after all rows
+_ENDED: Final = "a process that judges logs was ended from outside, perhaps for lack of memory"

@@ -1,4 +1,9 @@
-"""What identifies a mission and the places of its clauses in later texts, without building it."""
+"""The clauses of a mission: those that logs can show, and those that no log can.
+
+What identifies a mission and the places of its clauses in later texts is computed without building it.
+
+One invariant: what `demands` leaves out of a mission is open, or unknown where that is due to a mistake.
+"""
 
 from __future__ import annotations
 
@@ -7,12 +12,15 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.evidence.tally import Tally
+from btq_lang.evidence.verdicts import OPEN, UNKNOWN, ClauseVerdict
 from btq_lang.requirements.model import Applied, NodeTarget, ResolvedClaim, ResolvedRequirement
 from btq_lang.util.fields import fields_of
 from btq_lang.util.record import Record
 from btq_lang.workspace.resolved import ResolvedNode, ResolvedTree
 
 if TYPE_CHECKING:
+    from btq_lang.evidence.verdicts import Verdict
     from btq_lang.requirements.resolve import Requirements
 
 
@@ -89,6 +97,39 @@ def _meaning(part: object) -> str:
         fields = [getattr(part, name) for name in fields_of(part) if name != "place"]
         return f"{type(part).__name__}{_meaning(fields)}"
     return f"({' '.join(map(_meaning, part))})" if isinstance(part, tuple | list) else repr(part)
+
+
+def open_reason(requirement: ResolvedRequirement) -> str:
+    """Why no log can show a requirement; empty if logs can."""
+    if requirement.is_verified_by_people:
+        return f"verified by {requirement.method}"
+    return "" if requirement.claims or requirement.unread else "it has no clause that can be measured"
+
+
+def open_clauses(requirement: ResolvedRequirement) -> tuple[ClauseVerdict, ...]:
+    """What a report has of an open requirement: each clause, or one without text if there is none."""
+    texts = [Demand(requirement, claim, None, "").text for claim in requirement.claims]
+    return tuple(_without_evidence(requirement, text, OPEN, open_reason(requirement)) for text in texts or [""])
+
+
+def unread_clauses(requirement: ResolvedRequirement) -> tuple[ClauseVerdict, ...]:
+    """The clauses of a requirement that were not understood."""
+    texts = requirement.unread if not requirement.is_verified_by_people else ()
+    return tuple(_without_evidence(requirement, text, UNKNOWN, "it has a mistake; run btq check") for text in texts)
+
+
+def _without_evidence(requirement: ResolvedRequirement, text: str, verdict: Verdict, why: str) -> ClauseVerdict:
+    return ClauseVerdict(
+        text=text,
+        path="",
+        of="",
+        verdict=verdict,
+        why=why,
+        unit="activations",
+        confidence=requirement.confidence,
+        histogram=None,
+        **Tally(None, None).fields(),
+    )
 
 
 _DIGITS: Final = 16

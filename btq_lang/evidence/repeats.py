@@ -1,5 +1,7 @@
 """Runs that several logs hold, as those of two loggers, of a copy, or of a log that was copied while it was written.
 
+A log that is given twice, under two names, counts once.
+
 One invariant: a run is left out only if another one that is kept holds all its rows: node and status of each, in their
 order, within a millisecond; of equal ones that of the session with more rows is kept, then the first.
 
@@ -8,6 +10,7 @@ Only sessions in which runs begin or end at the same time are read for this; whe
 
 from __future__ import annotations
 
+import os
 from array import array
 from bisect import bisect_left, bisect_right
 from collections import Counter
@@ -17,10 +20,12 @@ from itertools import accumulate
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.evidence.model import PLACES
+from btq_lang.evidence.store.sets import files_of_log, sha256
 from btq_lang.util.grouping import grouped
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Activation, Transition
+
 
 WITHIN: Final = 1000  # µs between two rows of one change of a node
 
@@ -203,6 +208,32 @@ class _LeftOut:
     def _rows(self, session: LoggedRuns) -> LoggedRows:
         of_log = self._rows_of(session.log)
         return of_log[session.number] if session.number < len(of_log) else LoggedRows(())
+
+
+def without_copies(logs: Sequence[str]) -> tuple[Sequence[str], dict[str, str]]:
+    """The logs without those that have the same bytes as one before, and of each of these which one that is.
+
+    Only logs of the same size are read for this.
+    """
+    sizes = {log: _size(log) for log in logs}
+    alike = Counter(sizes.values())
+    first: dict[str, str] = {}
+    copies: dict[str, str] = {}
+    for log in logs:
+        if sizes[log] is not None and alike[sizes[log]] > 1:
+            known = first.setdefault(sha256(log), log)
+            if known != log:
+                copies[log] = known
+    return [log for log in logs if log not in copies], copies
+
+
+def _size(log: str) -> int | None:
+    """The bytes of all files of a log; None if it cannot be read."""
+    try:
+        files = files_of_log(log)
+        return sum(map(os.path.getsize, files)) if all(os.access(each, os.R_OK) for each in files) else None
+    except OSError:
+        return None
 
 
 _TIMES: Final[tuple[Callable[[LoggedRuns], array[int]], ...]] = (lambda each: each.begins, lambda each: each.ends)

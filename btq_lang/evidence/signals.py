@@ -7,11 +7,13 @@ until `fresh within` is over.
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import pairwise
 from typing import Final
 
 from btq_lang.catalog.units import Unit, to_si
 from btq_lang.evidence.model import SampleSeries, SampleValue
+from btq_lang.evidence.wording import duration
 from btq_lang.requirements.model import Quantity, ResolvedSignal
 from btq_lang.util.record import Record
 
@@ -103,9 +105,25 @@ class Signals:
         series = self._series(signal)
         return float(len(series.between(begin - 1, end))) if series.times else UnknownValue(_none_of(signal))
 
-    def sampled_times(self, signal: ResolvedSignal, begin: int, end: int) -> Sequence[int]:
-        """The times of a signal's samples from `begin` to `end`, as far as they are kept."""
-        return self._series(signal).between(begin - 1, end)
+    def remarks(self, signals: Mapping[str, ResolvedSignal], begin: int, end: int) -> Iterator[str]:
+        """A remark on each signal whose samples end long before the log, compared with the times between them.
+
+        Args:
+            signals: by name.
+            begin, end: of the session.
+        """
+        for name, signal in signals.items():
+            times = self._series(signal).between(begin - 1, end)
+            gaps = sorted(after - before for before, after in pairwise(times))
+            if len(gaps) < _FEW:
+                continue
+            median = gaps[len(gaps) // 2]
+            # A signal that is written when it changes has long gaps anyway.
+            allowed = signal.fresh * 1e6 if signal.fresh is not None else max(_GAPS * median, gaps[-1])
+            if end - times[-1] > allowed:
+                lacking, usual = (duration(time / 1e6) for time in (end - times[-1], median))
+                holds = "" if signal.fresh is not None else "; without `fresh within` the last one counts until the end"
+                yield f"the samples of `{name}`, mostly one each {usual}, end {lacking} before the log does{holds}"
 
     def forget_before(self, time: int) -> None:
         """Drop the samples of the log's entries that are not needed for this time or later ones."""
@@ -161,5 +179,7 @@ def by_signal(signals: Iterable[ResolvedSignal], *sources: Mapping[str, SampleSe
 
 
 NO_SAMPLES: Final = "no samples of"
+_FEW: Final = 10  # fewer times between samples say nothing about them
+_GAPS: Final = 10
 _EMPTY: Final = SampleSeries()
 _BOOLS: Final[dict[str, SampleValue | UnknownValue]] = {"true": True, "1": True, "false": False, "0": False}

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING
 from btq_lang.btcpp.export import xml_name
 from btq_lang.btcpp.side_file import side_path
 from btq_lang.evidence import write
-from btq_lang.evidence.copies import without_copies
 from btq_lang.evidence.identity import Candidate
-from btq_lang.evidence.judging import Judging, Means, judge, rows_of
+from btq_lang.evidence.judging import Judging, Means, judge, judge_all, rows_of
 from btq_lang.evidence.notes import ignored_columns, missing_verdicts, missions_with_errors, other_times
 from btq_lang.evidence.own_trees import NO_MISSION, OwnTree
 from btq_lang.evidence.readers import SUFFIXES, samples_of_bags, whole_bags
@@ -20,7 +19,7 @@ from btq_lang.evidence.readers.bag import METADATA
 from btq_lang.evidence.readers.samples import NoSamples
 from btq_lang.evidence.readers.samples import read as read_samples
 from btq_lang.evidence.readers.side import side_file_at
-from btq_lang.evidence.repeats import notes, repeated
+from btq_lang.evidence.repeats import notes, repeated, without_copies
 from btq_lang.evidence.signal_sources import signal_sources
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.loader import IS_SPECIAL, absolute, collect, is_special, shown
@@ -167,8 +166,6 @@ def _all(logs: Sequence[str], means: Means, jobs: int, progress: Callable[[int, 
     """What was found in all logs."""
     judging = Judging(means)
     if jobs > 1 and len(logs) > 1:
-        from btq_lang.evidence.parallel import judge_all
-
         for number, of_log in enumerate(judge_all(logs, means, jobs), start=1):
             judging.add(of_log)
             progress(number, judging.runs)

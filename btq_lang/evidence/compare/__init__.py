@@ -10,7 +10,7 @@ One invariant: only what chance hardly explains is called a change, whatever the
     requirements.py what changed in the verdicts on requirements
     causes.py       which differences have one cause
     comparison.py   what changed; model.py has it as data
-    lines.py        what changed in words; words.py the rest of a report
+    lines.py        the comparison in words
     table.py, json_document.py, markdown.py   the writers
 """
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from btq_lang.evidence.compare.lines import DifferenceLine, by_chance, certain
+from btq_lang.evidence.compare.lines import BY_CHANCE, DifferenceLine, by_chance, certain, heading, remarks
 from btq_lang.evidence.compare.model import RunComparison
-from btq_lang.evidence.compare.words import BY_CHANCE, heading, remarks
 from btq_lang.render.gfm import code, escaped, table
 
 

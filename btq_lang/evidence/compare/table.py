@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Final
 
-from btq_lang.evidence.compare.lines import DifferenceLine, by_chance, certain
+from btq_lang.evidence.compare.lines import BY_CHANCE, DifferenceLine, by_chance, certain, heading, remarks
 from btq_lang.evidence.compare.model import RunComparison
-from btq_lang.evidence.compare.words import BY_CHANCE, heading, remarks
 from btq_lang.render.cells import cells_of, printable
 
 

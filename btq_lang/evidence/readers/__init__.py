@@ -15,6 +15,7 @@ from btq_lang.evidence.model import LoggedTree, LogSession, NamedLog, SampleSeri
 from btq_lang.evidence.readers import bag, btlog, sqlite, tree_log
 from btq_lang.evidence.readers.topics import Clock
 from btq_lang.evidence.readers.tree import NotALog as NotALog
+from btq_lang.evidence.readers.truncated_bags import MCAP
 
 if TYPE_CHECKING:
     from btq_lang.workspace.project_evidence import SignalSource
@@ -90,7 +91,7 @@ def _reader(path: str) -> ModuleType:
         raise NotALog("the file is empty")
     if start.startswith(btlog.MAGIC):
         return btlog
-    if start.startswith(bag.MCAP) or (start.startswith(sqlite.MAGIC) and sqlite.is_bag(path)):
+    if start.startswith(MCAP) or (start.startswith(sqlite.MAGIC) and sqlite.is_bag(path)):
         return tree_log
     if start.startswith(sqlite.MAGIC):
         return sqlite
@@ -112,4 +113,4 @@ def whole_bags(paths: Iterable[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(files.get(path, path) for path in kept))
 
 
-_LONGEST: Final = max(map(len, (btlog.MAGIC, sqlite.MAGIC, bag.MCAP)))
+_LONGEST: Final = max(map(len, (btlog.MAGIC, sqlite.MAGIC, MCAP)))

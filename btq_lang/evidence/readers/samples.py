@@ -1,23 +1,27 @@
 """Samples of signals in a CSV or Parquet file: a column with times, the first one by default, and columns of values.
 
 One invariant: a cell that is empty, or not a finite number, is not a sample, and a time that cannot be read is an
-error with its line.
+error with its line.  Parquet is read by DuckDB, any failure of which is one NoSamples.
 """
 
 from __future__ import annotations
 
 import csv
 import os
-from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Final
+from collections.abc import Iterable, Iterator, Sequence
+from decimal import Decimal
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, Final
 
 from btq_lang.evidence.model import SampleSeries, SampleValue, is_sample
-from btq_lang.evidence.readers import parquet
-from btq_lang.evidence.readers.parquet import NoSamples as NoSamples
 from btq_lang.util.spelling import did_you_mean, near
 
 if TYPE_CHECKING:
     from btq_lang.workspace.project_evidence import SignalSource
+
+
+class NoSamples(Exception):
+    """A file that is not a table of samples; the message says what was expected."""
 
 
 def read(path: str, time: str = "") -> dict[str, SampleSeries]:
@@ -31,9 +35,9 @@ def read(path: str, time: str = "") -> dict[str, SampleSeries]:
         OSError: it cannot be read.
     """
     with open(path, "rb") as file:
-        is_parquet = file.read(len(parquet.MAGIC)) == parquet.MAGIC
+        is_parquet = file.read(len(_PARQUET)) == _PARQUET
     if is_parquet:
-        names, rows = parquet.read(path)
+        names, rows = _parquet_columns(path)
         return _table(names, time, ((f"row {number}", row) for number, row in enumerate(rows, start=1)))
     with open(path, encoding="utf-8-sig", errors="replace", newline="") as text:
         lines = csv.reader(text)
@@ -119,5 +123,57 @@ def _value(cell: str) -> SampleValue | None:
         return cell or None
 
 
+def _parquet_columns(path: str) -> tuple[list[str], Iterator[tuple[Any, ...]]]:
+    """The names of the columns, and the rows; timestamps are in seconds since the epoch.
+
+    Raises:
+        NoSamples: DuckDB is missing, or cannot read the file, also while the rows are read.
+    """
+    try:
+        import duckdb
+
+        database = _engine().cursor()
+    except ImportError as error:
+        raise NoSamples("Parquet is read with duckdb; install it with pip install 'btq-lang[evidence]'") from error
+    try:
+        columns = database.execute("DESCRIBE SELECT * FROM read_parquet(?)", [path]).fetchall()
+    except duckdb.Error as error:
+        raise NoSamples(_message(error)) from error
+    names = [str(name) for name, *_ in columns]
+    expressions = ", ".join(_expression(str(name), str(kind)) for name, kind, *_ in columns)
+
+    def rows() -> Iterator[tuple[Any, ...]]:
+        try:
+            result = database.execute(f"SELECT {expressions} FROM read_parquet(?)", [path])
+            while block := result.fetchmany(_ROWS_AT_ONCE):
+                for row in block:
+                    yield tuple(float(value) if isinstance(value, Decimal) else value for value in row)
+        except duckdb.Error as error:
+            raise NoSamples(_message(error)) from error
+        finally:
+            database.close()
+
+    return names, rows()
+
+
+@lru_cache(1)
+def _engine() -> Any:
+    """A connection to DuckDB; with a single thread, because starting others takes longer than reading most files."""
+    import duckdb
+
+    return duckdb.connect(config={"threads": 1})
+
+
+def _expression(name: str, kind: str) -> str:
+    quoted = '"' + name.replace('"', '""') + '"'
+    return f"epoch_us({quoted}) / 1e6" if kind.startswith(("TIMESTAMP", "DATE")) else quoted
+
+
+def _message(error: Exception) -> str:
+    return " ".join(str(error).split())
+
+
 _NAMES: Final = "expected a line of column names, separated by commas: the time first, then signals or their entries"
 _LATEST: Final = 9e12  # s since the epoch, in µs still 64 bits
+_PARQUET: Final = b"PAR1"
+_ROWS_AT_ONCE: Final = 4096

@@ -16,8 +16,7 @@ from btq_lang.render.chart import Chart, ChartMark, ChartSeries, Level, drawn
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.report.measures import MeasureTrend
-    from btq_lang.evidence.report.trends import Steps, Values
+    from btq_lang.evidence.report.trends import MeasureTrend, Steps, Values
     from btq_lang.render.pages import PageData
 
 

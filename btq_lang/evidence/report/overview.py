@@ -9,8 +9,7 @@ from collections.abc import Iterable, Sequence
 
 from btq_lang.evidence.compare.comparison import UnknownSide, compare
 from btq_lang.evidence.compare.model import RunComparison
-from btq_lang.evidence.report.measures import MeasureTrend, measures
-from btq_lang.evidence.report.trends import Steps, Trends, steps_of, trends
+from btq_lang.evidence.report.trends import MeasureTrend, Steps, Trends, measures, steps_of, trends
 from btq_lang.evidence.store.queries import OVERVIEW, Ask, Row, only
 from btq_lang.evidence.store.summary import parted
 from btq_lang.evidence.store.tables import quoted

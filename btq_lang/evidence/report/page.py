@@ -8,9 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.compare.lines import DifferenceLine, by_chance, certain
+from btq_lang.evidence.compare.lines import BY_CHANCE, DifferenceLine, by_chance, certain, heading, remarks, untestable
 from btq_lang.evidence.compare.model import WORSE, RunComparison
-from btq_lang.evidence.compare.words import BY_CHANCE, heading, remarks, untestable
 from btq_lang.evidence.report.charts import NO_NAME, bars, measure_figures
 from btq_lang.evidence.sentences import explained, result, worst_violation
 from btq_lang.evidence.verdicts import NEVER, OPEN, VIOLATED, WORST_FIRST, ClauseVerdict, RequirementVerdict

@@ -20,7 +20,7 @@ from seeds import seeds, share_of
 from btq_lang.evidence.evaluate import MissionEvaluation
 from btq_lang.evidence.model import LogSession
 from btq_lang.evidence.store import engine
-from btq_lang.evidence.store.fleet import asked_by
+from btq_lang.evidence.store.engine import asked_by
 from btq_lang.evidence.store.rows import Rows
 from btq_lang.evidence.store.summary import summary
 from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts
