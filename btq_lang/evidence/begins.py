@@ -83,9 +83,9 @@ class Begins:
         if before is not None and self._shows(uid, before, now, begun):
             return Begin(after, after, now)
         time, earliest = now[0], after[0]
-        for other, at, is_result in self.others:
+        for other, other_time, is_result in self.others:
             if other == uid or (is_result and self._waits_for(uid, other)):
-                earliest = max(earliest, at)
+                earliest = max(earliest, other_time)
         child = uid
         for above in self._tree.above(uid) if self._tree.delays else ():
             if begun[above].shown != now and (child == uid or begun[child].shown == now):  # what it waited for
@@ -144,8 +144,8 @@ class Begins:
 
     def _last_ticked(self, parallel: int, shown: Moment) -> int:
         """The last child that has written a row since the Parallel began, which this row shows; 0: none."""
-        of, child = self._ticked.get(parallel, (shown, 0))
-        return child if of == shown else 0
+        activation_shown, child = self._ticked.get(parallel, (shown, 0))
+        return child if activation_shown == shown else 0
 
 
 class Begin(NamedTuple):
@@ -158,8 +158,8 @@ class Begin(NamedTuple):
 
 def _one_tick(tree: LoggedTree, uid: int) -> str:
     kind = "SubTree" if tree.has_tree(uid) else tree.nodes[uid].kind
-    known = BUILTINS.get(kind) or NODES.get(kind)
-    return known.one_tick if known is not None else ""
+    node_kind = BUILTINS.get(kind) or NODES.get(kind)
+    return node_kind.one_tick if node_kind is not None else ""
 
 
 _CLOCKS: Final = 1000  # µs by which a timer and the times of rows may differ

@@ -106,15 +106,15 @@ class JudgedClause:
         self._extremes: Final = self._edge.extremes if self._edge is not None else ()
         self._with_measures: Final = with_measures
         self._events: Final = _events(claim, subject)
-        subjects = (subject, *(each.subject for each in self._events))
+        subjects = (subject, *(event.subject for event in self._events))
         self._is_about_mission: Final = any(isinstance(each, MissionRun) for each in subjects)
         parts = (claim.condition, claim.limit, *self._events, *(scope.condition for scope in requirement.scopes))
-        self._running: Final = [each.target for each in parts_in(parts) if isinstance(each, Running)]
+        self._running: Final = [part.target for part in parts_in(parts) if isinstance(part, Running)]
         measures_time = VERBS[claim.verb].operand not in ("condition", "use")
         self._bounds_time: Final = VERBS[claim.verb].operand in _OF_TIME and not isinstance(subject, DurationSum)
         self._reads: Final = None if measures_time else [*signals_in((parts, claim.signal))]
         is_whole = any(scope.word == "while" for scope in requirement.scopes) and claim.verb not in _AT_ANY_TIME
-        is_of_all = any(isinstance(each, Aggregate) for each in parts_in(parts))
+        is_of_all = any(isinstance(part, Aggregate) for part in parts_in(parts))
         self._is_final: Final = claim.verb in _FINAL and not (self._running or is_whole or is_of_all)
         self.found.missing = self._why_not()
         self._is_judged: Final = not self.found.missing
@@ -154,10 +154,11 @@ class JudgedClause:
         self._notes.clear()
         for uids in self._own(joined) if self._is_judged else ():
             others = nearby(uids[0])
-            needed = [target_of(each) for each in self._events if each.condition is None]
+            needed = [target_of(event) for event in self._events if event.condition is None]
             if isinstance(self.claim.per, NodeTarget):
                 needed.append(self.claim.per)
-            lost = [each for each in [others.find(target) for target in needed] if isinstance(each, UnknownValue)]
+            instances = [others.find(target) for target in needed]
+            lost = [uids_of_target for uids_of_target in instances if isinstance(uids_of_target, UnknownValue)]
             for target in self._running:
                 others.find(target)
             if lost:
@@ -169,8 +170,9 @@ class JudgedClause:
                 self._places.append(_Place(joined.tree.nodes[uids[0]].path, uids, others))
         if isinstance(self._subject, Interval):
             guards = joined.enforcing()
-            above = [next((each for each in joined.tree.above(uid) if each not in guards), 0) for uid in self._nodes]
-            self._around.extend(each for each in dict.fromkeys(above) if each)
+            tree = joined.tree
+            parents = [next((above for above in tree.above(uid) if above not in guards), 0) for uid in self._nodes]
+            self._around.extend(parent for parent in dict.fromkeys(parents) if parent)
         return [*self._nodes, *self._around]
 
     def judge(self, activation: Activation, guard: Guard | None, observed: Observed, path: str) -> None:
@@ -276,8 +278,8 @@ class JudgedClause:
 
     def _judge_result(self, root: Activation) -> None:
         """Judge a run by the result of its root, from the begin of the written root to its end, if that ran."""
-        of, guard = self._written or (root, None)
-        run = Activation(self._nodes[0], of.started, of.ended, root.outcome, root.timing, of.begun(True), of.shown)
+        top, guard = self._written or (root, None)
+        run = Activation(self._nodes[0], top.started, top.ended, root.outcome, root.timing, top.begun(True), top.shown)
         observed = Observed(self._signals, self._nearby(run.uid), run.started, run.ended, run.timing != "latest")
         self._judge_in(run, guard, observed, next(iter(self.found.paths)))
 
@@ -290,16 +292,16 @@ class JudgedClause:
         for place in self._places:
             over = self._over(place, root)
             overs = [over]
-            known = root.is_begin_known and place.others.are_begins_known()
-            if not known or not all(each.is_begin_known for each in over.own):
+            are_begins_known = root.is_begin_known and place.others.are_begins_known()
+            if not are_begins_known or not all(activation.is_begin_known for activation in over.own):
                 early = root.from_earliest()
                 overs.append(replace(over, root=early, observed=over.observed.earlier(early.started)))
-            judged += [(each, place, over) for each in self._judged_over(self.judged, overs)]
+            judged += [(judgement, place, over) for judgement in self._judged_over(self.judged, overs)]
             self.found.missed += len(over.missed)
             if self._extremes:
-                self._measure([self._judged_over(each, overs) for each in self._extremes], root)
+                self._measure([self._judged_over(claim, overs) for claim in self._extremes], root)
         if len(judged) > 1:
-            judged.sort(key=lambda each: each[0].at if each[0] is not None else 0)
+            judged.sort(key=lambda entry: entry[0].at if entry[0] is not None else 0)
         for judgement, place, over in judged:
             if judgement is not None and judgement.holds is False:
                 chain = self.explainer.over_run.chain(self.judged, judgement, over, place.others)
@@ -311,7 +313,7 @@ class JudgedClause:
     def _over(self, place: _Place, root: Activation) -> OverRun:
         observed = Observed(self._signals, place.others, root.started, root.ended)
         own = self._history.of(place.uids)
-        refused = [each for each in self._refused if each.uid in place.uids]
+        refused = [refusal for refusal in self._refused if refusal.uid in place.uids]
         return OverRun(self.claim.verb, self.requirement.scopes, root, own, observed, refused, self._stopped, [])
 
     def _judged_over(self, claim: ResolvedClaim, overs: Sequence[OverRun]) -> Sequence[Judgement | None]:
@@ -321,10 +323,10 @@ class JudgedClause:
         root = overs[0].root
         for early in others:
             if len(early) != len(late):
-                is_any = any(each is not OUT for each in (*early, *late))
+                is_any = any(judgement is not OUT for judgement in (*early, *late))
                 return [Judgement(None, root.end, UNKNOWN_BEGIN)] if is_any else []
-            late = [agreed(one, other, root) for one, other in zip(late, early, strict=True)]
-        return [_clocked(each, root) for each in late if each is not OUT]
+            late = [agreed(*pair, root) for pair in zip(late, early, strict=True)]
+        return [_clocked(judgement, root) for judgement in late if judgement is not OUT]
 
     def _judge_one(
         self,
@@ -354,7 +356,7 @@ class JudgedClause:
             self._margins.is_exact = False
         self._count(_clocked(judgement, root), activation, path)
         if self._extremes:
-            self._measure([[_clocked(self._judged_by(each, ways), root)] for each in self._extremes], activation)
+            self._measure([[_clocked(self._judged_by(extreme, ways), root)] for extreme in self._extremes], activation)
 
     def _depends_on_begin(self, activation: Activation) -> bool:
         """Whether its judgement may differ between the earliest and the latest begin of an activation."""
@@ -386,7 +388,7 @@ class JudgedClause:
             judgement = Judgement(None, judgement.at, counts.why, judgement.measure)
         return judgement
 
-    def _measure(self, extremes: Sequence[Sequence[Judgement | None]], of: Activation) -> None:
+    def _measure(self, extremes: Sequence[Sequence[Judgement | None]], activation: Activation) -> None:
         """Note with which bounds the judgements of an activation, or of a run, are what.
 
         Args:
@@ -395,28 +397,28 @@ class JudgedClause:
         assert self._edge is not None, "its bound may be moved"
         within, beyond = extremes
         is_first_decisive = self.claim.verb in WHILE_IT_RUNS
-        if len(within) != len(beyond) or (is_first_decisive and of.timing != "exact"):
+        if len(within) != len(beyond) or (is_first_decisive and activation.timing != "exact"):
             self._margins.is_exact = False
             return
         for kept, broken in zip(within, beyond, strict=True):
-            judgements = [each for each in (kept, broken) if each is not None and each.measure is not None]
+            judgements = [one for one in (kept, broken) if one is not None and one.measure is not None]
             if is_first_decisive and (kept is None or kept.measure is None):
                 judgements.clear()
             limits = [judgements[0].measure, judgements[0].most] if judgements else []
             values = [self._edge.across(measure.si) for measure in limits if measure is not None]
-            self._margins.add(_kind(kept, of), _kind(broken, of), values)
+            self._margins.add(_kind(kept, activation), _kind(broken, activation), values)
 
-    def _count(self, judgement: Judgement | None, of: Activation, path: str) -> None:
+    def _count(self, judgement: Judgement | None, activation: Activation, path: str) -> None:
         if judgement is None:
-            self._tally.cut_off += of.outcome == "O"
-            if self.claim.verb == "leaves" and of.outcome in _WITHOUT_SUCCESS:
-                self.found.left_out[_WITHOUT_SUCCESS[of.outcome]] += 1
+            self._tally.cut_off += activation.outcome == "O"
+            if self.claim.verb == "leaves" and activation.outcome in _WITHOUT_SUCCESS:
+                self.found.left_out[_WITHOUT_SUCCESS[activation.outcome]] += 1
         else:
             if judgement.note:
                 self._notes[judgement.note] += 1
             chain = self.explainer.chain(self.claim, judgement, path) if judgement.holds is False else ()
-            since = judgement.since if judgement.since is not None else of.begin
-            self._add(judgement, path, since, of.end, chain)
+            since = judgement.since if judgement.since is not None else activation.begin
+            self._add(judgement, path, since, activation.end, chain)
 
     def _add(self, judgement: Judgement, path: str, begin: int, end: int, chain: tuple[CauseLink, ...]) -> None:
         measure = judgement.measure
@@ -446,14 +448,14 @@ class JudgedClause:
 
     def _instances(self, joined: Joined, target: NodeTarget | None) -> list[int]:
         """The uids of a node's instances; notes those missing from the log."""
-        found: list[int] = []
+        uids: list[int] = []
         for path, uid in joined.instances(target) if target is not None else ():
             self.found.paths[path] = None
             if uid is not None:
-                found.append(uid)
+                uids.append(uid)
             else:
                 self.found.missing = self.found.missing or joined.lost(path)
-        return found
+        return uids
 
     def _is_own(self, guard: Guard) -> bool:
         """Whether a guard enforces this clause; spans and sums have no guards."""
@@ -466,14 +468,12 @@ class JudgedClause:
         subject = self._subject
         if subject is None:
             return "the clause applies to no node"
-        if any(
-            isinstance(each, MissionRun) and each.node is None
-            for each in (subject, *(each.subject for each in self._events))
-        ):
+        subjects = (subject, *(event.subject for event in self._events))
+        if any(isinstance(each, MissionRun) and each.node is None for each in subjects):
             return "the mission has no known main tree"
         if self._judge is None and self._judge_run is None:
-            of = "the time from one event to another" if isinstance(subject, Interval) else "a sum of durations"
-            return f"`{self.claim.verb}` cannot be judged of {of}"
+            measured = "the time from one event to another" if isinstance(subject, Interval) else "a sum of durations"
+            return f"`{self.claim.verb}` cannot be judged of {measured}"
         return ""
 
     def remarks(self, tree: LoggedTree, keeping: Collection[int]) -> Iterator[str]:
@@ -526,7 +526,7 @@ class JudgedClause:
         """What measured values are compared with, as of `Histogram`, as far as it does not vary."""
         limit, goal = self.claim.limit, self.requirement.goal
         marks = {"lower bound": limit.value, "upper bound": limit.upper} if limit is not None and limit.upper else {}
-        return {kind: each for kind, each in {**marks, "goal": goal}.items() if isinstance(each, Quantity)}
+        return {kind: value for kind, value in {**marks, "goal": goal}.items() if isinstance(value, Quantity)}
 
     def _measures(self) -> Measures:
         edge, odds = self._edge, self.requirement.odds
@@ -547,10 +547,10 @@ class JudgedClause:
         return self.demand.text
 
 
-def _kind(judgement: Judgement | None, of: Activation) -> int:
+def _kind(judgement: Judgement | None, activation: Activation) -> int:
     """What a judgement is for margins."""
     if judgement is None:
-        return margins.CUT_OFF if of.outcome == "O" else margins.NOTHING
+        return margins.CUT_OFF if activation.outcome == "O" else margins.NOTHING
     return margins.UNKNOWN if judgement.holds is None else margins.KEPT if judgement.holds else margins.VIOLATED
 
 

@@ -100,8 +100,8 @@ class Recent:
         """Close the open run."""
         self._end = max(self._end, run.end)
         if self._now:
-            found = sorted(self._now, key=_END)
-            insort(self._kept, (run, found), key=_begin_of_run)
+            judgements = sorted(self._now, key=_END)
+            insort(self._kept, (run, judgements), key=_begin_of_run)
             self._now.clear()
         self._leave_out()
 
@@ -131,8 +131,8 @@ class Recent:
         tally = Tally(self._odds, self._confidence, "window", self._window.count if is_of_odds else None)
         tally.cut_off = self.cut_off
         for run, judgements in self._kept:
-            for each in judgements:
-                tally.add(*each)
+            for entry in judgements:
+                tally.add(*entry)
             tally.end_run(run)
         return tally
 
@@ -143,8 +143,8 @@ class Recent:
             assert self._window.seconds is not None, "a window is a number or a time"
             begin = self._end - round(self._window.seconds * 1e6)
             for _, judgements in kept:
-                judgements[:] = [each for each in judgements if _END(each) >= begin]
-            kept[:] = [each for each in kept if each[1]]
+                judgements[:] = [entry for entry in judgements if _END(entry) >= begin]
+            kept[:] = [of_run for of_run in kept if of_run[1]]
         elif self._window.experiments == "runs":
             del kept[: max(len(kept) - count, 0)]
         else:

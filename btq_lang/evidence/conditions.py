@@ -186,7 +186,7 @@ def _compared_with_bound(condition: Compare, observed: Observed, moment: Moment,
 
 
 def _compared(condition: Compare, observed: Observed, moment: Moment) -> Truth:
-    values = [_number(each, observed, moment) for each in condition.operands]
+    values = [_number(operand, observed, moment) for operand in condition.operands]
     result: Truth = True
     for sign, left, right in zip(condition.operators, values, values[1:], strict=False):
         if isinstance(left, UnknownValue) or isinstance(right, UnknownValue):

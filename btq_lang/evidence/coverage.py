@@ -105,7 +105,7 @@ class Coverage:
 
     def summary(self, written: Sequence[ResolvedNode]) -> tuple[NodeSummary, ...]:
         """The statistics of all nodes, in the order of their uids; `written`: the nodes of the mission."""
-        return tuple(node.summary(written) for _, node in sorted(self._nodes.items(), key=lambda each: each[0]))
+        return tuple(self._nodes[key].summary(written) for key in sorted(self._nodes))
 
 
 class _Node:
@@ -198,7 +198,9 @@ class Contexts:
 
     def __init__(self, contexts: Mapping[str, Condition | None]) -> None:
         """Count nothing yet; a context that could not be resolved is None."""
-        self._contexts: Final = [InContext(name, each) for name, each in contexts.items() if each is not None]
+        self._contexts: Final = [
+            InContext(name, condition) for name, condition in contexts.items() if condition is not None
+        ]
         self.counts: Final = Counter(dict.fromkeys(contexts, 0)), Counter(dict.fromkeys(contexts, 0))
 
     def join(self, joined: Joined, signals: Signals, history: History) -> None:
