@@ -68,7 +68,7 @@ class Begins:
         self._before = None
         self.others.clear()
 
-    def of(self, uid: int, now: Moment, status: int, writes: int, begun: Mapping[int, Begin]) -> Begin:
+    def begin_of(self, uid: int, now: Moment, status: int, writes: int, begun: Mapping[int, Begin]) -> Begin:
         """When a node began whose first row is this one, its own or one below it.
 
         Args:

@@ -80,7 +80,7 @@ class JudgedClause:
     """A clause at a written node, and its judgements so far.
 
     Attributes:
-        found: what was found of it in the logs so far.
+        findings: what the logs so far show of it.
         judged: the claim as it is judged.
         broken: the open activations that break it already, by node, each with the path.
         explainer: of the current log.
@@ -93,9 +93,9 @@ class JudgedClause:
         self.demand: Final = demand
         self.requirement: Final = requirement
         self.claim: Final = claim
-        self.found: Final = ClauseFindings(requirement, limits)
-        self._tally: Final = self.found.tally
-        self._margins: Final = self.found.margins
+        self.findings: Final = ClauseFindings(requirement, limits)
+        self._tally: Final = self.findings.tally
+        self._margins: Final = self.findings.margins
         self._subject: Final = subject
         self._judge: Final = JUDGES.get(claim.verb) if not isinstance(subject, Interval | DurationSum) else None
         self._judge_run: Final = run_judge(claim, subject)
@@ -116,8 +116,8 @@ class JudgedClause:
         is_whole = any(scope.word == "while" for scope in requirement.scopes) and claim.verb not in _AT_ANY_TIME
         is_of_all = any(isinstance(part, Aggregate) for part in parts_in(parts))
         self._is_final: Final = claim.verb in _FINAL and not (self._running or is_whole or is_of_all)
-        self.found.missing = self._why_not()
-        self._is_judged: Final = not self.found.missing
+        self.findings.missing = self._why_not()
+        self._is_judged: Final = not self.findings.missing
         self._nodes: Final[list[int]] = []  # of the current log, as are these:
         self._places: Final[list[_Place]] = []
         self._signals: Signals
@@ -162,7 +162,7 @@ class JudgedClause:
             for target in self._running:
                 others.find(target)
             if lost:
-                self.found.missing = self.found.missing or lost[0].why
+                self.findings.missing = self.findings.missing or lost[0].why
                 continue
             self._nodes.extend(uids)
             if self._judge_run is not None:
@@ -181,7 +181,7 @@ class JudgedClause:
             if guard is not None and guard.requirement == self.requirement.name and self.claim.verb in guard.verbs:
                 self._stopped.append(activation)
             return
-        self.found.has_run = self._has_started = True
+        self.findings.has_run = self._has_started = True
         if activation.timing in BEGUN_BEFORE:
             return
         self._waits = self._waits or activation.shown != activation.ended
@@ -228,7 +228,7 @@ class JudgedClause:
         is_own = self._is_own(refusal.guard)
         if self._is_result or (not is_own and VERBS[self.claim.verb].limits != "success"):
             return
-        self.found.has_run = True
+        self.findings.has_run = True
         self._margins.is_exact = False
         if is_own and VERBS[self.claim.verb].operand == "count":
             self._refused.append(refusal)
@@ -263,14 +263,14 @@ class JudgedClause:
             self._judge_over(root)
         if root.timing in CUT_BY_GAP and self._nodes:
             lost = Judgement(None, root.end, ROWS_LOST)
-            self._add(lost, next(iter(self.found.paths)), root.end, root.end, ())
+            self._add(lost, next(iter(self.findings.paths)), root.end, root.end, ())
             self._margins.add(margins.UNKNOWN, margins.UNKNOWN, ())
         self._refused.clear()
         self._stopped.clear()
         self._tally.end_run(run)
         self._margins.end_run(run.number)
         if not self._has_started and self._judge is not None and self._is_judged:
-            self.found.left_out["idle"] += 1
+            self.findings.left_out["idle"] += 1
         self._has_started = False
         self._written = None
         self.broken.clear()
@@ -281,7 +281,7 @@ class JudgedClause:
         top, guard = self._written or (root, None)
         run = Activation(self._nodes[0], top.started, top.ended, root.outcome, root.timing, top.begun(True), top.shown)
         observed = Observed(self._signals, self._nearby(run.uid), run.started, run.ended, run.timing != "latest")
-        self._judge_in(run, guard, observed, next(iter(self.found.paths)))
+        self._judge_in(run, guard, observed, next(iter(self.findings.paths)))
 
     def _judge_over(self, root: Activation) -> None:
         """Count what is judged over the run, in order of time for all uses of a subtree together: a window may keep
@@ -297,7 +297,7 @@ class JudgedClause:
                 early = root.from_earliest()
                 overs.append(replace(over, root=early, observed=over.observed.earlier(early.started)))
             judged += [(judgement, place, over) for judgement in self._judged_over(self.judged, overs)]
-            self.found.missed += len(over.missed)
+            self.findings.missed += len(over.missed)
             if self._extremes:
                 self._measure([self._judged_over(claim, overs) for claim in self._extremes], root)
         if len(judged) > 1:
@@ -312,7 +312,7 @@ class JudgedClause:
 
     def _over(self, place: _Place, root: Activation) -> OverRun:
         observed = Observed(self._signals, place.others, root.started, root.ended)
-        own = self._history.of(place.uids)
+        own = self._history.activations_of(place.uids)
         refused = [refusal for refusal in self._refused if refusal.uid in place.uids]
         return OverRun(self.claim.verb, self.requirement.scopes, root, own, observed, refused, self._stopped, [])
 
@@ -412,7 +412,7 @@ class JudgedClause:
         if judgement is None:
             self._tally.cut_off += activation.outcome == "O"
             if self.claim.verb == "leaves" and activation.outcome in _WITHOUT_SUCCESS:
-                self.found.left_out[_WITHOUT_SUCCESS[activation.outcome]] += 1
+                self.findings.left_out[_WITHOUT_SUCCESS[activation.outcome]] += 1
         else:
             if judgement.note:
                 self._notes[judgement.note] += 1
@@ -440,21 +440,21 @@ class JudgedClause:
             for uid in firsts if subject.first.subject is not None else [ROOT]:
                 together = near(uid, lasts, joined.tree)
                 groups[together] = (*groups.get(together, ()), uid)
-            return [*groups.values()] if not self.found.missing else []
+            return [*groups.values()] if not self.findings.missing else []
         if isinstance(subject, DurationSum):
             uids = [uid for target in subject.targets for uid in self._instances(joined, target)]
-            return [tuple(uids)] if uids and not self.found.missing else []
+            return [tuple(uids)] if uids and not self.findings.missing else []
         return [(uid,) for uid in self._instances(joined, _known(subject))]
 
     def _instances(self, joined: Joined, target: NodeTarget | None) -> list[int]:
         """The uids of a node's instances; notes those missing from the log."""
         uids: list[int] = []
         for path, uid in joined.instances(target) if target is not None else ():
-            self.found.paths[path] = None
+            self.findings.paths[path] = None
             if uid is not None:
                 uids.append(uid)
             else:
-                self.found.missing = self.found.missing or joined.lost(path)
+                self.findings.missing = self.findings.missing or joined.lost(path)
         return uids
 
     def _is_own(self, guard: Guard) -> bool:
@@ -495,17 +495,17 @@ class JudgedClause:
 
     def verdict(self, open_run: Run | None = None) -> ClauseVerdict:
         """The verdict on all judgements so far, with those of the open run if that is given."""
-        found = self.found
+        findings = self.findings
         tally = self._tally.result() if open_run is None else self._tally.so_far(open_run, self.broken.values())
-        verdict, why = verdict_of(tally, found.missing, found.has_run)
-        if verdict == NEVER and found.missed and self.claim.event is not None:
+        verdict, why = verdict_of(tally, findings.missing, findings.has_run)
+        if verdict == NEVER and findings.missed and self.claim.event is not None:
             event = self.claim.text.partition(" after ")[2].removeprefix("when ")
-            why = f"it was not running when {event} ({counted(found.missed, 'time')})"
+            why = f"it was not running when {event} ({counted(findings.missed, 'time')})"
         is_of_run = VERBS[self.claim.verb].operand == "count" and self.claim.per is None
-        is_once_a_run = isinstance(self._subject, DurationSum) or (is_of_run and len(found.paths) == 1)
+        is_once_a_run = isinstance(self._subject, DurationSum) or (is_of_run and len(findings.paths) == 1)
         return ClauseVerdict(
             text=self.text,
-            path=", ".join(found.paths),
+            path=", ".join(findings.paths),
             of=self.claim.text.partition(f" {self.claim.verb} ")[0]
             if isinstance(self._subject, Interval | DurationSum)
             else "",
@@ -514,11 +514,11 @@ class JudgedClause:
             unit="runs" if tally.counts_runs or is_once_a_run else "activations",
             confidence=self.requirement.confidence,
             histogram=tally.distribution.histogram(self.marks()),
-            timeline=found.timeline if verdict == VIOLATED else None,
+            timeline=findings.timeline if verdict == VIOLATED else None,
             measures=self._measures() if self._with_measures else None,
-            failed=found.left_out["failed"],
-            halted=found.left_out["halted"],
-            idle=found.left_out["idle"],
+            failed=findings.left_out["failed"],
+            halted=findings.left_out["halted"],
+            idle=findings.left_out["idle"],
             **tally.fields(),
         )
 
@@ -536,8 +536,8 @@ class JudgedClause:
             place=self.demand.place,
             bound=edge.value.si if edge is not None else None,
             odds=(odds.relation, odds.probability) if odds is not None else None,
-            missing=self.found.missing,
-            has_run=self.found.has_run,
+            missing=self.findings.missing,
+            has_run=self.findings.has_run,
             margins=self._margins if is_exact else None,
         )
 

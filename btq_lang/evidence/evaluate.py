@@ -59,8 +59,8 @@ class LogFindings:
 
     def add(self, other: LogFindings, runs: int) -> None:
         """Add what was found in later logs, whose runs are numbered by themselves, after so many runs."""
-        for clause, found in zip(self.clauses, other.clauses, strict=True):
-            clause.add(found, runs)
+        for clause, findings in zip(self.clauses, other.clauses, strict=True):
+            clause.add(findings, runs)
         for own, theirs in zip(self.contexts, other.contexts, strict=True):
             own.update(theirs)
         self.outcomes.update(other.outcomes)
@@ -109,7 +109,7 @@ class MissionEvaluation:
     """Judges a mission's requirements while its logs are read; gives listeners all that is found.
 
     Attributes:
-        found: what the verdicts need of the logs so far.
+        findings: what the verdicts need of the logs so far.
     """
 
     def __init__(
@@ -130,13 +130,13 @@ class MissionEvaluation:
         self._ran: Final = ran
         self.listeners: Final = [*listeners]
         self.mission: Final = mission
-        found = mission.requirements
-        clauses = [JudgedClause(each, limits, with_measures) for each in demands(found)]
+        requirements = mission.requirements
+        clauses = [JudgedClause(demand, limits, with_measures) for demand in demands(requirements)]
         self._with_measures: Final = with_measures
-        self._signals: Final = found.signals
+        self._signals: Final = requirements.signals
         self._clauses: Final = clauses
-        self._contexts: Final = Contexts(found.contexts)
-        self.found: Final = LogFindings([each.found for each in clauses], self._contexts.counts)
+        self._contexts: Final = Contexts(requirements.contexts)
+        self.findings: Final = LogFindings([clause.findings for clause in clauses], self._contexts.counts)
         self._open_run: Final = OpenRun(read_signals(_reading(mission, clauses))) if with_timelines else None
 
     def read(
@@ -171,7 +171,7 @@ class MissionEvaluation:
         for listener in self.listeners:
             listener.join(joined, self._clauses)
         self._contexts.join(joined, signals, history)
-        coverage = self.found.coverage
+        coverage = self.findings.coverage
         coverage.expect(tree, joined.written())
         begin: int | None = None
         end = 0
@@ -200,10 +200,10 @@ class MissionEvaluation:
                 runs += 1
                 begin = activation.begin if begin is None else begin
                 end = activation.end
-                self.found.outcomes[activation.outcome] += 1
+                self.findings.outcomes[activation.outcome] += 1
                 began = origin.uid if origin is not None else None
                 if began in enforcing:
-                    self.found.ended_by[guards.last or enforcing[began]] += 1
+                    self.findings.ended_by[guards.last or enforcing[began]] += 1
                 guards.end_run()
                 repeats = coverage.retries.now, coverage.recoveries.now
                 coverage.end_run(run.number, began)
@@ -215,14 +215,14 @@ class MissionEvaluation:
                 history.clear()
                 explainer.end_run()
                 if self._open_run is not None:
-                    self._open_run.end(run, tree, self.found.clauses, signals)
+                    self._open_run.end(run, tree, self.findings.clauses, signals)
                 signals.forget_before(end)
                 self._ran(run.number)
                 run_ended(activation)
         session.remarks.extend(remark for each in self._clauses for remark in each.remarks(tree, session.keeping))
         session.remarks.extend(coverage.clock_remarks())
         session.remarks.extend(signals.remarks(self._signals, begin or 0, end))
-        self.found.add_source(
+        self.findings.add_source(
             EvidenceFile(
                 file=source,
                 runs=runs,
@@ -245,18 +245,18 @@ class MissionEvaluation:
 
     def verdicts(self, open_run: Run | None = None) -> tuple[RequirementVerdict, ...]:
         """The verdict on each requirement so far, with the open run if that is given."""
-        found = self.mission.requirements
-        by_requirement: dict[str, list[ClauseVerdict]] = {name: [] for name in found.all}
+        requirements = self.mission.requirements
+        by_requirement: dict[str, list[ClauseVerdict]] = {name: [] for name in requirements.all}
         for clause in self._clauses:
             by_requirement[clause.requirement.name].append(clause.verdict(open_run))
         for name, clauses in by_requirement.items():
-            clauses.extend(unread_clauses(found.all[name]))
-            clauses.extend(() if clauses else open_clauses(found.all[name]))
+            clauses.extend(unread_clauses(requirements.all[name]))
+            clauses.extend(() if clauses else open_clauses(requirements.all[name]))
         return tuple(
             RequirementVerdict(
                 name,
-                " ".join((found.all[name].title or "").split()),
-                worst_of(each.verdict for each in clauses),
+                " ".join((requirements.all[name].title or "").split()),
+                worst_of(clause_verdict.verdict for clause_verdict in clauses),
                 tuple(clauses),
             )
             for name, clauses in by_requirement.items()
@@ -264,25 +264,25 @@ class MissionEvaluation:
 
     def result(self) -> MissionVerdicts:
         """All that was found so far."""
-        requirements, found = self.mission.requirements, self.found
-        held, unknown = found.contexts
+        requirements, findings = self.mission.requirements, self.findings
+        held, unknown = findings.contexts
         return MissionVerdicts(
             name=self.mission.name,
             file=self.mission.path,
-            sources=tuple(found.sources),
+            sources=tuple(findings.sources),
             requirements=self.verdicts(),
-            outcomes=tuple((OUTCOMES[outcome], number) for outcome, number in found.outcomes.items() if number),
-            ended_by=tuple(found.ended_by.items()),
-            nodes=found.coverage.summary(requirements.nodes.all),
+            outcomes=tuple((OUTCOMES[outcome], number) for outcome, number in findings.outcomes.items() if number),
+            ended_by=tuple(findings.ended_by.items()),
+            nodes=findings.coverage.summary(requirements.nodes.all),
             contexts=tuple(ContextSummary(name, runs, unknown[name]) for name, runs in held.items()),
-            retries=found.coverage.retries.summary(),
-            recoveries=found.coverage.recoveries.summary(),
+            retries=findings.coverage.retries.summary(),
+            recoveries=findings.coverage.recoveries.summary(),
             outline=outline(requirements) if self._with_measures else "",
         )
 
 
 def _reading(mission: Candidate, clauses: Sequence[JudgedClause]) -> Iterator[tuple[str, object]]:
     """The parts of the model that read signals, each with the name of its requirement or context."""
-    for each in clauses:
-        yield each.requirement.name, (each.claim, each.requirement.scopes)
-    yield from ((name, each) for name, each in mission.requirements.contexts.items() if each is not None)
+    for clause in clauses:
+        yield clause.requirement.name, (clause.claim, clause.requirement.scopes)
+    yield from ((name, context) for name, context in mission.requirements.contexts.items() if context is not None)

@@ -83,9 +83,9 @@ class Guards:
             self._failed[self._holders[uid]] = activation.ended
         settled: list[tuple[Activation, Guard | None]] = []
         refusal = self._refusal(activation)
-        for failed, at in [*self._failed.items()] if uid == ROOT else ():
+        for failed, failed_at in [*self._failed.items()] if uid == ROOT else ():
             if failed != ROOT:  # it has no row
-                stopped, refused = self.see(Activation(failed, (0, 0), at, "F"))
+                stopped, refused = self.see(Activation(failed, (0, 0), failed_at, "F"))
                 settled += stopped
                 refusal = refusal or refused
         around = self._around.get(uid)
@@ -118,14 +118,14 @@ class Guards:
 
     def _refusal(self, activation: Activation) -> RefusedStart | None:
         uid = activation.uid
-        at = self._failed.get(uid)
+        failed_at = self._failed.get(uid)
         inside = self._inside.get(uid)
-        if at is None or inside is None or not self._guards[uid].verbs:
+        if failed_at is None or inside is None or not self._guards[uid].verbs:
             return None
         if uid in self._shown and self._shown[uid] >= activation.shown:
             return None
         self.last = self._guards[uid].requirement
-        return RefusedStart(inside, at, self._guards[uid])
+        return RefusedStart(inside, failed_at, self._guards[uid])
 
     def end_run(self) -> None:
         """Begin another run."""

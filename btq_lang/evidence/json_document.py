@@ -36,8 +36,8 @@ def render(report: VerdictReport) -> str:
     """Write the report as JSON."""
     sources = [_source(source, mission) for mission in report.missions for source in mission.sources]
     sources += [
-        {"file": each.file, "mission": None, "runs": each.runs, **_unjoined(each), "remarks": []}
-        for each in report.foreign
+        {"file": foreign.file, "mission": None, "runs": foreign.runs, **_unjoined(foreign), "remarks": []}
+        for foreign in report.foreign
     ]
     document: Json = {
         "format": FORMAT,
@@ -107,13 +107,13 @@ def _clause(clause: ClauseVerdict) -> Json:
         "limits": clause.limits if clause.interval is not None else None,
         "violations": [
             {
-                **_fields(each, but=("passed",)),
-                "start": timestamp(each.start),
-                "measured": each.measured or None,
-                "bound": each.bound or None,
-                "chain": [_fields(link) for link in each.chain],
+                **_fields(violation, but=("passed",)),
+                "start": timestamp(violation.start),
+                "measured": violation.measured or None,
+                "bound": violation.bound or None,
+                "chain": [_fields(link) for link in violation.chain],
             }
-            for each in clause.violations
+            for violation in clause.violations
         ],
         **({"by_run": [*map(_run_value, clause.by_run)]} if clause.by_run else {}),
         **({"measures": _measures(clause.measures)} if clause.measures is not None else {}),
@@ -240,7 +240,7 @@ def _read_measures(written: dict[str, Any]) -> Measures:
 
 def _violation(written: dict[str, Any]) -> Violation:
     words = {"measured": written["measured"] or "", "bound": written["bound"] or "", "start": time_of(written["start"])}
-    return Violation(**{**written, **words, "chain": tuple(CauseLink(**each) for each in written["chain"])})
+    return Violation(**{**written, **words, "chain": tuple(CauseLink(**link) for link in written["chain"])})
 
 
 _VERSIONS: Final = range(1, VERSION + 1)  # what an older one has, this one has too

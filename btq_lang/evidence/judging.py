@@ -99,16 +99,16 @@ def judge(
         return _judged(log, means, ran, None, running)
     from btq_lang.evidence.store.sets import NotKept, draft
 
-    found: JudgedLog | None = None
+    judged: JudgedLog | None = None
     try:
         with draft(means.keeping, log, running.id if running is not None else None) as written:
-            found = _judged(log, means, ran, written, running)
-            if found.runs and not found.problems:
-                found = replace(found, renamed=written.publish(means.shown(log)))
+            judged = _judged(log, means, ran, written, running)
+            if judged.runs and not judged.problems:
+                judged = replace(judged, renamed=written.publish(means.shown(log)))
     except NotKept as error:
         problem = f"{means.shown(log)}: {error}"
-        found = replace(found, problems=(problem,)) if found is not None else JudgedLog(0, (), (), (problem,))
-    return found
+        judged = replace(judged, problems=(problem,)) if judged is not None else JudgedLog(0, (), (), (problem,))
+    return judged
 
 
 def _judged(
@@ -127,7 +127,7 @@ def _judged(
             if isinstance(joined, str):
                 if running is not None:
                     running.foreign(difference(missions, session.tree))
-                number = sum(each.uid == ROOT for each in activations(session))
+                number = sum(activation.uid == ROOT for activation in activations(session))
                 what = foreign.get((source, joined))
                 if what is None:
                     lacks = first_of(session.unlike) or difference(missions, session.tree)
@@ -150,27 +150,27 @@ def _judged(
                 if problem := means.declared.problem(mission.path, (*session.signals, *means.of_bags)):
                     problems = tuple(dict.fromkeys((*problems, f"{shown(log)}: {problem}")))
                 of_files = means.declared.of_files.get(mission.path, NO_SERIES)
-                given = by_signal(signals, means.samples, of_files, session.signals, means.of_bags)
+                series = by_signal(signals, means.samples, of_files, session.signals, means.of_bags)
                 session.remarks.extend(means.remarks)
                 if joined.others:
                     others = ", ".join(map(shown, joined.others))
                     session.remarks.append(
                         f"judged by {shown(mission.path)}; the same nodes are in {others}: choose with --mission"
                     )
-                here = means.left_out.get((log, len(logged)), ())
+                left_out_here = means.left_out.get((log, len(logged)), ())
                 logged.append(LoggedRuns(log, len(logged), (mission.path, label), session.robot))
-                session = _without(session, here) if here else session
+                session = _without(session, left_out_here) if left_out_here else session
                 before = runs + left_out
-                runs += evaluations[key].read(session, joined, given, runs + 1, source, logged[-1].add)
-                left_out += len(here)
-                evaluations[key].found.leave_out([before + run + 1 for run, *_ in here])
+                runs += evaluations[key].read(session, joined, series, runs + 1, source, logged[-1].add)
+                left_out += len(left_out_here)
+                evaluations[key].findings.leave_out([before + run + 1 for run, *_ in left_out_here])
     except NotALog as error:
         problems += (f"{shown(log)}: {error}",)
     except OSError as error:
         problems += (f"{shown(log)}: cannot be read: {error.strerror or error}",)
     for evaluation in evaluations.values():
         evaluation.end()
-    findings = tuple((path, evaluation.found) for (path, _), evaluation in evaluations.items())
+    findings = tuple((path, evaluation.findings) for (path, _), evaluation in evaluations.items())
     return JudgedLog(runs, findings, tuple(foreign.values()), problems, sessions=tuple(logged))
 
 
@@ -191,14 +191,14 @@ def _without(session: LogSession, runs: Sequence[tuple[int, int, int]]) -> LogSe
 
 def rows_of(log: str, means: Means) -> Sequence[LoggedRows]:
     """The rows of the sessions of a log that were judged."""
-    found = []
+    rows = []
     try:
         for _, session, joined in joined_sessions(read(log), means.missions, log):
             if not isinstance(joined, str):
-                found.append(LoggedRows(session.transitions))
+                rows.append(LoggedRows(session.transitions))
     except (NotALog, OSError):  # as when it was judged, which has said so
         pass
-    return found
+    return rows
 
 
 class Judging:
@@ -208,7 +208,7 @@ class Judging:
         self.runs = 0
         self.sessions: Final[list[LoggedRuns]] = []
         of_all = partial(MissionEvaluation, limits=means.limits, with_measures=means.with_measures)
-        self._evaluations: Final = {each.path: of_all(each, means.with_timelines) for each in means.missions}
+        self._evaluations: Final = {mission.path: of_all(mission, means.with_timelines) for mission in means.missions}
         self._foreign: Final[dict[tuple[str, str], Foreign]] = {}
         self._problems: Final[list[str]] = []
         self._renamed: Final[Counter[str]] = Counter()
@@ -216,21 +216,22 @@ class Judging:
     def add(self, log: JudgedLog) -> None:
         """Add the next log."""
         for path, findings in log.findings:
-            self._evaluations[path].found.add(findings, self.runs)
+            self._evaluations[path].findings.add(findings, self.runs)
         self.runs += log.runs
         self.sessions.extend(log.sessions)
-        for each in log.foreign:
-            known = self._foreign.get((each.file, each.of))
-            self._foreign[each.file, each.of] = replace(known, runs=known.runs + each.runs) if known else each
+        for foreign in log.foreign:
+            key = foreign.file, foreign.of
+            runs = self._foreign[key].runs if key in self._foreign else 0
+            self._foreign[key] = replace(self._foreign.get(key, foreign), runs=runs + foreign.runs)
         self._problems.extend(log.problems)
         self._renamed.update(log.renamed)
 
     def report(self) -> VerdictReport:
         """All that was found."""
-        missions = [each.result() for each in self._evaluations.values()]
-        found = tuple(each for each in missions if each.sources)
+        missions = [evaluation.result() for evaluation in self._evaluations.values()]
+        judged = tuple(mission for mission in missions if mission.sources)
         renamed = tuple(f"{counted(number, 'log')} had {what}" for what, number in self._renamed.items())
-        return VerdictReport(found, tuple(self._foreign.values()), tuple(self._problems), renamed)
+        return VerdictReport(judged, tuple(self._foreign.values()), tuple(self._problems), renamed)
 
 
 def judge_all(logs: Sequence[str], means: Means, jobs: int) -> Iterator[JudgedLog]:

@@ -56,7 +56,7 @@ def _counts(head: str, nodes: Sequence[NodeSummary], value: Callable[[NodeSummar
 
 def _times(head: str, nodes: Sequence[NodeSummary], value: Callable[[NodeSummary], float | None]) -> Column:
     times = tuple(map(value, nodes))
-    return Column(head, times, tuple("" if each is None else duration(each) for each in times))
+    return Column(head, times, tuple("" if time is None else duration(time) for time in times))
 
 
 def _bounded(node: NodeSummary) -> str:

@@ -43,33 +43,33 @@ class Demand(Record):
         """The clause as typed, with all that counts for its requirement."""
         requirement = self.requirement
         of_all = (*requirement.scopes, requirement.odds, requirement.window)
-        parts = [self.claim.text, *(each.text for each in of_all if each is not None)]
+        parts = [self.claim.text, *(part.text for part in of_all if part is not None)]
         return " ".join([*parts, f"goal {requirement.goal.text}"] if requirement.goal is not None else parts)
 
 
-def demands(found: Requirements) -> Iterator[Demand]:
+def demands(requirements: Requirements) -> Iterator[Demand]:
     """The clauses that logs can show, in the order in which they are judged."""
     seen: Counter[tuple[str, str, str]] = Counter()
     used: set[tuple[str, str]] = set()
-    for applied in found.applied:
+    for applied in requirements.applied:
         for claim in applied.requirement.claims if not applied.requirement.is_verified_by_people else ():
             used.add((applied.requirement.name, claim.text))
-            at = _place(applied)
-            key = applied.requirement.name, claim.text, at
-            yield Demand(applied.requirement, claim, applied, f"{at} {seen[key]}")
+            place = _place(applied)
+            key = applied.requirement.name, claim.text, place
+            yield Demand(applied.requirement, claim, applied, f"{place} {seen[key]}")
             seen[key] += 1
-    for requirement in found.all.values():
+    for requirement in requirements.all.values():
         for claim in requirement.claims if not requirement.is_verified_by_people else ():
             if (requirement.name, claim.text) not in used:
                 yield Demand(requirement, claim, None, "")
 
 
-def outline(found: Requirements) -> str:
+def outline(requirements: Requirements) -> str:
     """A digest of what all trees do, and of what signals and contexts mean, whatever the layout, comments and
     requirements.
     """
-    trees = [_text(tree) for tree in found.nodes.trees]
-    words = [_meaning(each) for each in (*found.signals.values(), *found.contexts.items())]
+    trees = [_text(tree) for tree in requirements.nodes.trees]
+    words = [_meaning(part) for part in (*requirements.signals.values(), *requirements.contexts.items())]
     return hashlib.sha256("\n".join([*trees, *words]).encode()).hexdigest()[:_DIGITS]
 
 
@@ -83,9 +83,9 @@ def _place(applied: Applied) -> str:
 
 def _text(tree: ResolvedTree) -> str:
     lines = [f"tree {tree.name}"]
-    for each in tree.all:
-        pairs = (f"{pair.key.text}={pair.value.text if pair.value else ''}" for pair in each.node.attributes)
-        lines.append(f"{sum(1 for _ in each.ancestors())} {each.shown} {' '.join(pairs)}")
+    for node in tree.all:
+        pairs = (f"{pair.key.text}={pair.value.text if pair.value else ''}" for pair in node.node.attributes)
+        lines.append(f"{sum(1 for _ in node.ancestors())} {node.shown} {' '.join(pairs)}")
     return "\n".join(lines)
 
 

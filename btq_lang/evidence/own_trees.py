@@ -70,5 +70,5 @@ class OwnTrees:
             self._known.add(nodes)
             ID = as_written(tree.xml).root.get("main_tree_to_execute") or "tree"
             names = chain((ID,), (f"{ID} {number}" for number in count(2)))
-            name = next(each for each in names if all(each != mission.name for mission in self.missions))
+            name = next(unused for unused in names if all(unused != mission.name for mission in self.missions))
             self.missions.append(OwnTree(f"{log}/{name}.btq", name, tree))

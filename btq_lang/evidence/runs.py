@@ -157,7 +157,7 @@ class _OpenNodes:
         while (above := parent[beginning[-1]]) and above not in begun:
             beginning.append(above)
         for each in reversed(beginning):
-            begun[each] = self._begins.of(each, now, status, uid, begun)
+            begun[each] = self._begins.begin_of(each, now, status, uid, begun)
 
     def see(self, uid: int, now: Moment, status: int) -> None:
         """Conclude from a row which nodes were active before it."""

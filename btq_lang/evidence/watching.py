@@ -168,7 +168,7 @@ class _Listener:
         watched.tell(f"run {watched.outcomes.total()} {how} after {duration(root.seconds)}{began}", root.end)
         self._begin = None
         for clause, told in self._clauses.items():
-            found = clause.found
+            found = clause.findings
             verdict, _ = verdict_of(found.tally.result(), found.missing, found.has_run)
             if verdict != told:
                 self._clauses[clause] = verdict

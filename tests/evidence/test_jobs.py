@@ -41,8 +41,8 @@ def added(made: Case) -> MissionVerdicts:
     for number, rows in enumerate(made.sessions):
         one = MissionEvaluation(made.mission, with_timelines=True)
         read = one.read(LogSession(made.joined.tree, iter(rows)), made.joined, made.series, 1, f"log {number}")
-        findings: LogFindings = pickle.loads(pickle.dumps(one.found))
-        evaluation.found.add(findings, runs)
+        findings: LogFindings = pickle.loads(pickle.dumps(one.findings))
+        evaluation.findings.add(findings, runs)
         runs += read
     return evaluation.result()
 

@@ -38,7 +38,7 @@ def judged(made: Case, mission: Candidate) -> MissionVerdicts:
     for number, session in enumerate(made.sessions):
         one = MissionEvaluation(mission, with_measures=True)
         read = one.read(LogSession(made.joined.tree, iter(session)), joined, made.series, 1, f"log {number}")
-        evaluation.found.add(one.found, runs)
+        evaluation.findings.add(one.findings, runs)
         runs += read
     return evaluation.result()
 

@@ -117,7 +117,7 @@ class MissionRows:
         """Write the clauses, when the log has been read."""
         known: Counter[tuple[str, str, str]] = Counter()
         for written, clause in zip(self._clauses, clauses, strict=True):
-            found, verdict, requirement = clause.found, clause.verdict(), clause.requirement
+            found, verdict, requirement = clause.findings, clause.verdict(), clause.requirement
             paths = [self._names.get(path, {without_number(path): None}) for path in found.paths]
             node = ", ".join(dict.fromkeys(name for names in paths for name in names))
             same = requirement.name, verdict.text, node

@@ -41,7 +41,7 @@ def judged_and_kept(made: Case, store: Path) -> MissionVerdicts:
             read = one.read(LogSession(made.joined.tree, iter(transitions)), made.joined, made.series, 1, "log")
             one.end()
         engine.write_parquet(str(folder), {"log": folder.name, "label": "", "source": f"log {number}"})
-        evaluation.found.add(one.found, runs)
+        evaluation.findings.add(one.findings, runs)
         runs += read
     return evaluation.result()
 
