@@ -51,7 +51,7 @@ def activations(session: LogSession) -> Iterator[Activation]:
     begun, running, unseen = nodes.begun, nodes.running, nodes.unseen
     odd = Oddities()
     idle: tuple[int, Moment] | None = None  # a halt that may turn out to be part of the node's own completion
-    done: set[int] = set()  # the nodes that have completed and have not been reset since
+    completed: set[int] = set()  # the nodes that have completed and have not been reset since
     is_reset_written = False
     row, now = 0, (0, 0)
     until = now  # nodes that are active at `now` are still active then
@@ -67,7 +67,7 @@ def activations(session: LogSession) -> Iterator[Activation]:
                 if uid is GAP:
                     if ROOT in begun:
                         yield from nodes.end(ROOT, max(now, until), "O", "lost", below="O")
-                    done.clear()
+                    completed.clear()
                     unseen.update(parent)
                     begins.lose()
             else:
@@ -98,20 +98,20 @@ def activations(session: LogSession) -> Iterator[Activation]:
             running.add(uid)
             if uid not in begun:
                 nodes.begin(uid, now, status)
-                if uid in done:
+                if uid in completed:
                     session.keeping.add(parent[uid])
         elif completes:
             if uid not in begun:
                 nodes.begin(uid, now, status)
-                if uid in done:
+                if uid in completed:
                     session.keeping.add(parent[uid])
-            done.add(uid)
+            completed.add(uid)
             ended = nodes.end(uid, now, "S" if status == SUCCESS else "F")
             if len(ended) > 1:
                 odd.count(_UNWRITTEN, time)
             yield from ended
         else:
-            done.discard(uid)
+            completed.discard(uid)
             is_reset_written = True
             if uid in running:
                 idle = uid, now
@@ -156,8 +156,8 @@ class _OpenNodes:
         beginning = [uid]
         while (above := parent[beginning[-1]]) and above not in begun:
             beginning.append(above)
-        for each in reversed(beginning):
-            begun[each] = self._begins.begin_of(each, now, status, uid, begun)
+        for node in reversed(beginning):
+            begun[node] = self._begins.begin_of(node, now, status, uid, begun)
 
     def see(self, uid: int, now: Moment, status: int) -> None:
         """Conclude from a row which nodes were active before it."""
@@ -180,16 +180,16 @@ class _OpenNodes:
         self, uid: int, now: Moment, outcome: Outcome, timing: Timing = "exact", below: Outcome = "H"
     ) -> list[Activation]:
         """End a node; returns the activations that end with it, innermost first, its own last."""
-        found: list[Activation] = []
+        ended: list[Activation] = []
         last = self._tree.last[uid]
         if last > uid and max(self.begun) > uid:  # mostly nothing below is open any more
-            for each in sorted([each for each in self.begun if uid < each <= last], reverse=True):
-                if each in self.running:
-                    found.append(self._made(each, now, below, "latest" if below == "H" else "exact"))
+            for node in sorted([node for node in self.begun if uid < node <= last], reverse=True):
+                if node in self.running:
+                    ended.append(self._activation(node, now, below, "latest" if below == "H" else "exact"))
                 else:  # only its descendants have written rows
-                    self.forget(each)
-        found.append(self._made(uid, now, outcome, timing))
-        return found
+                    self.forget(node)
+        ended.append(self._activation(uid, now, outcome, timing))
+        return ended
 
     def forget(self, uid: int) -> None:
         """Mark a node as inactive."""
@@ -202,7 +202,7 @@ class _OpenNodes:
         """Mark the durations of all active nodes as unknown: the clock was set back."""
         self._distrusted.update(self.begun)
 
-    def _made(self, uid: int, now: Moment, outcome: Outcome, timing: Timing) -> Activation:
+    def _activation(self, uid: int, now: Moment, outcome: Outcome, timing: Timing) -> Activation:
         self.running.discard(uid)
         if uid in self._distrusted:
             self._distrusted.remove(uid)

@@ -54,8 +54,8 @@ class Signals:
 
     def sampled(self, signal: ResolvedSignal, time: int) -> int | None:
         """The time of the sample that gives a signal its value at a time."""
-        found = self._series(signal).at(time)
-        return found[0] if found is not None else None
+        sample = self._series(signal).at(time)
+        return sample[0] if sample is not None else None
 
     def changes(self, signal: ResolvedSignal, begin: int, end: int) -> list[int]:
         """The times after `begin`, up to `end`, at which a signal may change: a sample comes or expires."""
@@ -79,20 +79,20 @@ class Signals:
         if not times:
             return UnknownValue(f"no sample of `{signal.name}` meanwhile" if series.times else _none_of(signal))
         checked = [*times, *self.changes(signal, times[0], end)] if signal.fresh is not None else times
-        found: list[float] = []
+        values: list[float] = []
         for time in checked:
             value = self.reading(signal, time)
             if isinstance(value, UnknownValue):
                 return value
-            found.append(float(value))
-        return found[: len(times)]
+            values.append(float(value))
+        return values[: len(times)]
 
     def sampled_values(self, signal: ResolvedSignal, begin: int, end: int) -> list[float] | UnknownValue:
         """A signal's values at its samples after `begin`, up to `end`; unknown if one is not a number."""
         series = self._series(signal)
-        at = bisect_right(series.times, begin), bisect_right(series.times, end)
+        places = bisect_right(series.times, begin), bisect_right(series.times, end)
         converted: list[float] = []
-        for sample in series.values[slice(*at)]:
+        for sample in series.values[slice(*places)]:
             value = _as_declared(signal, sample, series.unit) if sample is not None else None
             if isinstance(value, UnknownValue):
                 return value
@@ -169,13 +169,13 @@ def _as_declared(signal: ResolvedSignal, value: SampleValue, unit: Unit | None) 
 def by_signal(signals: Iterable[ResolvedSignal], *sources: Mapping[str, SampleSeries]) -> dict[str, SampleSeries]:
     """The samples of signals, each from the first source that has it by its name or its entry."""
     names = {signal.name: (signal.name, signal.entry) for signal in signals}
-    found: dict[str, SampleSeries] = {}
+    series_by_signal: dict[str, SampleSeries] = {}
     for signal, keys in names.items():
         for source in sources:
             if (key := next((key for key in keys if key in source), None)) is not None:
-                found[signal] = source[key]
+                series_by_signal[signal] = source[key]
                 break
-    return found
+    return series_by_signal
 
 
 NO_SAMPLES: Final = "no samples of"

@@ -44,15 +44,15 @@ class OpenRun:
 
     def end(self, run: Run, tree: LoggedTree, clauses: Sequence[ClauseFindings], signals: Signals) -> None:
         """Close the run, and keep it as the timeline of the clauses of which it has the worst violation so far."""
-        if broken := [each for each in clauses if each.tally.is_worst_in(run)]:
+        if broken := [clause for clause in clauses if clause.tally.is_worst_in(run)]:
             timeline = self._timeline(run, tree, signals)
-            for each in broken:
-                each.timeline = timeline
+            for clause in broken:
+                clause.timeline = timeline
         self._seen.clear()
         self._left_out = 0
 
     def _timeline(self, run: Run, tree: LoggedTree, signals: Signals) -> Timeline:
-        bars = sorted(self._seen, key=lambda each: (each.uid, each.begin))
+        bars = sorted(self._seen, key=lambda activation: (activation.uid, activation.begin))
         return Timeline(
             run.number,
             run.source,
@@ -60,14 +60,14 @@ class OpenRun:
             (run.end - run.begin) / 1e6,
             tuple(
                 Bar(
-                    tree.nodes[each.uid].path,
-                    sum(1 for _ in tree.above(each.uid)),
-                    (each.begin - run.begin) / 1e6,
-                    (each.end - run.begin) / 1e6,
-                    each.outcome,
-                    took(each),
+                    tree.nodes[activation.uid].path,
+                    sum(1 for _ in tree.above(activation.uid)),
+                    (activation.begin - run.begin) / 1e6,
+                    (activation.end - run.begin) / 1e6,
+                    activation.outcome,
+                    took(activation),
                 )
-                for each in bars
+                for activation in bars
             ),
             self._left_out,
             _signal_lines(self._read, signals, run.begin, run.end),
@@ -84,8 +84,8 @@ def read_signals(parts: Iterable[tuple[str, object]]) -> dict[ResolvedSignal, Bo
     for name, part in parts:
         for signal in signals_in(part):
             read.setdefault(signal, {})
-        for each in parts_in(part):
-            for signal, value in _compared(each):
+        for condition in parts_in(part):
+            for signal, value in _compared(condition):
                 read[signal][name, value] = None
     return {signal: tuple(bounds) for signal, bounds in read.items()}
 
@@ -106,19 +106,21 @@ def _compared(part: object) -> Iterator[tuple[ResolvedSignal, Quantity]]:
     """The signals that a comparison compares with numbers of their own scale."""
     if isinstance(part, Compare):
         for pair in zip(part.operands, part.operands[1:], strict=False):
-            for each, other in (pair, pair[::-1]):
-                is_of_scale = isinstance(each, SignalRead) or (
-                    isinstance(each, Aggregate) and each.function in _OF_SCALE
+            for operand, other in (pair, pair[::-1]):
+                is_of_scale = isinstance(operand, SignalRead) or (
+                    isinstance(operand, Aggregate) and operand.function in _OF_SCALE
                 )
-                if is_of_scale and isinstance(each, SignalRead | Aggregate) and isinstance(other, Quantity):
-                    yield each.signal, other
+                if is_of_scale and isinstance(operand, SignalRead | Aggregate) and isinstance(other, Quantity):
+                    yield operand.signal, other
 
 
 def _points(signal: ResolvedSignal, signals: Signals, begin: int, end: int) -> tuple[tuple[Point, ...], int]:
     """The points of a line, and how many changes are left out."""
     times = dict.fromkeys((begin, *sorted(signals.changes(signal, begin, end))))
     values = ((time, signals.reading(signal, time)) for time in times)
-    points = _changes(((time - begin) / 1e6, None if isinstance(each, UnknownValue) else each) for time, each in values)
+    points = _changes(
+        ((time - begin) / 1e6, None if isinstance(value, UnknownValue) else value) for time, value in values
+    )
     if signal.sort == "number" and len(times) > _MOST_POINTS:
         return tuple(_thinned(points, (end - begin) / 1e6)), 0
     kept = tuple(islice(points, _MOST_POINTS))
@@ -138,8 +140,8 @@ def _thinned(points: Iterable[Point], length: float) -> Iterator[Point]:
     """Of each of equal parts of the time the first point, the extreme ones, one without a value, and the last."""
     for _, inside in groupby(points, lambda point: int(point[0] / length * _PARTS)):
         of_part = [*inside]
-        known = sorted((float(value), place) for place, (_, value) in enumerate(of_part) if value is not None)
-        places = {0, len(of_part) - 1, *(place for _, place in (*known[:1], *known[-1:]))}
+        values = sorted((float(value), place) for place, (_, value) in enumerate(of_part) if value is not None)
+        places = {0, len(of_part) - 1, *(place for _, place in (*values[:1], *values[-1:]))}
         places.update([place for place, (_, value) in enumerate(of_part) if value is None][:1])
         yield from (of_part[place] for place in sorted(places))
 

@@ -381,7 +381,7 @@ class MissionVerdicts(Record):
     @property
     def medians(self) -> dict[str, float]:
         """The median durations of nodes, in seconds by path."""
-        return {each.path: each.p50 for each in self.nodes if each.p50 is not None}
+        return {node.path: node.p50 for node in self.nodes if node.p50 is not None}
 
 
 class Foreign(Record):
@@ -417,7 +417,7 @@ class VerdictReport(Record):
     @property
     def verdicts(self) -> frozenset[Verdict]:
         """The verdicts that occur."""
-        return frozenset(each.verdict for mission in self.missions for each in mission.requirements)
+        return frozenset(requirement.verdict for mission in self.missions for requirement in mission.requirements)
 
 
 def worst_of(verdicts: Iterable[Verdict]) -> Verdict:

@@ -81,8 +81,8 @@ def verify_logs(
     is_side = side is not None and side.mission == absolute(path)
     name = os.path.splitext(os.path.basename(path))[0]
     mission = Candidate(workspace, path, name, side.nodes if side is not None and is_side else None)
-    given = [logs] if isinstance(logs, str) else logs
-    readable, problems = logs_below(given, workspace.project)
+    paths = [logs] if isinstance(logs, str) else logs
+    readable, problems = logs_below(paths, workspace.project)
     try:
         samples = read_samples(signals) if signals is not None else {}
     except NoSamples as error:
@@ -91,18 +91,18 @@ def verify_logs(
     declared = signal_sources([mission], wrong)
     if wrong:
         raise ValueError("; ".join(wrong))
-    found = judged(readable, Means([mission], samples, declared), [path], signals or "")
-    return replace(found, problems=(*problems, *(found.problems if readable else ())))
+    verification = judged(readable, Means([mission], samples, declared), [path], signals or "")
+    return replace(verification, problems=(*problems, *(verification.problems if readable else ())))
 
 
 def logs_below(paths: Sequence[str], project: Project) -> tuple[Sequence[str], list[str]]:
     """The logs that paths denote, and what is wrong with the paths."""
     files, unreachable = collect(paths, project, (*SUFFIXES, METADATA))
     logs = whole_bags(files)
-    problems = [*map(str, unreachable), *(f"{shown(each)}: {IS_SPECIAL}" for each in logs if is_special(each))]
+    problems = [*map(str, unreachable), *(f"{shown(log)}: {IS_SPECIAL}" for log in logs if is_special(log))]
     if not logs and not problems:
         problems.append(f"no {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]} below {', '.join(paths)}")
-    return [each for each in logs if not is_special(each)], problems
+    return [log for log in logs if not is_special(log)], problems
 
 
 def judged(
@@ -121,7 +121,7 @@ def judged(
         jobs, progress: as in `verify`.
     """
     report = verify(logs, means, jobs, progress)
-    read_from = [(file, each) for each in means.samples.values()]
+    read_from = [(file, series) for series in means.samples.values()]
     files = {source.signal: source.file for source in means.declared.sources}
     of_files = (means.declared.of_files.get(mission.file, {}) for mission in report.missions)
     read_from += [(files[signal], series) for samples in of_files for signal, series in samples.items()]
@@ -199,7 +199,7 @@ def judged_live(running: Watched, address: str, means: Means, requested: Sequenc
 
 def _with_problems(report: VerdictReport, missions: Sequence[Candidate], requested: Sequence[str]) -> Verification:
     """The report with what makes its verdicts incomplete."""
-    written = [each for each in missions if not isinstance(each, OwnTree)]
+    written = [mission for mission in missions if not isinstance(mission, OwnTree)]
     if len(written) < len(missions):
         report = replace(report, remarks=(f"nothing is judged: {NO_MISSION}", *report.remarks))
     problems = (*report.problems, *missing_verdicts(report, requested), *missions_with_errors(report, written))

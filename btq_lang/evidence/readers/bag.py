@@ -32,21 +32,23 @@ class Bag:
     """An open bag: its topics with their types, and notes about the file, complete when the messages have been read."""
 
     def __init__(self, storages: list[Any], remarks: list[str]) -> None:
-        self.connections: Final[list[Connection]] = [each for storage in storages for each in storage.connections]
+        self.connections: Final[list[Connection]] = [
+            connection for storage in storages for connection in storage.connections
+        ]
         self.remarks: Final = remarks
         self._storages: Final = storages
-        self._packed: Final = [each for each in storages if _unpacks_by_itself(each)]
+        self._packed: Final = [storage for storage in storages if _unpacks_by_itself(storage)]
 
     def of_type(self, name: str) -> list[Connection]:
         """The topics of a type."""
-        return [each for each in self.connections if each.msgtype == name]
+        return [connection for connection in self.connections if connection.msgtype == name]
 
     def messages(self, connections: Collection[Connection]) -> Iterator[tuple[str, int, Any]]:
         """The messages of topics in order of reception: topic, time of reception in ns, message."""
-        decoders = {each.msgtype: _decoder(each) for each in connections}
+        decoders = {connection.msgtype: _decoder(connection) for connection in connections}
         unread = 0
         for storage in self._storages:
-            raw = storage.messages([each for each in storage.connections if each in connections])
+            raw = storage.messages([connection for connection in storage.connections if connection in connections])
             while True:
                 try:
                     connection, received, data = next(raw)
@@ -95,20 +97,20 @@ def _folder(path: str, remarks: list[str]) -> list[Any]:
     """The storages of a folder; if its metadata and files disagree, as in a truncated recording, one for each file."""
     from rosbags.rosbag2 import Reader
 
-    databases = sorted(each for each in os.listdir(path) if each.endswith(".db3"))
-    if any(sqlite.is_unfinished(os.path.join(path, each)) for each in databases):  # `rosbags` does not read that
-        return [_file(os.path.join(path, each), remarks) for each in databases]
+    databases = sorted(name for name in os.listdir(path) if name.endswith(".db3"))
+    if any(sqlite.is_unfinished(os.path.join(path, name)) for name in databases):  # `rosbags` does not read that
+        return [_file(os.path.join(path, name), remarks) for name in databases]
     storage = Reader.STORAGE_PLUGINS["dir"](Path(path))
     try:
         storage.open()
     except OSError:
         raise
     except Exception as error:  # whatever the metadata's fault is
-        files = sorted(each for each in os.listdir(path) if each.endswith((".mcap", ".db3")))
+        files = sorted(name for name in os.listdir(path) if name.endswith((".mcap", ".db3")))
         if not files:
             raise NotALog(f"the bag cannot be read: {_message(error)}") from error
         remarks.append(f"its files are read without {METADATA}: {_message(error)}")
-        return [_file(os.path.join(path, each), remarks) for each in files]
+        return [_file(os.path.join(path, name), remarks) for name in files]
     return [storage]
 
 

@@ -57,17 +57,17 @@ def _table(names: list[str], time: str, rows: Iterable[tuple[str, Sequence[objec
     """The columns of a table; rows: each with its place in the file."""
     if len(names) < 2:
         raise NoSamples(_NAMES)
-    at = names.index(_known(time, names)) if time else 0
-    others = [name for column, name in enumerate(names) if column != at]
+    time_column = names.index(_known(time, names)) if time else 0
+    others = [name for column, name in enumerate(names) if column != time_column]
     if twice := next((name for name in others if others.count(name) > 1), None):
         raise NoSamples(f"two columns are named `{twice}`")
-    found = {name: SampleSeries() for name in others}
+    series = {name: SampleSeries() for name in others}
     for place, row in rows:
-        moment = _time(row[at] if at < len(row) else None, place)
+        moment = _time(row[time_column] if time_column < len(row) else None, place)
         for column, value in enumerate(row[: len(names)]):
-            if column != at and isinstance(value, bool | int | float | str) and is_sample(value):
-                found[names[column]].add(moment, value)
-    return found
+            if column != time_column and isinstance(value, bool | int | float | str) and is_sample(value):
+                series[names[column]].add(moment, value)
+    return series
 
 
 def read_sources(sources: Iterable[SignalSource], folder: str) -> dict[str, SampleSeries]:
@@ -78,7 +78,7 @@ def read_sources(sources: Iterable[SignalSource], folder: str) -> dict[str, Samp
         OSError: it cannot be read.
     """
     files: dict[tuple[str, str], dict[str, SampleSeries]] = {}
-    found: dict[str, SampleSeries] = {}
+    series_by_signal: dict[str, SampleSeries] = {}
     for source in sources:
         if not source.file:
             continue
@@ -89,10 +89,10 @@ def read_sources(sources: Iterable[SignalSource], folder: str) -> dict[str, Samp
             column = files[key][_known(source.column, files[key])]
         except NoSamples as error:
             raise NoSamples(f"{source.file}: {error}") from error
-        series = found[source.signal] = SampleSeries(source.unit)
+        series = series_by_signal[source.signal] = SampleSeries(source.unit)
         for time, value in zip(column.times, column.values, strict=True):
             series.add(time, scaled(value, source))
-    return found
+    return series_by_signal
 
 
 def scaled(value: SampleValue | None, source: SignalSource) -> SampleValue | None:

@@ -58,7 +58,7 @@ class BagDatabase(ExitStack):
         Raises:
             sqlite3.Error: the next one cannot be read.
         """
-        wanted = {each.id: each for each in connections}
+        wanted = {connection.id: connection for connection in connections}
         for topic, received, data in self._database.execute(
             "SELECT topic_id, timestamp, data FROM messages ORDER BY id"
         ):

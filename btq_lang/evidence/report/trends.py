@@ -89,8 +89,8 @@ def _trends(runs: Sequence[Row], verdicts: Sequence[Row], steps: Steps) -> Trend
 
 
 def _values(rows: Sequence[Row], steps: Steps, value: Callable[[Row], float]) -> Values:
-    found = {int(row["place"]): float(value(row)) for row in rows}
-    return tuple(found.get(place) for place in range(steps.number))
+    by_place = {int(row["place"]): float(value(row)) for row in rows}
+    return tuple(by_place.get(place) for place in range(steps.number))
 
 
 class MeasureTrend(Record):
@@ -174,8 +174,8 @@ def _measured(
         levels.append(("goal", clause["goal_si"]))
     unit = parse_unit(clause["unit"]) if clause["unit"] else ONE
     assert unit is not None, "a unit of the table, as it was written"
-    of = clause["requirement"], clause["clause"], clause["node"], unit
-    return MeasureTrend(*of, by, starts, worst, medians, tuple(levels), labels)
+    whose = clause["requirement"], clause["clause"], clause["node"], unit
+    return MeasureTrend(*whose, by, starts, worst, medians, tuple(levels), labels)
 
 
 _DAY: Final = 86_400_000_000  # µs

@@ -45,8 +45,8 @@ def write_parquet(folder: str, common: Mapping[str, str]) -> None:
                 cursor.execute("RESET memory_limit")
                 cursor.execute(_copy(folder, table, common))
     except duckdb.Error as error:
-        if found := re.search(r'"errno":"(\d+)"', str(error)):
-            raise OSError(int(found[1]), os.strerror(int(found[1]))) from error
+        if match := re.search(r'"errno":"(\d+)"', str(error)):
+            raise OSError(int(match[1]), os.strerror(int(match[1]))) from error
         raise NoEngine(" ".join(str(error).split())) from error
     finally:
         cursor.close()
@@ -66,7 +66,7 @@ def asked(store: str, label: str | None = None) -> Callable[[str], list[dict[str
     spilled = os.path.join(tempfile.gettempdir(), f"btq-{uuid.uuid4().hex}")
     connection = duckdb.connect(config={"memory_limit": _MOST, "temp_directory": spilled})
 
-    def found_by(question: str) -> Any:
+    def executed(question: str) -> Any:
         try:
             return connection.execute(question)
         except duckdb.OutOfMemoryException:  # not all that a question needs can be on the disk
@@ -75,9 +75,9 @@ def asked(store: str, label: str | None = None) -> Callable[[str], list[dict[str
 
     def ask(question: str) -> list[dict[str, Any]]:
         try:
-            found = found_by(question)
-            names = [str(column[0]) for column in found.description]
-            return [dict(zip(names, row, strict=True)) for row in found.fetchall()]
+            result = executed(question)
+            names = [str(column[0]) for column in result.description]
+            return [dict(zip(names, row, strict=True)) for row in result.fetchall()]
         except duckdb.Error as error:
             raise NoEngine(damage(connection, store) or f"{store}: {' '.join(str(error).split())}") from error
 
@@ -178,11 +178,11 @@ def asked_by(url: str, store: str) -> Callable[[str], list[dict[str, Any]]]:
             lacking = {name: ibis.null("float64") for name in names if name not in tables[table].columns}
             tables[table] = tables[table].mutate(**lacking) if lacking else tables[table]
         left_out = ibis.memtable(ask(REPEATED), schema={"log": "string", "run": "int32"})
-        kept = {name: each.anti_join(left_out, ["log", "run"]) for name, each in tables.items() if name != "clauses"}
+        kept = {name: rows.anti_join(left_out, ["log", "run"]) for name, rows in tables.items() if name != "clauses"}
         kept["clauses"] = tables["clauses"].semi_join(kept["runs"], ["log", "mission", "robot"])
         repeated = tables["runs"].semi_join(left_out, ["log", "run"])
-        for table, found in {"repeated": repeated, **kept}.items():  # what names a table, before that is replaced
-            connection.create_view(table, found, overwrite=True)
+        for table, view in {"repeated": repeated, **kept}.items():  # what names a table, before that is replaced
+            connection.create_view(table, view, overwrite=True)
     except NoEngine:
         raise
     except Exception as error:  # likewise
