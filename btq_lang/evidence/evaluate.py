@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Final, Protocol
 from btq_lang.evidence.clause import JudgedClause
 from btq_lang.evidence.clause_findings import ClauseFindings
 from btq_lang.evidence.coverage import Contexts, Coverage
-from btq_lang.evidence.explain import Explainer
+from btq_lang.evidence.explain import Explainer, FailureOrigin
 from btq_lang.evidence.guards import Guards
 from btq_lang.evidence.history import History, Nearby
-from btq_lang.evidence.model import ROOT, Activation, LogSession, Outcome, SampleSeries
+from btq_lang.evidence.model import ROOT, Activation, LoggedTree, LogSession, Outcome, SampleSeries
 from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.odds import Limits
 from btq_lang.evidence.outline import demands, open_clauses, outline, unread_clauses
@@ -143,7 +143,7 @@ class MissionEvaluation:
         self,
         session: LogSession,
         joined: Joined,
-        given: Mapping[str, SampleSeries],
+        samples: Mapping[str, SampleSeries],
         first_run: int,
         source: str,
         run_ended: Callable[[Activation], None] = lambda root: None,
@@ -151,30 +151,19 @@ class MissionEvaluation:
         """Judge the runs of a session; returns how many there are.
 
         Args:
-            given: samples by signal, which override the log's own.
+            samples: by signal; they override the log's own.
             first_run: the number of the first run.
             source: the file, as people read it.
             run_ended: called with the root's activation at the end of each run.
         """
-        tree = session.tree
-        signals = Signals(given, session.samples)
-        history = History()
-        nearby = cache(lambda uid: Nearby(uid, joined, history))
-        at = grouped((uid, each) for each in self._clauses for uid in each.join(joined, signals, history, nearby))
-        judged = {uid: (clauses, tree.nodes[uid].path, nearby(uid)) for uid, clauses in at.items()}
-        enforcing = joined.enforcing()
-        guards = Guards(tree, enforcing, at, joined.unjoined())
-        over_runs = any(clause.is_over_run for clause in self._clauses)
-        explainer = Explainer(tree, at, signals, has_clauses_over_runs=over_runs)
-        for clause in self._clauses:
-            clause.explainer = explainer
+        opened = _OpenSession(self._clauses, session.tree, joined, Signals(samples, session.samples))
+        explainer, history, concerned = opened.explainer, opened.history, opened.guards.concerned
         for listener in self.listeners:
             listener.join(joined, self._clauses)
-        self._contexts.join(joined, signals, history)
+        self._contexts.join(joined, opened.signals, history)
         coverage = self.findings.coverage
-        coverage.expect(tree, joined.written())
-        begin: int | None = None
-        end = 0
+        coverage.expect(session.tree, joined.written())
+        times: tuple[int, int] | None = None  # when the first run began, and when the last one ended
         runs = 0
         for activation in activations(session):
             coverage.count(activation)
@@ -184,59 +173,59 @@ class MissionEvaluation:
                 self._open_run.see(activation)
             for listener in self.listeners:
                 listener.see(activation)
-            if activation.uid in guards.concerned:  # few nodes are
-                settled, refusal = guards.see(activation)
-                if refusal is not None:
-                    clauses, path, _ = judged[refusal.uid]
-                    for clause in clauses:
-                        clause.refuse(refusal, path)
-                for ended, guard in settled:
-                    clauses, path, others = judged[ended.uid]
-                    observed = Observed(signals, others, ended.started, ended.ended, ended.timing != "latest")
-                    for clause in clauses:
-                        clause.judge(ended, guard, observed, path)
+            if activation.uid in concerned:  # few nodes are
+                opened.judge(activation)
             if activation.uid == ROOT:
                 run = Run(first_run + runs, source, activation.begin, activation.end)
                 runs += 1
-                begin = activation.begin if begin is None else begin
-                end = activation.end
-                self.findings.outcomes[activation.outcome] += 1
-                began = origin.uid if origin is not None else None
-                if began in enforcing:
-                    self.findings.ended_by[guards.last or enforcing[began]] += 1
-                guards.end_run()
-                repeats = coverage.retries.now, coverage.recoveries.now
-                coverage.end_run(run.number, began)
-                for clause in self._clauses:
-                    clause.end_run(run, activation)
-                for listener in self.listeners:
-                    listener.end_run(activation, *repeats, began)
-                self._contexts.end_run(activation)
-                history.clear()
-                explainer.end_run()
-                if self._open_run is not None:
-                    self._open_run.end(run, tree, self.findings.clauses, signals)
-                signals.forget_before(end)
-                self._ran(run.number)
+                times = times[0] if times is not None else run.begin, run.end
+                self._end_run(run, activation, origin, opened)
                 run_ended(activation)
-        session.remarks.extend(remark for each in self._clauses for remark in each.remarks(tree, session.keeping))
+        begin, end = times or (0, 0)
+        session.remarks.extend(
+            remark for clause in self._clauses for remark in clause.remarks(session.tree, session.keeping)
+        )
         session.remarks.extend(coverage.clock_remarks())
-        session.remarks.extend(signals.remarks(self._signals, begin or 0, end))
+        session.remarks.extend(opened.signals.remarks(self._signals, begin, end))
         self.findings.add_source(
             EvidenceFile(
                 file=source,
                 runs=runs,
                 first_run=first_run,
-                begin=begin,
+                begin=begin if runs else None,
                 end=end if runs else None,
                 identity=joined.how,
                 joined=joined.number,
-                nodes=len(tree.nodes),
+                nodes=len(session.tree.nodes),
                 remarks=tuple(session.remarks),
                 unjoined=tuple(joined.differences()),
             )
         )
         return runs
+
+    def _end_run(self, run: Run, root: Activation, origin: FailureOrigin | None, opened: _OpenSession) -> None:
+        """Judge the open run, which has ended.
+
+        Args:
+            root: the activation of its root.
+            origin: where its failure began, if it failed.
+        """
+        began = origin.uid if origin is not None else None
+        self.findings.outcomes[root.outcome] += 1
+        if began in opened.enforcing:
+            self.findings.ended_by[opened.guards.last or opened.enforcing[began]] += 1
+        coverage = self.findings.coverage
+        repeats = coverage.retries.now, coverage.recoveries.now
+        coverage.end_run(run.number, began)
+        for clause in self._clauses:
+            clause.end_run(run, root)
+        for listener in self.listeners:
+            listener.end_run(root, *repeats, began)
+        self._contexts.end_run(root)
+        if self._open_run is not None:
+            self._open_run.end(run, opened.tree, self.findings.clauses, opened.signals)
+        opened.end_run(run.end)
+        self._ran(run.number)
 
     def end(self) -> None:
         """Tell the listeners that the log has been read."""
@@ -279,6 +268,51 @@ class MissionEvaluation:
             recoveries=findings.coverage.recoveries.summary(),
             outline=outline(requirements) if self._with_measures else "",
         )
+
+
+class _OpenSession:
+    """A session while it is judged.
+
+    Attributes:
+        enforcing: the guards among its nodes, each with its requirement.
+    """
+
+    def __init__(self, clauses: Sequence[JudgedClause], tree: LoggedTree, joined: Joined, signals: Signals) -> None:
+        """Join the clauses with the nodes of the session."""
+        self.tree: Final = tree
+        self.signals: Final = signals
+        self.history: Final = History()
+        nearby = cache(lambda uid: Nearby(uid, joined, self.history))
+        clauses_of = grouped(
+            (uid, clause) for clause in clauses for uid in clause.join(joined, signals, self.history, nearby)
+        )
+        self._judged: Final = {uid: (own, tree.nodes[uid].path, nearby(uid)) for uid, own in clauses_of.items()}
+        self.enforcing: Final = joined.enforcing()
+        self.guards: Final = Guards(tree, self.enforcing, clauses_of, joined.unjoined())
+        over_runs = any(clause.is_over_run for clause in clauses)
+        self.explainer: Final = Explainer(tree, clauses_of, signals, has_clauses_over_runs=over_runs)
+        for clause in clauses:
+            clause.explainer = self.explainer
+
+    def judge(self, activation: Activation) -> None:
+        """Judge by their clauses the activations that this one settles; it is of a node that guards concern."""
+        settled, refusal = self.guards.see(activation)
+        if refusal is not None:
+            clauses, path, _ = self._judged[refusal.uid]
+            for clause in clauses:
+                clause.refuse(refusal, path)
+        for ended, guard in settled:
+            clauses, path, others = self._judged[ended.uid]
+            observed = Observed(self.signals, others, ended.started, ended.ended, ended.timing != "latest")
+            for clause in clauses:
+                clause.judge(ended, guard, observed, path)
+
+    def end_run(self, end: int) -> None:
+        """Forget the open run, which has ended at this time."""
+        self.guards.end_run()
+        self.history.clear()
+        self.explainer.end_run()
+        self.signals.forget_before(end)
 
 
 def _reading(mission: Candidate, clauses: Sequence[JudgedClause]) -> Iterator[tuple[str, object]]:

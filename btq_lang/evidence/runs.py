@@ -44,14 +44,13 @@ def activations(session: LogSession) -> Iterator[Activation]:
     """The activations of a session, each as it ends; those of the root are the runs."""
     tree = session.tree
     begins = Begins(tree)
-    nodes = _OpenNodes(tree, begins)
+    odd = Oddities()
+    nodes = _OpenNodes(tree, begins, odd, session.keeping)
     parent = tree.parent
     leaves = tree.leaves
     by_others = begins.others
-    begun, running, unseen = nodes.begun, nodes.running, nodes.unseen
-    odd = Oddities()
+    begun, running, completed, unseen = nodes.begun, nodes.running, nodes.completed, nodes.unseen
     idle: tuple[int, Moment] | None = None  # a halt that may turn out to be part of the node's own completion
-    completed: set[int] = set()  # the nodes that have completed and have not been reset since
     is_reset_written = False
     row, now = 0, (0, 0)
     until = now  # nodes that are active at `now` are still active then
@@ -65,19 +64,13 @@ def activations(session: LogSession) -> Iterator[Activation]:
                 if uid is UNTIL:
                     until = time, row
                 if uid is GAP:
-                    if ROOT in begun:
-                        yield from nodes.end(ROOT, max(now, until), "O", "lost", below="O")
-                    completed.clear()
-                    unseen.update(parent)
-                    begins.lose()
+                    yield from nodes.lose(max(now, until))
             else:
                 odd.count("rows with an unknown node or status, left out", time)
             continue
         before, now = now, (time, row)
         if time < before[0]:
-            odd.count("rows earlier than the row before them, so durations across them are unknown", time)
-            nodes.distrust()
-            begins.lose()
+            nodes.distrust(time)
         completes = status in _RESULTS
         if idle is not None:
             halted, then = idle
@@ -90,21 +83,13 @@ def activations(session: LogSession) -> Iterator[Activation]:
         is_of_tick = status == RUNNING or (completes and not (uid in running and uid in leaves))
         if status == RUNNING:
             if uid in running:
-                if uid == ROOT:
-                    yield from nodes.end(ROOT, (before[0], row - 1), "O", below="O")
-                else:
-                    odd.count(_UNWRITTEN, time)
-                    yield from nodes.end(uid, now, "H", "latest")
+                yield from nodes.end_unwritten(uid, before[0], now)
             running.add(uid)
             if uid not in begun:
                 nodes.begin(uid, now, status)
-                if uid in completed:
-                    session.keeping.add(parent[uid])
         elif completes:
             if uid not in begun:
                 nodes.begin(uid, now, status)
-                if uid in completed:
-                    session.keeping.add(parent[uid])
             completed.add(uid)
             ended = nodes.end(uid, now, "S" if status == SUCCESS else "F")
             if len(ended) > 1:
@@ -138,16 +123,21 @@ class _OpenNodes:
     Attributes:
         begun: when each began at the latest.
         running: those that have written RUNNING.
+        completed: those that have completed and have not been reset since.
         unseen: those of which it is unknown whether they are active.
     """
 
-    def __init__(self, tree: LoggedTree, begins: Begins) -> None:
+    def __init__(self, tree: LoggedTree, begins: Begins, odd: Oddities, keeping: set[int]) -> None:
+        """No node is active; `keeping`: nodes that start a child again without resetting it are added."""
         self.begun: Final[dict[int, Begin]] = {}
         self.running: Final[set[int]] = set()
+        self.completed: Final[set[int]] = set()
         self.unseen: Final[set[int]] = set()
         self._late: Final[set[int]] = set()  # those that began before their time in `begun`
         self._tree: Final = tree
         self._begins: Final = begins
+        self._odd: Final = odd
+        self._keeping: Final = keeping
         self._distrusted: Final[set[int]] = set()
 
     def begin(self, uid: int, now: Moment, status: int) -> None:
@@ -158,6 +148,8 @@ class _OpenNodes:
             beginning.append(above)
         for node in reversed(beginning):
             begun[node] = self._begins.begin_of(node, now, status, uid, begun)
+        if uid in self.completed:
+            self._keeping.add(parent[uid])
 
     def see(self, uid: int, now: Moment, status: int) -> None:
         """Conclude from a row which nodes were active before it."""
@@ -198,9 +190,30 @@ class _OpenNodes:
         self._distrusted.discard(uid)
         self._late.discard(uid)
 
-    def distrust(self) -> None:
-        """Mark the durations of all active nodes as unknown: the clock was set back."""
+    def end_unwritten(self, uid: int, before: int, now: Moment) -> list[Activation]:
+        """End a running node that starts again: its end has no row.
+
+        Args:
+            before: the time of the row before this one; a run ends there.
+        """
+        if uid == ROOT:
+            return self.end(ROOT, (before, now[1] - 1), "O", below="O")
+        self._odd.count(_UNWRITTEN, now[0])
+        return self.end(uid, now, "H", "latest")
+
+    def distrust(self, time: int) -> None:
+        """Mark the durations of all active nodes as unknown: the clock was set back to this time."""
+        self._odd.count("rows earlier than the row before them, so durations across them are unknown", time)
         self._distrusted.update(self.begun)
+        self._begins.lose()
+
+    def lose(self, now: Moment) -> list[Activation]:
+        """End the open run, of which later rows were lost; from now on it is unknown which nodes are active."""
+        ended = self.end(ROOT, now, "O", "lost", below="O") if ROOT in self.begun else []
+        self.completed.clear()
+        self.unseen.update(self._tree.parent)
+        self._begins.lose()
+        return ended
 
     def _activation(self, uid: int, now: Moment, outcome: Outcome, timing: Timing) -> Activation:
         self.running.discard(uid)
