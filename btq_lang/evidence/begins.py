@@ -1,6 +1,6 @@
 """When nodes began, as far as the rows of a log say.
 
-One invariant: a begin is called known only if nothing but the node's own `tick()` lies between it and the node's first
+One invariant: a begin counts as known only if nothing but the node's own `tick()` separates it from the node's first
 row.
 
 The engine does not log when it ticks a node. A node that completes at once leaves one row, its result; an asynchronous
@@ -49,7 +49,7 @@ class Begins:
         built_in = {uid for uid, node in tree.nodes.items() if node.kind in BUILTINS}
         self._writes_first: Final = (self._into | nav2 | built_in) - tree.leaves
         self._parallel: Final = {uid for uid, how in one_tick.items() if how == "unskipped"}
-        # Of each Parallel the last child that has written a row in the activation that this row showed.
+        # By Parallel: the row that showed its activation, and the last child that has written a row since.
         self._ticked: Final[dict[int, tuple[Moment, int]]] = {}
         self._before: tuple[Moment, int, bool] | None = None  # its node, and whether it is RUNNING
         self.others: Final[list[tuple[int, int, bool]]] = []
@@ -69,7 +69,7 @@ class Begins:
         self.others.clear()
 
     def begin_of(self, uid: int, now: Moment, status: int, writes: int, begun: Mapping[int, Begin]) -> Begin:
-        """When a node began whose first row is this one, its own or one below it.
+        """When a node began, by its first row, which the node itself or one below it writes.
 
         Args:
             writes: the node that writes it.

@@ -123,7 +123,7 @@ class JudgedClause:
         self._signals: Signals
         self._history: History
         self._nearby: Callable[[int], Nearby]
-        # Until it is known what else ran meanwhile.
+        # Activations that wait until the end of the run shows what else ran meanwhile.
         self._waiting: Final[list[tuple[Activation, Observed, str, Guard | None]]] = []
         self._refused: Final[list[RefusedStart]] = []  # in the open run, of the clause's nodes
         self._around: Final[list[int]] = []  # a guard of a span is around the parent of its nodes
@@ -142,7 +142,7 @@ class JudgedClause:
         self._records.append(record)
 
     def join(self, joined: Joined, signals: Signals, history: History, nearby: Callable[[int], Nearby]) -> list[int]:
-        """Begin another log; returns the nodes of it that the clause holds for.
+        """Begin another log; returns those of its nodes that the clause holds for.
 
         Args:
             nearby: resolves the other nodes that a clause names, relative to its node.
@@ -375,7 +375,7 @@ class JudgedClause:
     def _judged_as(
         self, claim: ResolvedClaim, activation: Activation, observed: Observed, counts: bool | UnknownValue
     ) -> Judgement | None:
-        """The same, of one that began when it says, and is in scope or not."""
+        """The judgement of an activation with this begin; `counts`: whether it is in scope."""
         if counts is False:
             return None
         assert self._judge is not None, "the clause is judged by its activations"
@@ -389,10 +389,10 @@ class JudgedClause:
         return judgement
 
     def _measure(self, extremes: Sequence[Sequence[Judgement | None]], activation: Activation) -> None:
-        """Note with which bounds the judgements of an activation, or of a run, are what.
+        """Add to the margins with which bounds an activation, or a run, is kept, violated or unknown.
 
         Args:
-            extremes: those with a bound that every measure keeps, and with one that none does.
+            extremes: the judgements with a bound that every measure keeps, and with one that none keeps.
         """
         assert self._edge is not None, "its bound may be moved"
         within, beyond = extremes
@@ -429,7 +429,7 @@ class JudgedClause:
             record(judgement, begin, end, path)
 
     def _own(self, joined: Joined) -> list[tuple[int, ...]]:
-        """The nodes of a log that it holds for, grouped: the nodes of a group are judged as one."""
+        """The nodes of a log that the clause holds for, in groups that are judged as one node."""
         subject = self._subject
         if self._is_about_mission and not joined.build.is_main:  # which did not run as a whole
             return []
@@ -523,7 +523,7 @@ class JudgedClause:
         )
 
     def marks(self) -> dict[str, Quantity]:
-        """What measured values are compared with, as of `Histogram`, as far as it does not vary."""
+        """What measured values are compared with, as in `Histogram`, as far as it does not vary."""
         limit, goal = self.claim.limit, self.requirement.goal
         marks = {"lower bound": limit.value, "upper bound": limit.upper} if limit is not None and limit.upper else {}
         return {kind: value for kind, value in {**marks, "goal": goal}.items() if isinstance(value, Quantity)}

@@ -1,4 +1,4 @@
-"""What was found of a clause in logs, counted, and the verdict that it comes to.
+"""The counts of a clause in logs, and the verdict that they give.
 
 One invariant: a verdict depends on counts alone, so those of several logs can be added, and judged by another process.
 In a sliding window, `over last N runs` or `over last 8 h`, only the judgements in it, the latest ones, are kept,
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 class ClauseFindings:
-    """What was found of a clause in some logs; it refers to no text, so it may go to another process.
+    """The counts of a clause in some logs; they refer to no text, so they may go to another process.
 
     Attributes:
         paths: of its nodes, as an ordered set.
@@ -51,7 +51,7 @@ class ClauseFindings:
         self.left_out: Final[Counter[str]] = Counter()
 
     def add(self, other: ClauseFindings, runs: int) -> None:
-        """Add what was found in later logs; `runs`: how many runs were before them."""
+        """Add the findings of later logs; `runs`: how many runs were before them."""
         theirs: Any = other.tally  # one clause has tallies of one class
         if other.timeline is not None and theirs.is_worse_than(self.tally, other.timeline.run):
             self.timeline = replace(other.timeline, run=other.timeline.run + runs)
@@ -68,7 +68,7 @@ def verdict_of(tally: Tally, missing: str, has_run: bool) -> tuple[Verdict, str]
     """The verdict on a clause, and why it is unknown, undecided or never exercised; else empty.
 
     Args:
-        missing, has_run: as of `ClauseFindings`.
+        missing, has_run: as in `ClauseFindings`.
     """
     verdict = tally.verdict()
     if missing and verdict != VIOLATED:
@@ -81,7 +81,9 @@ def verdict_of(tally: Tally, missing: str, has_run: bool) -> tuple[Verdict, str]
 
 
 class Recent:
-    """Counts the last activations, the last runs with a judgement, or a last period; what is cut off, in all logs."""
+    """Counts the last activations, the last runs with a judgement, or a last period; what is cut off counts in all
+    logs.
+    """
 
     def __init__(self, window: ResolvedWindow, odds: ResolvedOdds | None, confidence: float | None) -> None:
         self.cut_off = 0

@@ -41,12 +41,12 @@ if TYPE_CHECKING:
 
 
 class LogFindings:
-    """What was found in some logs of a mission; it refers to no text, so it may go to another process.
+    """The findings in some logs of a mission; they refer to no text, so they may go to another process.
 
     Attributes:
         clauses: in the order in which a `MissionEvaluation` has them.
         contexts: in how many runs each context held, and in how many others that is unknown.
-        ended_by: how many failed runs were ended by the guard of which requirement.
+        ended_by: how many failed runs the guard of each requirement ended.
     """
 
     def __init__(self, clauses: Sequence[ClauseFindings], contexts: tuple[Counter[str], Counter[str]]) -> None:
@@ -58,7 +58,9 @@ class LogFindings:
         self.coverage: Final = Coverage()
 
     def add(self, other: LogFindings, runs: int) -> None:
-        """Add what was found in later logs, whose runs are numbered by themselves, after so many runs."""
+        """Add the findings of later logs, whose runs have numbers of their own; `runs`: how many runs were before
+        them.
+        """
         for clause, findings in zip(self.clauses, other.clauses, strict=True):
             clause.add(findings, runs)
         for own, theirs in zip(self.contexts, other.contexts, strict=True):
@@ -70,7 +72,7 @@ class LogFindings:
         self.coverage.add_all(other.coverage, runs)
 
     def leave_out(self, runs: Sequence[int]) -> None:
-        """Name runs of the last file, by their numbers there, that another one has too."""
+        """Note which runs of the last file, by their numbers there, are left out because another file has them."""
         self.sources[-1] = replace(self.sources[-1], left_out=(*self.sources[-1].left_out, *runs))
 
     def add_source(self, source: EvidenceFile) -> None:
@@ -90,7 +92,7 @@ class LogFindings:
 
 
 class EvaluationListener(Protocol):
-    """Something that is given all that is found while it is found."""
+    """Receives what an evaluation finds, as soon as it is found."""
 
     def join(self, joined: Joined, clauses: Sequence[JudgedClause]) -> None:
         """A session begins."""
@@ -106,7 +108,7 @@ class EvaluationListener(Protocol):
 
 
 class MissionEvaluation:
-    """Judges a mission's requirements while its logs are read; gives listeners all that is found.
+    """Judges a mission's requirements while its logs are read, and tells listeners what it finds.
 
     Attributes:
         findings: what the verdicts need of the logs so far.
@@ -125,7 +127,7 @@ class MissionEvaluation:
 
         Args:
             ran: called with the number of each run after it is judged.
-            with_timelines, limits, with_measures: as of `judging.Means`.
+            with_timelines, limits, with_measures: as in `judging.Means`.
         """
         self._ran: Final = ran
         self.listeners: Final = [*listeners]
@@ -252,7 +254,7 @@ class MissionEvaluation:
         )
 
     def result(self) -> MissionVerdicts:
-        """All that was found so far."""
+        """The verdicts and statistics so far."""
         requirements, findings = self.mission.requirements, self.findings
         held, unknown = findings.contexts
         return MissionVerdicts(

@@ -1,4 +1,4 @@
-"""What is said of very many logs, in a few lines for people; documents for programs have all of it."""
+"""Remarks on very many logs, in a few lines for people; documents for programs have all of them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from btq_lang.util.text import counted
 
 
 def folded(lines: Iterable[str]) -> Iterator[str]:
-    """Lines of which many that differ only in names and numbers are one, with how many more there are."""
+    """The lines; many that differ only in names and numbers are one, with how many more there are."""
     for alike in grouped((_VARYING.sub("#", line), line) for line in lines).values():
         if len(alike) <= _MOST:
             yield from alike
@@ -22,7 +22,7 @@ def folded(lines: Iterable[str]) -> Iterator[str]:
 
 
 def folded_sources(sources: Sequence[EvidenceFile]) -> Sequence[EvidenceFile]:
-    """Logs of which many whose nodes were found in the same way are one."""
+    """The logs; many whose nodes were found in the same way are one."""
     if len(sources) <= _MOST:
         return sources
     alike = grouped(((source.identity, source.joined, source.nodes), source) for source in sources).values()

@@ -94,7 +94,7 @@ class Nearby:
         return all(activation.is_begin_known for uids in known for activation in self._history.activations_of(uids))
 
     def runs(self, target: NodeTarget, moment: Moment, is_early: bool) -> bool | UnknownValue:
-        """Whether a node runs; `is_early`: as of `History.runs`."""
+        """Whether a node runs; `is_early`: as in `History.runs`."""
         uids = self._uids[target]
         if isinstance(uids, UnknownValue):
             return uids

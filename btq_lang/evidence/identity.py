@@ -50,7 +50,7 @@ class Candidate:
         self._builds: Final[dict[tuple[int, str], Build]] = {}
 
     def __reduce__(self) -> tuple[object, ...]:
-        """What makes it again in a process that does not share the memory of this one."""
+        """How a process that does not share memory with this one makes the mission again."""
         return Candidate, (self.workspace, self.path, self.name, self.side)
 
     @cached_property
@@ -59,7 +59,7 @@ class Candidate:
         return {id(node): index for index, node in enumerate(self.requirements.nodes.all)}
 
     def builds(self, tree: str = "") -> Iterator[Build]:
-        """What `btq build` makes of it, without options first, and a program runs.
+        """The builds of the mission that a program may run, the one without options first.
 
         Args:
             tree: the one that the program creates; empty: the main tree.  None is made where there is no such tree.
@@ -149,7 +149,7 @@ class Joined(Record):
 
 
 class _BuiltMission(Record):
-    """What a build makes of a mission.
+    """A mission as it was built.
 
     Attributes:
         how: with which options.
@@ -164,7 +164,7 @@ class _BuiltMission(Record):
 
 
 class Build(Record):
-    """What runs of a build; `how` names its options, and the tree if it is not the main one."""
+    """A tree of a build as it runs; `how`: the options of the build, and the tree unless it is the main one."""
 
     how: str
     running: RunningTree
@@ -207,7 +207,7 @@ def join(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:
 
 
 def unlike(uid: int, logged: str, written: str) -> str:
-    """That a node has different names in the log and in the mission; empty: it is not there."""
+    """How a node is named in the log and in the mission, in words; `written`: empty if the mission lacks it."""
     in_mission = f"`{written}` in the mission" if written else "not in the mission"
     return f"node {uid} is `{logged}` in the log and {in_mission}"
 

@@ -46,7 +46,7 @@ class Means(Record):
         remarks: notes about these bags.
         with_timelines: include the run of the worst violation of each clause.
         with_measures: include what is needed to judge clauses with other bounds.
-        keeping: where what is found in each log is kept; None: nowhere.
+        keeping: where the findings in each log are kept; None: nowhere.
         limits: which limits of probabilities decide.
         left_out: the runs that are counted in another session, by log and number of the session: the number of each run
             there, from 0, and of its first and last row.
@@ -67,7 +67,7 @@ class Means(Record):
 
 
 class JudgedLog(Record):
-    """What was found in a log.
+    """The findings in a log.
 
     Attributes:
         runs: how many were judged.
@@ -89,7 +89,7 @@ class JudgedLog(Record):
 def judge(
     log: str, means: Means, ran: Callable[[int], None] = lambda number: None, running: Watched | None = None
 ) -> JudgedLog:
-    """Judge the runs of a log, and keep what was found in the store, if there is one.
+    """Judge the runs of a log, and keep the findings in the store, if there is one.
 
     Args:
         ran: called with the number of each run after it is judged.
@@ -202,7 +202,7 @@ def rows_of(log: str, means: Means) -> Sequence[LoggedRows]:
 
 
 class Judging:
-    """Adds up what was found in logs, how many runs were judged, and where they are."""
+    """Adds up the findings in logs, how many runs were judged, and where they are."""
 
     def __init__(self, means: Means) -> None:
         self.runs = 0
@@ -227,7 +227,7 @@ class Judging:
         self._renamed.update(log.renamed)
 
     def report(self) -> VerdictReport:
-        """All that was found."""
+        """The report on all logs that were added."""
         missions = [evaluation.result() for evaluation in self._evaluations.values()]
         judged = tuple(mission for mission in missions if mission.sources)
         renamed = tuple(f"{counted(number, 'log')} had {what}" for what, number in self._renamed.items())
@@ -235,7 +235,7 @@ class Judging:
 
 
 def judge_all(logs: Sequence[str], means: Means, jobs: int) -> Iterator[JudgedLog]:
-    """What was found in each log, in order; if a process is ended from outside, a problem instead of the rest."""
+    """The findings in each log, in order; if a process is ended from outside, a problem instead of the rest."""
     from concurrent.futures.process import BrokenProcessPool
 
     from btq_lang.util.processes import pool

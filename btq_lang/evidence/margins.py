@@ -1,4 +1,4 @@
-"""How many judgements of a clause come to what, for every bound it may have.
+"""How many judgements of a clause are kept, violated or unknown, for every bound that it may have.
 
 A judgement changes at one value of the bound, that of its measure; so the counts are a sum of steps.  Values are given
 as `Edge.across`: a bound that is smaller than a step's value is broken there.
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 if TYPE_CHECKING:
     from btq_lang.evidence.edges import Edge
 
-    # What a judgement is with a bound that it keeps, and at which values it becomes what, the largest first.
+    # The kind of a judgement with a bound that it keeps, and the values at which it changes, the largest first.
     _Judged: TypeAlias = tuple[int, tuple[tuple[float, int], ...]]
 
 
@@ -164,7 +164,7 @@ class Margins:
 
 
 def _of_run(counts: list[int]) -> Counts:
-    """What a run is, if it has so many judgements of each kind."""
+    """The kind of a run that has so many judgements of each kind."""
     of_run = next((kind for kind in (VIOLATED, UNKNOWN, KEPT) if counts[kind]), NOTHING)
     return _sum(_UNITS[of_run], Counts(0, 0, 0, counts[CUT_OFF]))
 

@@ -40,7 +40,7 @@ ROOT: Final = 1  # the uid of the node whose activations are the runs
 
 
 class LiveMark(int):
-    """A uid that no node has: what is known of a running robot between two of its transitions."""
+    """A uid that no node has, for a mark between two transitions of a running robot."""
 
 
 GAP: Final = LiveMark(-1)  # transitions before this one were not seen

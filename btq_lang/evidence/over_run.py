@@ -24,7 +24,7 @@ class Happening(Record):
         until: equal to `at`; later if the log shows only that it happened between them.
         why: why the moment cannot be judged; empty if what follows from both ends may be.
         is_certain: it did happen, rather than may have.
-        order: what it comes before or after others by; None: its moment.
+        order: the moment that orders it among other events; None: its own.
         judged: when scopes and bounds are read; None: at `at`.
     """
 
@@ -37,7 +37,7 @@ class Happening(Record):
 
     @property
     def first(self) -> Moment:
-        """From when on it may have happened, in the order of events."""
+        """The earliest moment at which it may have happened, in the order of events."""
         return self.order or self.at
 
     @property
@@ -47,7 +47,7 @@ class Happening(Record):
 
     @property
     def last(self) -> Moment:
-        """By when it has happened, in the order of events."""
+        """The latest moment at which it may have happened, in the order of events."""
         return self.order or self.until
 
 

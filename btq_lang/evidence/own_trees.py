@@ -1,4 +1,4 @@
-"""The trees in logs as missions without requirements, for logs of which no mission is known."""
+"""The trees in logs as missions without requirements, for logs whose mission is unknown."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class OwnTree(Candidate):
         return OwnTree, self._made_of
 
     def builds(self, tree: str = "") -> Iterator[Build]:
-        """What `btq build` makes of it, and at the end the tree itself, which always is that in the log."""
+        """The builds of the mission, and last the tree itself, which always equals the one in the log."""
         yield from super().builds(tree)
         main = self._document.root.get("main_tree_to_execute") or ""
         if tree in ("", main):

@@ -82,7 +82,7 @@ def _is_named(clause: ClauseVerdict, subject: Subject | None) -> bool:
     return any(without_number(path.rpartition("/")[2]) == wanted for path in paths)
 
 
-_PLACE: Final = re.compile(r" \(\d+ of \d+\)$")  # as of `rows.node_names`
+_PLACE: Final = re.compile(r" \(\d+ of \d+\)$")  # as in `rows.node_names`
 
 
 def _again(demand: Demand, clause: ClauseVerdict, edge: Edge | None) -> Shown:

@@ -111,7 +111,7 @@ LeftOut: TypeAlias = dict[int, LoggedRuns]  # by the run's number in its session
 def repeated(
     sessions: Sequence[LoggedRuns], read: Callable[[str], Sequence[LoggedRows]]
 ) -> list[tuple[LoggedRuns, LeftOut]]:
-    """The sessions of which runs are left out because other sessions hold them.
+    """The sessions with runs that are left out because other sessions hold them.
 
     Args:
         read: the rows of all sessions in a log, in their order; what is not read again is missing.
@@ -155,7 +155,7 @@ def _overlapping(sessions: Sequence[LoggedRuns]) -> list[LoggedRuns]:
 
 
 class _LeftOut:
-    """Sessions, and of each the runs that are left out.
+    """Sessions, and the runs of each that are left out.
 
     Attributes:
         sessions: those with the most rows first.
@@ -177,7 +177,7 @@ class _LeftOut:
                 self._leave_out(index, other, is_first=True)
 
     def _beside(self, index: int) -> list[int]:
-        """The later sessions of which runs that are counted begin or end when some of this one do."""
+        """The later sessions whose counted runs begin or end at the same time as some of this one."""
         others = set()
         for marks, times in zip(self._marks, _TIMES, strict=True):
             for run in self._counted(index):
@@ -215,7 +215,7 @@ class _LeftOut:
 
 
 def without_copies(logs: Sequence[str]) -> tuple[Sequence[str], dict[str, str]]:
-    """The logs without those that have the same bytes as one before, and of each of these which one that is.
+    """The logs without copies of earlier ones, and for each copy the log that it equals.
 
     Only logs of the same size are read for this.
     """

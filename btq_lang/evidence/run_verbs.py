@@ -120,7 +120,7 @@ def _between_limits(
 
 
 def _timed(claim: ResolvedClaim, times: tuple[Measure, Measure], moment: int, since: int, what: str = "") -> Judgement:
-    """The judgement of a time that lies between two; unknown unless both come to the same."""
+    """The judgement of a time between two limits; unknown unless both limits give the same."""
     least, most = times
     sentence = what or VERBS[claim.verb].said
     judgement = Judgement(least.holds, moment, sentence, least, since)

@@ -10,8 +10,8 @@ How real logs deviate from the plain sequence RUNNING, result, IDLE:
 * A node writes its first row after its first tick: `begins.py` says when it began.
 * Nothing is written when a node is halted (logs without rows to IDLE): it had ended by the time a node above it ended,
   or by its next start.
-* Rows before the first one, or between two, were not seen (a running robot): the open run ends there, cut off, and of
-  each node it is unknown whether it is active until a row says so.
+* Rows before the first one, or between two, were not seen (a running robot): the open run ends there, cut off, and
+  whether a node is active is unknown until a row says so.
 """
 
 from __future__ import annotations
@@ -124,7 +124,7 @@ class _OpenNodes:
         begun: when each began at the latest.
         running: those that have written RUNNING.
         completed: those that have completed and have not been reset since.
-        unseen: those of which it is unknown whether they are active.
+        unseen: those that may or may not be active.
     """
 
     def __init__(self, tree: LoggedTree, begins: Begins, odd: Oddities, keeping: set[int]) -> None:
@@ -208,7 +208,7 @@ class _OpenNodes:
         self._begins.lose()
 
     def lose(self, now: Moment) -> list[Activation]:
-        """End the open run, of which later rows were lost; from now on it is unknown which nodes are active."""
+        """End the open run, because later rows were lost; which nodes are active is unknown from now on."""
         ended = self.end(ROOT, now, "O", "lost", below="O") if ROOT in self.begun else []
         self.completed.clear()
         self.unseen.update(self._tree.parent)

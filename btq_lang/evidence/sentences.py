@@ -78,8 +78,8 @@ def worst_violation(clause: ClauseVerdict) -> Violation:
 
 
 def _others(clause: ClauseVerdict) -> str:
-    """The runs that broke a clause beside the first: those of its log by number, then how many others if that is known,
-    for a store gives only the worst violations.
+    """The runs that broke a clause beside the first: those of its log by number, then how many others if that is known:
+    a store gives only the worst violations.
     """
     first, *others = dict.fromkeys((violation.source, violation.run) for violation in clause.violations)
     named = [str(run) for source, run in others if source == first[0]][:_RUNS]

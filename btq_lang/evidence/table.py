@@ -67,7 +67,7 @@ def requirement_rows(
 
     Args:
         medians: how long nodes take, in seconds by path.
-        verbose: as of `render`.
+        verbose: as in `render`.
     """
     rows: list[tuple[Verdict, list[str], Sequence[str]]] = []
     for requirement in sorted(requirements, key=lambda requirement: _ORDER.index(requirement.verdict)):

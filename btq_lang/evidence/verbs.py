@@ -30,7 +30,7 @@ class Judgement(NamedTuple):  # not a Record for the same reason as Measure
         since: for a clause judged over a run, when the judged time began.
         starts: for such a clause, the activations that it counts or adds up.
         note: what is unusual about it; a log has each once.
-        most: if it is known only between which limits what is measured lies, the upper one; `measure` is the lower one.
+        most: the upper limit of what is measured, if only its limits are known; `measure` is the lower one.
         passed: when a duration became longer than its bound.
     """
 
@@ -65,7 +65,7 @@ def agreed(late: Judgement | None, early: Judgement | None, activation: Activati
 
 
 def between(judgement: Judgement, one: Measure | None, other: Measure | None) -> Judgement:
-    """The judgement with a measure that lies between two; unchanged without both."""
+    """The judgement with a measure between two limits; unchanged without both."""
     if one is None or other is None:
         return judgement
     least, most = sorted((one, other), key=lambda measure: measure.si)
@@ -74,7 +74,7 @@ def between(judgement: Judgement, one: Measure | None, other: Measure | None) ->
 
 
 def is_same(one: Judgement, other: Judgement) -> bool:
-    """Whether two judgements come to the same, also for all measures between theirs."""
+    """Whether two judgements agree, for all measures between theirs, too."""
     is_on_both_sides = (
         one.measure is not None and other.measure is not None and one.measure.is_upper is not other.measure.is_upper
     )

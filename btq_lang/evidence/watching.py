@@ -63,7 +63,7 @@ class Watched:
         self._rows = 0  # of the current session
 
     def judged_by(self, evaluation: MissionEvaluation) -> None:
-        """Tell what the evaluation of a mission finds, by which no session before was judged."""
+        """Tell what the evaluation of a mission finds; the mission has judged no session before."""
         listener = _Listener(self)
         self._missions.append((evaluation, listener))
         evaluation.listeners.append(listener)
@@ -125,7 +125,7 @@ class Watched:
 
 
 class _Listener:
-    """Tells what is found while a mission is judged."""
+    """Tells what an evaluation finds while a mission is judged."""
 
     def __init__(self, watched: Watched) -> None:
         self._watched: Final = watched

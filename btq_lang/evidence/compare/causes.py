@@ -1,7 +1,6 @@
 """One cause, one comparison: what a node and those above it have in common.
 
-One invariant: nothing here looks at which side a run is of to decide what is compared; only what is found is explained
-by the sides.
+One invariant: the side of a run never decides what is compared; it only explains what was found.
 """
 
 from __future__ import annotations
@@ -58,7 +57,7 @@ def chains(durations: Mapping[Key, Measure], leaves: Collection[Key]) -> list[li
 def with_causes(changes: Sequence[ComparedNumber], numbers: Numbers, at_least: float) -> list[ComparedNumber]:
     """The changes, each with what explains it: a change in the same direction inside of it.
 
-    Without that, what is left of the difference is less than counts, or chance may explain it.
+    Without that change, the rest of the difference is too small to count, or chance may explain it.
 
     Args:
         at_least: as in `compare`.

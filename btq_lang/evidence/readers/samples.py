@@ -1,7 +1,7 @@
 """Samples of signals in a CSV or Parquet file: a column with times, the first one by default, and columns of values.
 
 One invariant: a cell that is empty, or not a finite number, is not a sample, and a time that cannot be read is an
-error with its line.  Parquet is read by DuckDB, any failure of which is one NoSamples.
+error with its line.  DuckDB reads Parquet; any of its failures is one NoSamples.
 """
 
 from __future__ import annotations

@@ -58,7 +58,7 @@ class Clock:
 
 
 def _mapped(times: Times, from_clock: Times, to_clock: Times) -> Times | None:
-    """Converts times of one clock to another, both of which are known at some moments; None if they are too few."""
+    """Converts times of one clock to another, by moments that are known on both; None if they are too few."""
     from numpy import argsort, interp, unique
 
     order = argsort(from_clock, kind="stable")

@@ -125,7 +125,7 @@ def _change(measured: MeasureTrend) -> str:
 
 
 def _began(labels: Sequence[tuple[str, str]]) -> str:
-    """When labels began, for who cannot see the dotted lines."""
+    """When labels began, for readers who cannot see the dotted lines."""
     return "".join(f"; {name or NO_NAME} begins {when}" for name, when in labels)
 
 

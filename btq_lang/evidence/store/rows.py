@@ -1,7 +1,7 @@
-"""What is found in a log, as rows of text, written while the log is judged.
+"""The findings in a log as rows of text, written while the log is judged.
 
-One invariant: the rows depend on nothing but what was found, not on the name of the log, so that a log that is judged
-again has the same rows unless something is found that is new.
+One invariant: the rows depend on the findings alone, not on the name of the log, so a log that is judged again has the
+same rows unless there is a new finding.
 
 The names of nodes do not depend on their numbers: two trees have a name in common only if both have equally many nodes
 that it could mean.
@@ -145,8 +145,8 @@ class MissionRows:
         """Write a clause.
 
         Args:
-            has_run, missing: as of `ClauseFindings`.
-            marks: as of `Histogram`.
+            has_run, missing: as in `ClauseFindings`.
+            marks: as in `Histogram`.
         """
         odds, window = requirement.odds, requirement.window
         named = (requirement.name, " ".join((requirement.title or "").split()), verdict.text, verdict.path)

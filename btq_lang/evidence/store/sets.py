@@ -31,11 +31,11 @@ from btq_lang.util.record import Record
 
 
 class NotKept(Exception):
-    """What was found in a log cannot be kept; the message says why."""
+    """The findings in a log cannot be kept; the message says why."""
 
 
 class Keeping(Record):
-    """Where what is found is kept, and as what.
+    """Where findings are kept, and under which names.
 
     Attributes:
         folder: of the store.
@@ -62,7 +62,7 @@ class Draft:
     """The set of a log while it is written.
 
     Attributes:
-        rows: takes what is found.
+        rows: receives the findings.
         robot: of the log, unless it names its robots.
     """
 
@@ -156,7 +156,7 @@ def prepare(store: str) -> None:
 
 
 def about(folder: str) -> dict[str, Any]:
-    """What a set says about itself; empty if there is none, or none of this version."""
+    """The description of a set; empty if there is no set, or none of this version."""
     try:
         with open(os.path.join(folder, ABOUT), encoding="utf-8") as file:
             content = json.load(file)

@@ -53,7 +53,7 @@ def summary(ask: Ask, store: str, parts: Sequence[str] = (), *, by_run: bool = F
         ask: gives an engine a question.
         store: its name, as people read it.
         parts: `label` and `robot`, as far as those have verdicts of their own.
-        by_run: as of `parted`.
+        by_run: as in `parted`.
     """
     return VerdictReport(tuple(mission for _, mission in parted(ask, store, parts, by_run=by_run)), (), ())
 

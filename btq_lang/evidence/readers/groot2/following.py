@@ -53,7 +53,7 @@ class Notice(Record):
 
 
 class Passed(Record):
-    """All that the robot had done by this time, on its clock, has been said."""
+    """All that the robot did up to this time, on its clock, has been reported."""
 
     time: int
 
@@ -62,7 +62,7 @@ Event: TypeAlias = Began | Came | Sampled | LostTransitions | Notice | Passed
 
 
 class Following:
-    """What a publisher said so far.
+    """A publisher, by its replies so far.
 
     Attributes:
         pause: how long to wait before the next step, in seconds.
