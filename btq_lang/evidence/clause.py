@@ -434,9 +434,9 @@ class JudgedClause:
         if self._is_about_mission and not joined.build.is_main:  # which did not run as a whole
             return []
         if isinstance(subject, Interval):
-            firsts = self._instances(joined, _known(subject.first.subject))
+            firsts = self._instances(joined, _node_of(subject.first.subject))
             groups: dict[tuple[int, ...], tuple[int, ...]] = {}
-            lasts = self._instances(joined, _known(subject.last.subject))
+            lasts = self._instances(joined, _node_of(subject.last.subject))
             for uid in firsts if subject.first.subject is not None else [ROOT]:
                 together = near(uid, lasts, joined.tree)
                 groups[together] = (*groups.get(together, ()), uid)
@@ -444,7 +444,7 @@ class JudgedClause:
         if isinstance(subject, DurationSum):
             uids = [uid for target in subject.targets for uid in self._instances(joined, target)]
             return [tuple(uids)] if uids and not self.findings.missing else []
-        return [(uid,) for uid in self._instances(joined, _known(subject))]
+        return [(uid,) for uid in self._instances(joined, _node_of(subject))]
 
     def _instances(self, joined: Joined, target: NodeTarget | None) -> list[int]:
         """The uids of a node's instances; notes those missing from the log."""
@@ -561,7 +561,7 @@ def _events(claim: ResolvedClaim, subject: Subject | None) -> tuple[ResolvedEven
     return (claim.event,) if claim.event is not None else ()
 
 
-def _known(subject: Subject | None) -> NodeTarget | None:
+def _node_of(subject: Subject | None) -> NodeTarget | None:
     """The node of a subject, if the subject is a node."""
     if isinstance(subject, MissionRun) and subject.node is not None:
         return NodeTarget(subject.node)

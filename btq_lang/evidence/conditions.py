@@ -88,15 +88,15 @@ def truth(condition: Condition, observed: Observed, moment: Moment) -> Truth:
         decides = isinstance(condition, Any)
         unknown: Truth = not decides
         for part in condition.conditions:
-            found = truth(part, observed, moment)
-            if found is decides:
+            holds = truth(part, observed, moment)
+            if holds is decides:
                 return decides
-            if isinstance(found, UnknownValue) and not isinstance(unknown, UnknownValue):
-                unknown = found
+            if isinstance(holds, UnknownValue) and not isinstance(unknown, UnknownValue):
+                unknown = holds
         return unknown
     if isinstance(condition, Negation):
-        found = truth(condition.condition, observed, moment)
-        return found if isinstance(found, UnknownValue) else not found
+        holds = truth(condition.condition, observed, moment)
+        return holds if isinstance(holds, UnknownValue) else not holds
     if isinstance(condition, InContext):
         return observed.holds(condition, moment, lambda: truth(condition.condition, observed, moment))
     if isinstance(condition, ResolvedScope):

@@ -142,18 +142,18 @@ class Guards:
 
 def _guard(tree: LoggedTree, uid: int, condition: int, requirement: str) -> Guard:
     kind = tree.nodes[uid].kind
-    what = tree.nodes[uid].path.rpartition("_")[2]  # a build names it
+    purpose = tree.nodes[uid].path.rpartition("_")[2]  # a build names it
     path = tree.nodes[condition].path
     if not requirement:
         return Guard(path, "", frozenset())
     if kind == LIMITING:
         return Guard(path, requirement, words(enforced="limit"))
     if kind == WATCHING:
-        return Guard(path, requirement, words(limits=("success",)) | {what} if what in VERBS else frozenset())
-    checked = _CHECKED.get(what)
+        return Guard(path, requirement, words(limits=("success",)) | {purpose} if purpose in VERBS else frozenset())
+    checked = _CHECKED.get(purpose)
     if checked is not None:
         return Guard(path, requirement, frozenset([checked]), checks=True, halts=False)
-    return Guard(path, requirement, words(enforced="refusal") & {what}, halts=False)
+    return Guard(path, requirement, words(enforced="refusal") & {purpose}, halts=False)
 
 
 # The ends of the names of Sequences that check a success, and the verbs of their clauses.

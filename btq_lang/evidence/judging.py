@@ -128,11 +128,11 @@ def _judged(
                 if running is not None:
                     running.foreign(difference(missions, session.tree))
                 number = sum(activation.uid == ROOT for activation in activations(session))
-                what = foreign.get((source, joined))
-                if what is None:
+                foreign_runs = foreign.get((source, joined))
+                if foreign_runs is None:
                     lacks = first_of(session.unlike) or difference(missions, session.tree)
-                    what = Foreign(source, 0, joined, lacks, tuple(session.unlike))
-                foreign[source, joined] = replace(what, runs=what.runs + number)
+                    foreign_runs = Foreign(source, 0, joined, lacks, tuple(session.unlike))
+                foreign[source, joined] = replace(foreign_runs, runs=foreign_runs.runs + number)
             else:
                 mission = joined.mission
                 key = mission.path, session.robot
@@ -230,7 +230,9 @@ class Judging:
         """The report on all logs that were added."""
         missions = [evaluation.result() for evaluation in self._evaluations.values()]
         judged = tuple(mission for mission in missions if mission.sources)
-        renamed = tuple(f"{counted(number, 'log')} had {what}" for what, number in self._renamed.items())
+        renamed = tuple(
+            f"{counted(number, 'log')} had {names_before}" for names_before, number in self._renamed.items()
+        )
         return VerdictReport(judged, tuple(self._foreign.values()), tuple(self._problems), renamed)
 
 

@@ -99,8 +99,8 @@ class _Trees:
         self._log: Final = log
         self._has_uids: Final = any(uid for uid, _ in log.nodes)
         self._missions: Final = missions
-        self._given: Final = [(_Names(tree), join(missions, tree)) for tree in reversed(log.trees)]
-        self._made: Final[dict[int, tuple[_Names, Joined] | None]] = {}
+        self._logged: Final = [(_Names(tree), join(missions, tree)) for tree in reversed(log.trees)]
+        self._joined_builds: Final[dict[int, tuple[_Names, Joined] | None]] = {}
 
     @cached_property
     def roots(self) -> Set[int]:
@@ -108,7 +108,7 @@ class _Trees:
         nodes = self._log.nodes
         if self._has_uids:
             return {index for index, (uid, _) in enumerate(nodes) if uid == ROOT}
-        trees = [tree for tree, _ in self._given]
+        trees = [tree for tree, _ in self._logged]
         trees += [tree for mission in self._missions for tree, _ in self._builds(mission)]
         names = {tree.root for tree in trees if tree.is_unique(ROOT)}
         return {index for index, (_, name) in enumerate(nodes) if name in names}
@@ -118,18 +118,18 @@ class _Trees:
         named = {run: {self._log.nodes[index] for index in run} for run in runs}
         joined_by_run: dict[frozenset[int], Joined | str] = {}
         for run, nodes in named.items():
-            for tree, joined in self._given:
+            for tree, joined in self._logged:
                 if tree.has(nodes):
                     joined_by_run[run] = joined or OTHER
                     break
-        left = {run: nodes for run, nodes in named.items() if run not in joined_by_run}
-        fitting: dict[frozenset[int], list[Joined]] = {run: [] for run in left}
-        for mission in self._missions if left else ():
-            self._fit(mission, "", left, fitting)
-        left = {run: nodes for run, nodes in left.items() if not fitting[run]}
-        for mission in self._missions if left and self._has_uids else ():
+        unmatched = {run: nodes for run, nodes in named.items() if run not in joined_by_run}
+        fitting: dict[frozenset[int], list[Joined]] = {run: [] for run in unmatched}
+        for mission in self._missions if unmatched else ():
+            self._fit(mission, "", unmatched, fitting)
+        unmatched = {run: nodes for run, nodes in unmatched.items() if not fitting[run]}
+        for mission in self._missions if unmatched and self._has_uids else ():
             for name in mission.trees():  # a node without a uid may be of the main tree
-                self._fit(mission, name, left, fitting)
+                self._fit(mission, name, unmatched, fitting)
         others = [run for run, joined_missions in fitting.items() if not joined_missions]
         for run, joined_missions in fitting.items():
             # A run whose nodes all occur in a run of another mission may belong to that mission too.
@@ -151,17 +151,17 @@ class _Trees:
         self,
         mission: Candidate,
         name: str,
-        left: Mapping[frozenset[int], Set[tuple[int, str]]],
+        unmatched: Mapping[frozenset[int], Set[tuple[int, str]]],
         fitting: Mapping[frozenset[int], list[Joined]],
     ) -> None:
         """Add a tree of a mission to those that fit the runs that are left; without a name, the main tree."""
         builds: list[tuple[Set[frozenset[int]], Joined]] = []
         for tree, joined in self._builds(mission, name):
-            builds.append(({run for run, nodes in left.items() if tree.has(nodes)}, joined))
-            if len(builds[-1][0]) == len(left):
+            builds.append(({run for run, nodes in unmatched.items() if tree.has(nodes)}, joined))
+            if len(builds[-1][0]) == len(unmatched):
                 break
         builds.sort(key=lambda fit: -len(fit[0]))  # a short run may fit builds that the others do not
-        for run in left:
+        for run in unmatched:
             fitting[run] += [joined for runs, joined in builds if run in runs][:1]
 
     def uids(self, tree: LoggedTree) -> dict[int, int]:
@@ -172,9 +172,9 @@ class _Trees:
 
     def _builds(self, mission: Candidate, name: str = "") -> Iterator[tuple[_Names, Joined]]:
         for build in mission.builds(name):
-            if id(build) not in self._made:
-                self._made[id(build)] = self._joined_build(mission, build)
-            if (joined_build := self._made[id(build)]) is not None:
+            if id(build) not in self._joined_builds:
+                self._joined_builds[id(build)] = self._joined_build(mission, build)
+            if (joined_build := self._joined_builds[id(build)]) is not None:
                 yield joined_build
 
     def _joined_build(self, mission: Candidate, build: Build) -> tuple[_Names, Joined] | None:

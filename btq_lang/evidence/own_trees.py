@@ -53,7 +53,7 @@ class OwnTrees:
 
     def __init__(self) -> None:
         self.missions: Final[list[OwnTree]] = []
-        self._known: Final[set[tuple[tuple[int, str, str], ...]]] = set()
+        self._node_lists: Final[set[tuple[tuple[int, str, str], ...]]] = set()
 
     def of(self, sessions: Iterator[LogSession], address: str) -> Iterator[LogSession]:
         """The sessions of a running robot, with a mission for each when it begins."""
@@ -65,9 +65,9 @@ class OwnTrees:
         """Make missions of the trees in a log that are not known yet."""
         for tree in trees:
             nodes = tuple((node.uid, node.kind, node.path) for node in tree.nodes.values())
-            if nodes in self._known:
+            if nodes in self._node_lists:
                 continue
-            self._known.add(nodes)
+            self._node_lists.add(nodes)
             ID = as_written(tree.xml).root.get("main_tree_to_execute") or "tree"
             names = chain((ID,), (f"{ID} {number}" for number in count(2)))
             name = next(unused for unused in names if all(unused != mission.name for mission in self.missions))

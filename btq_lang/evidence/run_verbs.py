@@ -130,7 +130,6 @@ def _timed(claim: ResolvedClaim, times: tuple[Measure, Measure], moment: int, si
 
 
 def _begin(activation: Activation, run: OverRun) -> Happening:
-    """The begin of an activation as an event."""
     return Happening(activation.begun(True), activation.started, judged=activation.begun(run.observed.is_early))
 
 
@@ -248,7 +247,7 @@ def _between(
     claim: ResolvedClaim, run: OverRun, stretch: Stretch, starts: Sequence[Activation], is_open: bool
 ) -> Judgements:
     """Judge the times from each start to the next, and from the last to the end of the stretch."""
-    what = VERBS[claim.verb].said.replace("{}", "{} after its last start")
+    sentence_until_next = VERBS[claim.verb].said.replace("{}", "{} after its last start")
     moments = [_begin(start, run) for start in starts]
     for start, after in pairwise([*moments, Happening(stretch.end, stretch.end)]):
         is_last = start is moments[-1]
@@ -259,7 +258,7 @@ def _between(
         elif is_last and is_open and times[0].holds:
             yield None
         else:
-            sentence = "had not run again after {}" if is_last else what
+            sentence = "had not run again after {}" if is_last else sentence_until_next
             yield _timed(claim, times, until, start.until[0], sentence)
 
 

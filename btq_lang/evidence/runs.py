@@ -231,17 +231,17 @@ class Oddities:
     """Counts what is unusual in a log; each kind is one remark, with the time of the first."""
 
     def __init__(self) -> None:
-        self._found: Final[dict[str, tuple[int, int]]] = {}
+        self._kinds: Final[dict[str, tuple[int, int]]] = {}
 
     def count(self, what: str, time: int) -> int:
         """Count one; returns how many of its kind were before it."""
-        first, number = self._found.get(what, (time, 0))
-        self._found[what] = first, number + 1
+        first, number = self._kinds.get(what, (time, 0))
+        self._kinds[what] = first, number + 1
         return number
 
     def remarks(self) -> Iterator[str]:
         """A remark for each kind."""
-        for what, (first, number) in self._found.items():
+        for what, (first, number) in self._kinds.items():
             yield f"{what}: {number}, the first at {timestamp(first)}"
 
 

@@ -82,9 +82,9 @@ def requirement_rows(
             below: Sequence[str] = [*_explanation(clause, medians, verbose)] if clause.verdict == VIOLATED else []
             rows.append((clause.verdict, [printable(text) for text in texts], below))
             name = title = ""  # shown once
-    left = len(NEVER) + 4
+    indent = len(NEVER) + 4
     widths = [max(cells_of(row[column]) for _, row, _ in rows) if rows else 0 for column in range(4)]
-    fitting = narrowed(widths, room - left - 2 * (sum(map(bool, widths)) - 1))
+    fitting = narrowed(widths, room - indent - 2 * (sum(map(bool, widths)) - 1))
     is_narrowed = fitting != widths
     for verdict, row, below in rows:
         *texts, hint = row
@@ -96,7 +96,7 @@ def requirement_rows(
         for number, line in enumerate(zip_longest(*cells, fillvalue="")):
             parts = [text + " " * (width - cells_of(text)) for text, width in zip(line, shown, strict=True)]
             yield f"  {' ' * len(NEVER) if number else word}  {'  '.join(parts)}".rstrip()
-        yield from (f"{' ' * left}{line}" for line in _broken(map(printable, below), room - left))
+        yield from (f"{' ' * indent}{line}" for line in _broken(map(printable, below), room - indent))
     if not rows:
         yield "  no requirement to judge"
 

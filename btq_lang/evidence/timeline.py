@@ -32,13 +32,13 @@ class OpenRun:
     def __init__(self, read: Mapping[ResolvedSignal, Bounds]) -> None:
         """See nothing yet; `read`: the signals to be drawn, with the numbers that they are compared with."""
         self._read: Final = read
-        self._seen: Final[list[Activation]] = []
+        self._activations: Final[list[Activation]] = []
         self._left_out = 0
 
     def see(self, activation: Activation) -> None:
         """Record an activation that has ended."""
-        if len(self._seen) < _MOST_BARS:
-            self._seen.append(activation)
+        if len(self._activations) < _MOST_BARS:
+            self._activations.append(activation)
         else:
             self._left_out += 1
 
@@ -48,11 +48,11 @@ class OpenRun:
             timeline = self._timeline(run, tree, signals)
             for clause in broken:
                 clause.timeline = timeline
-        self._seen.clear()
+        self._activations.clear()
         self._left_out = 0
 
     def _timeline(self, run: Run, tree: LoggedTree, signals: Signals) -> Timeline:
-        bars = sorted(self._seen, key=lambda activation: (activation.uid, activation.begin))
+        bars = sorted(self._activations, key=lambda activation: (activation.uid, activation.begin))
         return Timeline(
             run.number,
             run.source,

@@ -112,14 +112,14 @@ def _time_left(numbers: Numbers, at_least: float) -> Callable[[Key, Sequence[Key
 
     def is_chance(key: Key, parts: Sequence[Key]) -> bool:
         whole = difference(rest(numbers.measures[key], ()), numbers.sides)
-        left = rest(numbers.measures[key], [numbers.measures[part] for part in parts])
-        rest_means = difference(left, numbers.sides)
+        remaining = rest(numbers.measures[key], [numbers.measures[part] for part in parts])
+        rest_means = difference(remaining, numbers.sides)
         size = abs(rest_means.after - rest_means.before)
         if size > abs(whole.after - whole.before) / 2:  # chance may explain it, but the parts do not
             return False
         if size < at_least * abs(whole.before):
             return True
-        return probability(left, numbers.units, numbers.shuffles, rest_means.after > rest_means.before) > LEVEL
+        return probability(remaining, numbers.units, numbers.shuffles, rest_means.after > rest_means.before) > LEVEL
 
     return is_chance
 
@@ -130,11 +130,11 @@ def _failures_left(keys: Sequence[Key], numbers: Numbers) -> Callable[[Key, Sequ
     rows = numbers.failed_together(keys) if keys else ()
 
     def is_chance(key: Key, parts: Sequence[Key]) -> bool:
-        whole, left = (
+        whole, remaining = (
             failures.rest(rows, places[key], {places[part] for part in removed}, numbers.sides)
             for removed in ((), parts)
         )
-        return abs(failures.difference(left)) <= abs(failures.difference(whole)) / 2 and exact(left) > LEVEL
+        return abs(failures.difference(remaining)) <= abs(failures.difference(whole)) / 2 and exact(remaining) > LEVEL
 
     return is_chance
 

@@ -144,8 +144,8 @@ def _numbers(change: ComparedNumber, comparison: RunComparison) -> str:
     if change.interval is not None:
         low, high = (_signed(si, change) for si in change.interval)
         differs += f"; 95 % interval {low} to {high}"
-    what = "robots" if comparison.over == "robots" else "groups" if comparison.group > 1 else "runs"
-    over = f"over {change.units[0]:,} and {change.units[1]:,} {what}"
+    shuffled = "robots" if comparison.over == "robots" else "groups" if comparison.group > 1 else "runs"
+    over = f"over {change.units[0]:,} and {change.units[1]:,} {shuffled}"
     return f"mean {_shown(change.before, change)} → {_shown(change.after, change)} ({differs}) {over}"
 
 
@@ -209,8 +209,8 @@ def remarks(comparison: RunComparison, sides: tuple[str, str]) -> Iterator[str]:
         yield f"not compared: {one_sided}"
     for names, side in zip(comparison.only, sides, strict=True):
         if names:
-            what = "requirements" if len(names) > 1 else "requirement"
-            yield f"not compared: {what} only in {side}: {', '.join(names)}"
+            noun = "requirements" if len(names) > 1 else "requirement"
+            yield f"not compared: {noun} only in {side}: {', '.join(names)}"
     if comparison.unknown:
         yield f"unknown on both sides, as btq verify explains: {', '.join(comparison.unknown)}"
     if why := untestable(comparison):
@@ -227,8 +227,8 @@ def untestable(comparison: RunComparison) -> str:
     if not measures or not all(change.too_few for change in measures):
         return ""
     first, second = comparison.robots if comparison.over == "robots" else comparison.runs
-    what = "robot" if comparison.over == "robots" else "run"
-    return f"not testable with {f'{first} and ' if first != second else ''}{counted(second, what)}"
+    noun = "robot" if comparison.over == "robots" else "run"
+    return f"not testable with {f'{first} and ' if first != second else ''}{counted(second, noun)}"
 
 
 _AT_WORK: Final = "includes what changed at {}, so more runs may show it"

@@ -41,13 +41,13 @@ def read(path: str) -> Iterator[LogSession]:
         _, version, length = _HEAD.unpack(head)
         if version != _VERSION:
             raise NotALog(f"version {version} of the format; btq reads version {_VERSION}")
-        left = size - _HEAD.size
-        if not 0 <= length <= left - _START.size:
-            raise NotALog(f"its tree and start should take {length} and {_START.size} bytes, and {left} are left")
+        remaining = size - _HEAD.size
+        if not 0 <= length <= remaining - _START.size:
+            raise NotALog(f"its tree and start should take {length} and {_START.size} bytes, and {remaining} are left")
         tree = read_tree(file.read(length))
         (start,) = _START.unpack(file.read(_START.size))
         session = LogSession(tree, _transitions(file, start), *_blackboard(path))
-        if rest := (left - length - _START.size) % _RECORD.size:
+        if rest := (remaining - length - _START.size) % _RECORD.size:
             session.remarks.append(f"cut off: the last {rest} bytes are not a whole transition and are left out")
         yield session
 

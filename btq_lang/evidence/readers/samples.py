@@ -57,7 +57,7 @@ def _table(names: list[str], time: str, rows: Iterable[tuple[str, Sequence[objec
     """The columns of a table; rows: each with its place in the file."""
     if len(names) < 2:
         raise NoSamples(_NAMES)
-    time_column = names.index(_known(time, names)) if time else 0
+    time_column = names.index(_checked_column(time, names)) if time else 0
     others = [name for column, name in enumerate(names) if column != time_column]
     if twice := next((name for name in others if others.count(name) > 1), None):
         raise NoSamples(f"two columns are named `{twice}`")
@@ -86,7 +86,7 @@ def read_sources(sources: Iterable[SignalSource], folder: str) -> dict[str, Samp
         try:
             if key not in files:
                 files[key] = read(os.path.join(folder, source.file), source.time)
-            column = files[key][_known(source.column, files[key])]
+            column = files[key][_checked_column(source.column, files[key])]
         except NoSamples as error:
             raise NoSamples(f"{source.file}: {error}") from error
         series = series_by_signal[source.signal] = SampleSeries(source.unit)
@@ -102,7 +102,7 @@ def scaled(value: SampleValue | None, source: SignalSource) -> SampleValue | Non
     return value * source.scale + source.offset
 
 
-def _known(column: str, names: Iterable[str]) -> str:
+def _checked_column(column: str, names: Iterable[str]) -> str:
     if column not in (there := [*names]):
         meant = did_you_mean(near(column, there, 1)) or f"; it has {', '.join(there)}"
         raise NoSamples(f"no column `{column}`{meant}")

@@ -128,10 +128,10 @@ class _Mission:
         self._keys: Final = _keys(overview, mission.name)
 
     def values(self) -> PageData:
-        left = len(self._mission.parts) - len(self._parts)
+        hidden = len(self._mission.parts) - len(self._parts)
         return {
             "name": self._mission.name,
-            "earlier": counted(left, "earlier label") if left else "",
+            "earlier": counted(hidden, "earlier label") if hidden else "",
             "heads": {
                 "requirements": self._heads("Requirement", f"Violations by {self._overview.steps.name}"),
                 "runs": self._heads("Measure", f"Trend by {self._overview.steps.name}"),

@@ -98,7 +98,7 @@ class Following:
         self._at_rest: dict[int, int] | None = None  # all statuses, after the last transitions
         self._is_halting = False
         self._values: dict[str, SampleValue | None] = {}
-        self._said = ""
+        self._last_notice = ""
 
     def step(self) -> Iterator[Event]:
         """Ask once for all that is new."""
@@ -117,8 +117,8 @@ class Following:
         self.passed = None
         text = why or ("the publisher does not answer any more" if self._publisher else "no publisher yet")
         self._is_there = False
-        if text != self._said:
-            self._said = text
+        if text != self._last_notice:
+            self._last_notice = text
             yield Notice(f"{text}; waiting for one at {self._address}")
 
     def _connect(self) -> Iterator[Event]:
@@ -135,7 +135,7 @@ class Following:
         after = self._all_statuses(tree)
         is_amid = before != after or RUNNING in after.values()
         is_same = answer.publisher == self._publisher
-        self._publisher, self._tree, self._is_there, self._said = answer.publisher, tree, True, ""
+        self._publisher, self._tree, self._is_there, self._last_notice = answer.publisher, tree, True, ""
         self._boards = [*_boards(text)]
         self._values = {}
         self.pause, self.passed = _PAUSE, None

@@ -111,8 +111,8 @@ class Publisher:
             line = greeting.splitlines()[0].decode("utf-8", "replace")
             raise NotAPublisher(f"{_EXPECTED}, found something else, which says {line!r}")
         if self._silences > 1:
-            what = "a ZeroMQ socket of another type" if greeting else "something"
-            raise NotAPublisher(f"{_EXPECTED}, found {what} that does not answer; {_OTHER_PORTS}")
+            listener = "a ZeroMQ socket of another type" if greeting else "something"
+            raise NotAPublisher(f"{_EXPECTED}, found {listener} that does not answer; {_OTHER_PORTS}")
 
     def _forget(self) -> None:
         """Drop the socket: one that waits for a reply cannot ask again."""
