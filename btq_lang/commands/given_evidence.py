@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 from btq_lang.commands.candidates import candidate, name_of, side_of
 from btq_lang.commands.progress import Progress
 from btq_lang.commands.stored import store_of
+from btq_lang.evidence.json_document import NotVerdicts, read_verdicts
 from btq_lang.evidence.judging import Means
 from btq_lang.evidence.readers.side import side_files_beside
 from btq_lang.evidence.signal_sources import signal_sources
 from btq_lang.evidence.store.sets import ABOUT
 from btq_lang.evidence.verifying import judged, logs_below
-from btq_lang.evidence.written_verdicts import NotVerdicts, read_verdicts
 from btq_lang.projects.files import logs_of
 from btq_lang.util.text import counted
 from btq_lang.workspace.loader import absolute, find_project, read, shown

@@ -105,7 +105,7 @@ def summarise(options: Namespace) -> int:
         if options.engine is None:
             ask = asked(options.store)
         else:
-            from btq_lang.evidence.store.fleet import asked_by
+            from btq_lang.evidence.store.engine import asked_by
 
             ask = asked_by(options.engine, options.store)
         report = summary(ask, options.store, tuple(dict.fromkeys(options.by)))

@@ -14,8 +14,8 @@ from weakref import ReferenceType, ref
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import RULES
 from btq_lang.evidence.boxes import measured_of
-from btq_lang.evidence.open_verdicts import open_clauses, open_reason
-from btq_lang.evidence.outline import Demand, outline
+from btq_lang.evidence.json_document import WrittenMission
+from btq_lang.evidence.outline import Demand, open_clauses, open_reason, outline
 from btq_lang.evidence.rejudging import Shown, shown_now
 from btq_lang.evidence.sentences import explained, result, worst_violation
 from btq_lang.evidence.verdicts import (
@@ -29,7 +29,6 @@ from btq_lang.evidence.verdicts import (
     ClauseVerdict,
     RequirementVerdict,
 )
-from btq_lang.evidence.written_verdicts import WrittenMission
 from btq_lang.graph.missions import MeasuredBy
 from btq_lang.ide.clause_enforcement import MOST_MISSIONS, missions_of
 from btq_lang.ide.meaning import Subject, definition

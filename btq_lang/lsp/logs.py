@@ -182,7 +182,7 @@ class Logs:
             await said
 
     def _show(self, root: str, summary: str) -> None:
-        from btq_lang.evidence.written_verdicts import NotVerdicts, read_verdicts  # few projects have logs
+        from btq_lang.evidence.json_document import NotVerdicts, read_verdicts  # few projects have logs
         from btq_lang.ide.verdicts import ProjectVerdicts
         from btq_lang.workspace.loader import absolute, read
 
