@@ -242,8 +242,8 @@ _OF_STRUCTURE: frozenset[Check] = frozenset(
 )
 # Of models, of which a file has many, `_OF_PORTS` need only the ports, and these only the ports of trees' models.
 _OF_PORTS_OF_TREES: frozenset[Check] = frozenset((literals.number_for_text, names.forbidden_name))
-_OF_NODES = tuple(each for each in CHECKS[syntax.Model] if each not in _OF_PORTS_OF_TREES)
-_WITHOUT_PORTS = tuple(each for each in _OF_NODES if each not in _OF_PORTS)
+_OF_NODES = tuple(rule for rule in CHECKS[syntax.Model] if rule not in _OF_PORTS_OF_TREES)
+_WITHOUT_PORTS = tuple(rule for rule in _OF_NODES if rule not in _OF_PORTS)
 
 
 def check(workspace: Workspace, path: str) -> tuple[Diagnostic, ...]:
@@ -251,8 +251,8 @@ def check(workspace: Workspace, path: str) -> tuple[Diagnostic, ...]:
 
         >>> from btq_lang import Workspace, check
         >>> workspace = Workspace.of({"main.btq": "BehaviorTree Main\\n    Sequnce\\n        Action Dock\\n"})
-        >>> (found,) = check(workspace, "main.btq")
-        >>> found.rule, found.fixes[0].title
+        >>> (diagnostic,) = check(workspace, "main.btq")
+        >>> diagnostic.rule, diagnostic.fixes[0].title
         ('unknown-node', 'Replace `Sequnce` with `Sequence`')
 
     Args:
@@ -265,8 +265,8 @@ def check(workspace: Workspace, path: str) -> tuple[Diagnostic, ...]:
     Raises:
         KeyError: the file does not exist.
     """
-    (found,) = check_each(workspace, (path,))
-    return found
+    (diagnostics,) = check_each(workspace, (path,))
+    return diagnostics
 
 
 def check_each(workspace: Workspace, paths: Iterable[str]) -> Iterator[tuple[Diagnostic, ...]]:
@@ -294,16 +294,18 @@ def findings(store: Store[Workspace], path: str, seen: Iterable[Reported] = ()) 
 
 def findings_of(workspace: Workspace, path: str, reported: Iterable[Reported]) -> FileFindings:
     """The diagnostics of a file's items, without those that comments silence; those of XML are placed in the XML."""
-    found = FileFindings([(each, each.starts(workspace)) for each in reported])
+    file_findings = FileFindings([(item, item.starts(workspace)) for item in reported])
     file = workspace.files[path]
     if not file.has_directives and not workspace.origins:
-        return found
-    diagnostics: Iterable[Diagnostic] = found.diagnostics
+        return file_findings
+    diagnostics: Iterable[Diagnostic] = file_findings.diagnostics
     if file.has_directives:
         from btq_lang.checks.suppressions import Suppressions  # few files have any
 
         suppressions = Suppressions(file)
-        diagnostics = [each for each in (*diagnostics, *suppressions.useless) if not suppressions.silence(each)]
+        diagnostics = [
+            diagnostic for diagnostic in (*diagnostics, *suppressions.useless) if not suppressions.silence(diagnostic)
+        ]
     if workspace.origins:
         from btq_lang.checks.origins import shown_on_origins  # few workspaces have any
 
@@ -337,7 +339,7 @@ def reported_in_file(store: Store[Workspace], viewpoint: str, is_alone: bool) ->
     # target they may add something else.
     demanded = store.ask(demands.demands_by_item, viewpoint)
     has_target = View(store, viewpoint).project.moves_to is not None
-    found = [
+    by_item = [
         store.ask(
             _reported,
             viewpoint,
@@ -347,9 +349,9 @@ def reported_in_file(store: Store[Workspace], viewpoint: str, is_alone: bool) ->
         )
         for facts in store.ask(lookups.items, viewpoint)
     ]
-    wrong = tuple([each for each in found if each is not None])
+    wrong = tuple([reported for reported in by_item if reported is not None])
     signs = store.ask(lookups.signs, viewpoint) if wrong and not View(store, viewpoint).project.written_for else None
-    is_refused = version3.refuses([one for each in wrong for one in each.diagnostics], signs)
+    is_refused = version3.refuses([diagnostic for reported in wrong for diagnostic in reported.diagnostics], signs)
     return (_newer(store, viewpoint) if is_refused and store.ask(is_newer_than_engine, viewpoint) else ()) or wrong
 
 
@@ -359,8 +361,8 @@ def _newer(store: Store[Workspace], viewpoint: str) -> tuple[Reported, ...]:
     if root is None:
         return ()
     view = View(store, viewpoint, root)
-    wanted = tuple(configured(view.project, viewpoint, (version3.version_4_file(view),)))
-    return (Reported(wanted, (viewpoint, root.item)),) if wanted else ()
+    selected = tuple(configured(view.project, viewpoint, (version3.version_4_file(view),)))
+    return (Reported(selected, (viewpoint, root.item)),) if selected else ()
 
 
 def _reported(
@@ -369,22 +371,22 @@ def _reported(
     view = View(store, viewpoint, facts)
     entry = view.entry
     checks = (*checks_of(entry), demands.demands) if is_demanded else checks_of(entry)
-    found: Iterable[Diagnostic] = [diagnostic for each in checks for diagnostic in each(view)]
+    diagnostics: Iterable[Diagnostic] = [diagnostic for rule in checks for diagnostic in rule(view)]
     if view.project.moves_to is not None:
         from btq_lang.checks.moved_engine import new_in_target  # few checks have a target
 
-        found = [*found, *new_in_target(view, checks, [*found])]
+        diagnostics = [*diagnostics, *new_in_target(view, checks, [*diagnostics])]
     if type(facts.item) is syntax.Include and not is_alone:
-        found = [*found, *includes.include_with_errors(view, _errors_in)]
+        diagnostics = [*diagnostics, *includes.include_with_errors(view, _errors_in)]
     if entry.diagnostics:
         from btq_lang.checks.own_lines import on_own_lines  # few items have mistakes in their syntax
         from btq_lang.checks.positional import with_ports
 
         reported = meant_entries.with_entries(view, with_ports(view, on_own_lines(view, entry.diagnostics)))
-        found = (*reported, *_on_sound_lines(found, entry, view.text))
-    elif not found:
+        diagnostics = (*reported, *_on_sound_lines(diagnostics, entry, view.text))
+    elif not diagnostics:
         return None
-    wanted = tuple(configured(view.project, viewpoint, trees.as_uncreated(view, found)))
+    wanted = tuple(configured(view.project, viewpoint, trees.as_uncreated(view, diagnostics)))
     return Reported(wanted, (viewpoint, facts.item)) if wanted else None
 
 
@@ -394,9 +396,9 @@ def _errors_in(store: Store[Workspace], viewpoint: str) -> tuple[tuple[Place, st
     view = View(store, viewpoint)
     if not view.is_xml:
         return view.ask(lookups.syntax_errors)
-    found = findings_of(view.ask(inputs.everything), viewpoint, view.ask(reported_in_file, True)).diagnostics
-    errors = [each for each in found if each.effective_severity is Severity.ERROR]
-    return tuple([(Place(each.span, viewpoint), each.message) for each in errors])
+    diagnostics = findings_of(view.ask(inputs.everything), viewpoint, view.ask(reported_in_file, True)).diagnostics
+    errors = [diagnostic for diagnostic in diagnostics if diagnostic.effective_severity is Severity.ERROR]
+    return tuple([(Place(diagnostic.span, viewpoint), diagnostic.message) for diagnostic in errors])
 
 
 def checks_of(entry: syntax.Entry) -> tuple[Check, ...]:
@@ -408,14 +410,16 @@ def checks_of(entry: syntax.Entry) -> tuple[Check, ...]:
     if type(item) is syntax.Model and item.category.raw != "SubTree":
         return _OF_NODES
     if entry.diagnostics and any(problem.rule in _STRUCTURE_IS_LOST for problem in entry.diagnostics):
-        checks = tuple(each for each in checks if each not in _OF_STRUCTURE)
+        checks = tuple(rule for rule in checks if rule not in _OF_STRUCTURE)
     return checks
 
 
-def _on_sound_lines(found: Iterable[Diagnostic], entry: syntax.Entry, text: str) -> Iterator[Diagnostic]:
+def _on_sound_lines(diagnostics: Iterable[Diagnostic], entry: syntax.Entry, text: str) -> Iterator[Diagnostic]:
     """The diagnostics that are not on a line with a syntax error, whose meaning is unknown."""
-    broken = {_line(text, each) for each in entry.diagnostics if each.effective_severity is Severity.ERROR}
-    return (each for each in found if _line(text, each) not in broken)
+    broken = {
+        _line(text, diagnostic) for diagnostic in entry.diagnostics if diagnostic.effective_severity is Severity.ERROR
+    }
+    return (diagnostic for diagnostic in diagnostics if _line(text, diagnostic) not in broken)
 
 
 def _line(text: str, diagnostic: Diagnostic) -> int:

@@ -38,8 +38,8 @@ def unread_argument(view: View) -> Iterator[Diagnostic]:
             if view.ask(_is_named, tree, name):
                 continue
             reported.add((tree, name))
-            meant = [each for each in view.ask(_meant, tree, name) if seen.node.attribute(each) is None]
-            fixes = tuple([replace_fix(f"Replace `{name}` with `{each}`", pair.key.span, each) for each in meant])
+            meant = [entry for entry in view.ask(_similar_entries, tree, name) if seen.node.attribute(entry) is None]
+            fixes = tuple([replace_fix(f"Replace `{name}` with `{entry}`", pair.key.span, entry) for entry in meant])
             message = f"nothing in `{tree}` reads `{name}`{did_you_mean(tuple(meant))}"
             yield Diagnostic("unread-argument", pair.key.span, message, fixes=fixes)
 
@@ -65,9 +65,9 @@ def _is_given(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> 
 
 
 @of_scope
-def _meant(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> tuple[str, ...]:
+def _similar_entries(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> tuple[str, ...]:
     """The entries of a tree whose names are similar."""
-    return near(name, [each for each in store.ask(below, viewpoint, tree).uses if each.isidentifier()])
+    return near(name, [entry for entry in store.ask(below, viewpoint, tree).uses if entry.isidentifier()])
 
 
 @on_circle(True)
@@ -75,10 +75,10 @@ def _meant(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> tup
 def _is_named(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
     """Whether anything in a tree may read or write an entry."""
     view = View(store, viewpoint)
-    own, found = view.ask(handling, tree), view.ask(inputs.definition, Kind.TREE, tree)
-    if own.is_open or own.has_strangers or found is None or name in view.ask(_words, tree):
+    own, definition = view.ask(handling, tree), view.ask(inputs.definition, Kind.TREE, tree)
+    if own.is_open or own.has_strangers or definition is None or name in view.ask(_words, tree):
         return True
-    if any(seen.kind is None and not seen.is_subtree for seen in view.seen_in(*found).all):
+    if any(seen.kind is None and not seen.is_subtree for seen in view.seen_in(*definition).all):
         from btq_lang.catalog.nav2.navigator import ENTRIES  # few arguments are not named
 
         if name in ENTRIES:
@@ -90,9 +90,9 @@ def _is_named(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> 
 def _words(store: Store[Workspace], viewpoint: str, tree: str) -> frozenset[str]:
     """All words in the values of a tree's attributes: programs read names of entries from some, whatever their form."""
     view = View(store, viewpoint)
-    found = view.ask(inputs.definition, Kind.TREE, tree)
+    definition = view.ask(inputs.definition, Kind.TREE, tree)
     words: set[str] = set()
-    for seen in view.seen_in(*found).given if found is not None else ():
+    for seen in view.seen_in(*definition).given if definition is not None else ():
         for pair in seen.node.attributes:
             if pair.value is not None:
                 words.update(_WORD(pair.value.text) if pair.value.text not in ("=", "{=}") else (pair.key.text,))

@@ -27,8 +27,8 @@ def impossible_bound(view: View) -> Iterator[Diagnostic]:
         bound, verb = claim.bound, claim.verb.raw
         operand = VERBS[verb].operand
         is_count = operand in _COUNTED
-        if (found := same_in_every_run(view, claim)) is not None:
-            yield found
+        if (diagnostic := same_in_every_run(view, claim)) is not None:
+            yield diagnostic
         elif bound is not None:
             for amount in syntax.walk(bound):
                 if not isinstance(amount, syntax.Amount):
@@ -57,8 +57,8 @@ def uses_of_gauge(view: View) -> Iterator[Diagnostic]:
             continue
         if signal.behaviour and signal.behaviour.raw != "gauge":
             continue
-        at = signal.behaviour.span if signal.behaviour else Span(*[(signal.source or signal.unit).end] * 2)
-        place = Place(at, declaration.path, declaration.owner.item)
+        span = signal.behaviour.span if signal.behaviour else Span(*[(signal.source or signal.unit).end] * 2)
+        place = Place(span, declaration.path, declaration.owner.item)
         words = ("level", "counter") if signal.unit.text == "%" else ("counter", "level")
         message = f"`{claim.resource.text}` is neither a counter nor a level, so its use is undefined"
         fixes = tuple(
@@ -118,8 +118,8 @@ def _is_enforceable(view: View, written: syntax.Requirement) -> bool:
     """Whether the engine is to enforce its times, which are then reported as limit-too-small."""
     from btq_lang.requirements.definitions import requirement  # few files have claims about times
 
-    found, _ = view.ask(requirement, written.name.text) if written.name is not None else (None, ())
-    return found is not None and found.is_enforceable
+    resolved, _ = view.ask(requirement, written.name.text) if written.name is not None else (None, ())
+    return resolved is not None and resolved.is_enforceable
 
 
 @cache

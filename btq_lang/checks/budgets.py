@@ -70,13 +70,13 @@ def odds_beyond_children(demanded: Demanded) -> Iterator[Found]:
             continue
         if odds is None and VERBS[claim.verb].limits != "success":
             continue
-        wanted = odds.probability if odds is not None else 1.0
+        demanded_share = odds.probability if odds is not None else 1.0
         ensured = _ensured(demanded.budgets, claim, node)
-        if ensured is None or ensured[0] >= wanted - 1e-9:
+        if ensured is None or ensured[0] >= demanded_share - 1e-9:
             continue
         likely, parts, rest = ensured
         message = (
-            f"{_called(applied, node)} must meet `{claim.text}` in {_percent(wanted)} of activations, but "
+            f"{_called(applied, node)} must meet `{claim.text}` in {_percent(demanded_share)} of activations, but "
             f"the requirements of the nodes below it guarantee only {_percent(likely)}{rest}"
         )
         related = tuple(Related(part.place, f"fails in up to {_percent(share)}") for part, share in parts if share)

@@ -99,14 +99,14 @@ def switch_cases(view: View) -> Iterator[Diagnostic]:
             yield Diagnostic("switch-cases", node.head.span, message, notes=(note,))
             continue
         number = count - 1 if by_children else seen.kind.children[0] - 1
-        wanted = [f"case_{case}" for case in range(1, number + 1)]
-        given = {pair.key.text: pair.key for pair in node.attributes}
-        extra = [key for name, key in given.items() if is_case(seen, name) and name not in wanted]
+        cases = [f"case_{case}" for case in range(1, number + 1)]
+        keys = {pair.key.text: pair.key for pair in node.attributes}
+        extra = [key for name, key in keys.items() if is_case(seen, name) and name not in cases]
         # Without a variable no case counts, which is reported: the children that can never run.
-        missing = [name for name in wanted if name not in given] if "variable" in given else []
+        missing = [name for name in cases if name not in keys] if "variable" in keys else []
         if extra:
             message = f"{seen.shown_kind} has no case `{extra[0].text}`"
-            note = f"its cases are `case_1` to `{wanted[-1]}`"
+            note = f"its cases are `case_1` to `{cases[-1]}`"
             if by_children:
                 note = f"with {count} children {note}: one child for each, and the last for the default"
             yield Diagnostic("switch-cases", extra[0].span, message, notes=(note,))

@@ -41,8 +41,8 @@ def clause_without_odds(view: View) -> Iterator[Diagnostic]:
         for clause in requirement.clauses:
             is_confidence = isinstance(clause, syntax.Confidence)
             if is_confidence or (isinstance(clause, syntax.Window) and clause.experiments is not None):
-                said = "a confidence" if is_confidence else "the window"
-                message = f"{said} has no effect here: without a required probability a single violation counts"
+                subject = "a confidence" if is_confidence else "the window"
+                message = f"{subject} has no effect here: without a required probability a single violation counts"
                 notes = ("state how often it must hold: `in at least 95 % of activations`",)
                 yield Diagnostic("clause-without-odds", Span(clause.start, clause.end), message, notes=notes)
 
@@ -54,21 +54,21 @@ def unused_parameter(view: View) -> Iterator[Diagnostic]:
             continue
         if view.is_torn(requirement.start, requirement.end):
             continue  # its use may be on a line that could not be read
-        named = {word.text for word in syntax.walk(requirement.clauses) if isinstance(word, syntax.Word)}
+        used = {word.text for word in syntax.walk(requirement.clauses) if isinstance(word, syntax.Word)}
         for parameter in requirement.parameters:
-            if parameter.name.text not in named:
+            if parameter.name.text not in used:
                 message = f"no clause uses the parameter `{parameter.name.text}`, so its value has no effect"
                 yield Diagnostic("unused-parameter", parameter.name.span, message, tags=(Tag.UNNECESSARY,))
 
 
 def _duplicate(view: View, counts: syntax.Clause, clause: syntax.Clause, is_alone: bool) -> Diagnostic:
     text = view.text
-    said, again = (" ".join(text[each.start : each.end].split()) for each in (counts, clause))
-    removals = [(again, clause)] if said == again else [(again, clause), (said, counts)]
-    message = f"the requirement already states {_ONCE[type(clause)]}: `{said}`"
+    stated, restated = (" ".join(text[repeated.start : repeated.end].split()) for repeated in (counts, clause))
+    removals = [(restated, clause)] if stated == restated else [(restated, clause), (stated, counts)]
+    message = f"the requirement already states {_ONCE[type(clause)]}: `{stated}`"
     fixes = tuple(
-        replace_fix(f"Remove `{words}`", with_blanks(text, each), "", safe=is_alone and said == again)
-        for words, each in removals
+        replace_fix(f"Remove `{words}`", with_blanks(text, removed), "", safe=is_alone and stated == restated)
+        for words, removed in removals
     )
     related = (Related(Place(Span(counts.start, counts.end)), "this one takes effect"),)
     return Diagnostic("duplicate-clause", Span(clause.start, clause.end), message, related=related, fixes=fixes)

@@ -79,7 +79,10 @@ def _near_key(port: Port, name: str) -> str:
 
 
 def _near_attribute(element: Element, name: str) -> str:
-    is_meant = any(each.name.casefold() == name.casefold() or near(each.name, (name,)) for each in element.attributes)
+    is_meant = any(
+        attribute.name.casefold() == name.casefold() or near(attribute.name, (name,))
+        for attribute in element.attributes
+    )
     return did_you_mean((name,)) if is_meant else ""
 
 
@@ -90,9 +93,9 @@ def _below_root(element: Element, part: Placed) -> Iterator[Diagnostic]:
     meant = near(tag, _OF_ROOT, 1)
     ignored = f"the engine ignores <{tag}>"
     if meant in (("BehaviorTree",), ("include",)):
-        named = element.get("ID" if meant == ("BehaviorTree",) else "path")
+        name = element.get("ID" if meant == ("BehaviorTree",) else "path")
         what = "the tree" if meant == ("BehaviorTree",) else "the trees of"
-        lost = f", and with it {what} `{named}`" if named else ""
+        lost = f", and with it {what} `{name}`" if name else ""
         yield _ignored(part, f"{ignored}{lost}; did you mean <{meant[0]}>?", severity=Severity.ERROR)
     elif meant:
         yield _ignored(part, f"{ignored}; did you mean <{meant[0]}>?")
@@ -158,11 +161,11 @@ def _attributes(view: View) -> Iterator[Diagnostic]:
     if isinstance(item, Root | Include):
         lists.append((item.attributes, _OF_ROOT_TAG if isinstance(item, Root) else _OF_INCLUDE))
     for pairs, keys in lists:
-        given = {pair.key.text for pair in pairs}
+        present = {pair.key.text for pair in pairs}
         for pair in pairs:
             key = pair.key.text
             is_other = key not in keys and key not in _TOOL_ATTRIBUTES
-            free = keys.difference(given)
+            free = keys.difference(present)
             meant = (
                 (near(key, free, 1) or tuple(free.intersection(_CALLED.get(key.casefold(), ())))) if is_other else ()
             )

@@ -72,21 +72,24 @@ def blackboards(store: Store[Workspace], viewpoint: str) -> Blackboards:
 def handling(store: Store[Workspace], viewpoint: str, tree: str) -> Handling:
     """What a tree does with entries."""
     view = View(store, viewpoint)
-    found = view.ask(inputs.definition, Kind.TREE, tree)
-    item = found[1].item if found is not None else None
-    if found is None or not isinstance(item, Tree):
+    definition = view.ask(inputs.definition, Kind.TREE, tree)
+    item = definition[1].item if definition is not None else None
+    if definition is None or not isinstance(item, Tree):
         return Handling((), (), frozenset(), (), True, False)
     model = view.ask(lookups.meaning, Kind.MODEL, tree)
     declared = model.ports if model is not None else ()
-    nodes = view.seen_in(*found)
-    touches = [Touch(each.name, each.reads, each.writes, each.creates) for each in view.ask(mentions, *found)]
+    nodes = view.seen_in(*definition)
+    touches = [
+        Touch(mention.name, mention.reads, mention.writes, mention.creates)
+        for mention in view.ask(mentions, *definition)
+    ]
     return Handling(
         tuple([port.name.text for port in (*item.ports, *declared) if port.name is not None]),
         tuple(touches),
         frozenset(_bare_values(nodes.given)),
         tuple([call for seen in nodes.all if (call := _call(view, seen)) is not None]),
         _has_verbatim(item, nodes.all)
-        or bool(store.ask(inputs.entry, *found).diagnostics)
+        or bool(store.ask(inputs.entry, *definition).diagnostics)
         or any(map(_names_by_value, nodes.given))
         or any(not touch.name.removeprefix("@").isidentifier() for touch in touches),
         any(_is_stranger(view, seen) for seen in nodes.all),
@@ -182,9 +185,9 @@ class Blackboards:
         for tree, handled in trees.items():
             self._add(tree, handled, trees)
 
-    def of(self, tree: str, name: str) -> list[Touch]:
+    def uses_of(self, tree: str, name: str) -> list[Touch]:
         """All uses of an entry, wherever it is passed."""
-        return self._merged.get(self._first(self.place(tree, name)), [])
+        return self._merged.get(self._representative(self.place(tree, name)), [])
 
     def is_port(self, tree: str, name: str) -> bool:
         """Whether the entry is a port of the tree."""
@@ -197,7 +200,7 @@ class Blackboards:
 
     def is_one(self, tree: str, name: str, other: str) -> bool:
         """Whether two names of a tree are one entry."""
-        return self._first(self.place(tree, name)) == self._first(self.place(tree, other))
+        return self._representative(self.place(tree, name)) == self._representative(self.place(tree, other))
 
     def place(self, tree: str, name: str) -> Name:
         """The blackboard of an entry: the tree's own or that of the root."""
@@ -213,7 +216,7 @@ class Blackboards:
     def _merged(self) -> dict[Name, list[Touch]]:
         merged: dict[Name, list[Touch]] = {}
         for key, uses in self._uses.items():
-            merged.setdefault(self._first(key), []).extend(uses)
+            merged.setdefault(self._representative(key), []).extend(uses)
         return merged
 
     def _add(self, tree: str, handled: Handling, trees: Mapping[str, Handling]) -> None:
@@ -231,11 +234,11 @@ class Blackboards:
                     self._join(self.place(tree, name), (call.tree, name))
 
     def _join(self, one: Name, other: Name) -> None:
-        first, second = self._first(one), self._first(other)
+        first, second = self._representative(one), self._representative(other)
         if first != second:
             self._same[second] = first
 
-    def _first(self, name: Name) -> Name:
+    def _representative(self, name: Name) -> Name:
         while (above := self._same.get(name)) is not None:
             name = above
         return name
@@ -244,12 +247,12 @@ class Blackboards:
 def _call(view: View, seen: ResolvedNode) -> SubTreeCall | None:
     """How a node passes entries to the tree that it runs; None if it runs none."""
     is_plus = seen.node.kind is not None and seen.node.kind.raw == "SubTreePlus"
-    named = seen.node.attribute("ID") if is_plus else seen.id if seen.is_subtree else None
-    if named is None:
+    tree_name = seen.node.attribute("ID") if is_plus else seen.id if seen.is_subtree else None
+    if tree_name is None:
         return None
     is_old = is_before_4(view.target)
     is_new = not view.is_xml or view.ask(is_for_version_4)
-    given: dict[str, str] = {}
+    entries: dict[str, str] = {}
     values: list[str] = []
     for pair in seen.node.attributes:
         port, text = pair.key.text, pair.value.text if pair.value is not None else ""
@@ -259,12 +262,12 @@ def _call(view: View, seen: ResolvedNode) -> SubTreeCall | None:
         is_name = text.isidentifier() and not (is_new or is_plus)
         name = pointed_at(port, text) or (text if is_name else None)
         if name is not None:
-            given.setdefault(port, name)
+            entries.setdefault(port, name)
         if name is None or (is_name and not is_old):
             values.append(port)
     is_one = not is_new and is_on(seen, "__shared_blackboard")
     shares = is_one or remaps_all(seen) or (is_plus and is_on(seen, "__autoremap"))
-    return SubTreeCall(named.text, given, frozenset(values), shares, is_one)
+    return SubTreeCall(tree_name.text, entries, frozenset(values), shares, is_one)
 
 
 def _bare_values(nodes: Iterable[ResolvedNode]) -> Iterator[str]:
@@ -291,21 +294,21 @@ def _is_stranger(view: View, seen: ResolvedNode) -> bool:
     if seen.kind is not None or seen.is_subtree or seen.is_placeholder:
         return False
     names = {port.id.text for port in ports_beside(view, seen) if port.id is not None}
-    given = [pair.key.text for pair in seen.node.attributes]
-    return seen.of_model is None or any(is_port_name(name) and name not in names for name in given)
+    keys = [pair.key.text for pair in seen.node.attributes]
+    return seen.of_model is None or any(is_port_name(name) and name not in names for name in keys)
 
 
-def _has_verbatim(tree: Tree, seen: Iterable[ResolvedNode]) -> bool:
-    nodes = chain([tree.children], (each.node.children for each in seen))
+def _has_verbatim(tree: Tree, resolved_nodes: Iterable[ResolvedNode]) -> bool:
+    nodes = chain([tree.children], (resolved.node.children for resolved in resolved_nodes))
     return any(isinstance(child, Verbatim) for children in nodes for child in children)
 
 
 def signal_entries(store: Store[Workspace], viewpoint: str) -> frozenset[Name]:
     """The entries that signals are read from."""
     view = View(store, viewpoint)
-    found = [view.ask(lookups.meaning, Kind.SIGNAL, name) for name in view.ask(inputs.names, Kind.SIGNAL)]
-    signals = [each.target for each in found if each is not None]
-    sources = [each.source for each in signals if isinstance(each, Signal) and each.source is not None]
+    meanings = [view.ask(lookups.meaning, Kind.SIGNAL, name) for name in view.ask(inputs.names, Kind.SIGNAL)]
+    signals = [meaning.target for meaning in meanings if meaning is not None]
+    sources = [signal.source for signal in signals if isinstance(signal, Signal) and signal.source is not None]
     return frozenset([("", source.text.strip("{}").removeprefix("@")) for source in sources])
 
 
@@ -320,9 +323,9 @@ def _use(view: View, seen: ResolvedNode, pair: Pair) -> tuple[bool, bool, bool]:
 
 def _inside(value: Word, name: str) -> Span:
     """The name in `{name}`, in quotes or not."""
-    at = value.raw.find(name)
-    start = value.start + at
-    return Span(start, start + len(name)) if at > 0 else value.span
+    offset = value.raw.find(name)
+    start = value.start + offset
+    return Span(start, start + len(name)) if offset > 0 else value.span
 
 
 def _in_script(view: View, seen: ResolvedNode, value: Word) -> Iterator[EntryMention]:

@@ -59,7 +59,7 @@ class Below(Record):
     uses: Mapping[str, EntryUse]
     any: EntryUse
 
-    def of(self, name: str) -> EntryUse:
+    def use_of(self, name: str) -> EntryUse:
         """What may happen to an entry."""
         return self.uses.get(name, EntryUse(0)) | self.any
 
@@ -73,21 +73,21 @@ def uses(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> Entry
     if name[:1] == "@":
         return store.ask(_of_root, viewpoint, name[1:])
     view = View(store, viewpoint)
-    found = view.ask(below, tree).of(name)
+    use = view.ask(below, tree).use_of(name)
     if port_named(declared_ports(view, tree), name) is not None:
-        found |= EntryUse.GIVEN
+        use |= EntryUse.GIVEN
     running = view.ask(callers, tree)
     if not running or view.ask(is_main, tree):
-        found |= EntryUse.OUTSIDE | view.ask(of_program, name)
+        use |= EntryUse.OUTSIDE | view.ask(of_program, name)
     for caller in running:
         for call in view.ask(handling, caller).calls:
             if call.tree == tree:
                 passed = call.passed(name)
                 if name in call.values:
-                    found |= EntryUse.WRITTEN | EntryUse.CREATED
+                    use |= EntryUse.WRITTEN | EntryUse.CREATED
                 if passed is not None:
-                    found |= view.ask(_above, caller, passed)
-    return found
+                    use |= view.ask(_above, caller, passed)
+    return use
 
 
 @on_circle(Below({}, _ANYTHING))
@@ -95,14 +95,14 @@ def uses(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> Entry
 def below(store: Store[Workspace], viewpoint: str, tree: str) -> Below:
     """What happens to the entries of a tree in it and in the trees that it runs; anything, if it runs itself."""
     own = store.ask(handling, viewpoint, tree)
-    found: dict[str, EntryUse] = {}
+    by_entry: dict[str, EntryUse] = {}
     anything = EntryUse.OPEN if own.is_open else EntryUse(0)
     if own.has_strangers:
         anything |= EntryUse.STRANGE
     for touch in own.touches:
-        found[touch.name] = found.get(touch.name, EntryUse(0)) | _use(touch)
+        by_entry[touch.name] = by_entry.get(touch.name, EntryUse(0)) | _use(touch)
     for name in own.named:
-        found[name] = found.get(name, EntryUse(0)) | EntryUse.OPEN
+        by_entry[name] = by_entry.get(name, EntryUse(0)) | EntryUse.OPEN
     for call in own.calls:
         called = store.ask(below, viewpoint, call.tree)
         if call.shares:
@@ -110,11 +110,11 @@ def below(store: Store[Workspace], viewpoint: str, tree: str) -> Below:
         for name, use in called.uses.items():
             passed = name if name[:1] == "@" else call.passed(name)
             if passed is not None:
-                found[passed] = found.get(passed, EntryUse(0)) | use
+                by_entry[passed] = by_entry.get(passed, EntryUse(0)) | use
         for port, passed in call.given.items():
             if called.any and port not in called.uses:
-                found[passed] = found.get(passed, EntryUse(0)) | called.any
-    return Below(found, anything)
+                by_entry[passed] = by_entry.get(passed, EntryUse(0)) | called.any
+    return Below(by_entry, anything)
 
 
 @on_circle(_ANYTHING)
@@ -128,35 +128,35 @@ def _of_root(store: Store[Workspace], viewpoint: str, name: str) -> EntryUse:
     """What may happen to an entry of the root blackboard that is named with its `@`."""
     view = View(store, viewpoint)
     trees = [(tree, view.ask(below, tree)) for tree in view.ask(inputs.names, Kind.TREE)]
-    found = [each.uses.get(f"@{name}", EntryUse(0)) | each.any for _, each in trees]
-    found += [each.of(name) for tree, each in trees if not view.ask(callers, tree)]
-    return reduce(or_, found, EntryUse.OUTSIDE | view.ask(of_program, name))
+    entry_uses = [tree_uses.uses.get(f"@{name}", EntryUse(0)) | tree_uses.any for _, tree_uses in trees]
+    entry_uses += [tree_uses.use_of(name) for tree, tree_uses in trees if not view.ask(callers, tree)]
+    return reduce(or_, entry_uses, EntryUse.OUTSIDE | view.ask(of_program, name))
 
 
 @of_scope
 def of_program(store: Store[Workspace], viewpoint: str, name: str) -> EntryUse:
     """What the program is known to do with an entry of the root blackboard, and trees by its name with `@`."""
     view = View(store, viewpoint)
-    found = view.ask(_with_sign).get(name, EntryUse(0))
+    use = view.ask(_with_sign).get(name, EntryUse(0))
     if ("", name) in view.ask(signal_entries):
-        found |= EntryUse.GIVEN
+        use |= EntryUse.GIVEN
     for entry, direction in view.ask(lookups.outside_entries):
         if entry == name:
-            found |= EntryUse.READ if direction != "output" else EntryUse(0)
-            found |= EntryUse.WRITTEN | EntryUse.CREATED if direction != "input" else EntryUse(0)
-    return found
+            use |= EntryUse.READ if direction != "output" else EntryUse(0)
+            use |= EntryUse.WRITTEN | EntryUse.CREATED if direction != "input" else EntryUse(0)
+    return use
 
 
 @of_scope
 def _with_sign(store: Store[Workspace], viewpoint: str) -> dict[str, EntryUse]:
     """The entries of the root blackboard that trees name with its `@`."""
     view = View(store, viewpoint)
-    found: dict[str, EntryUse] = {}
+    by_entry: dict[str, EntryUse] = {}
     for tree in view.ask(inputs.names, Kind.TREE):
         for touch in view.ask(handling, tree).touches:
             if touch.name[:1] == "@":
-                found[touch.name[1:]] = found.get(touch.name[1:], EntryUse(0)) | _use(touch)
-    return found
+                by_entry[touch.name[1:]] = by_entry.get(touch.name[1:], EntryUse(0)) | _use(touch)
+    return by_entry
 
 
 def _use(touch: Touch) -> EntryUse:
@@ -170,7 +170,8 @@ def writes_alone(store: Store[Workspace], viewpoint: str, tree: str, called: str
     if any(call.passed(name) is not None or name in call.values for call in calls):
         return False
     return any(
-        each.name == name and each.writes and not each.reads for each in store.ask(handling, viewpoint, called).touches
+        touch.name == name and touch.writes and not touch.reads
+        for touch in store.ask(handling, viewpoint, called).touches
     )
 
 

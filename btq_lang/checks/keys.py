@@ -29,16 +29,16 @@ def key_in_braces(view: View) -> Iterator[Diagnostic]:
                 continue
             from btq_lang.checks.writers import key_of  # few files have such a name
 
-            key = key_of(value.text, port)
-            if key.removeprefix("@") in view.ask(_given):
+            entry = key_of(value.text, port)
+            if entry.removeprefix("@") in view.ask(_entries_with_value):
                 continue
-            message = f"`{value.text}` is the entry whose name `{key}` holds; write `{port}` without braces"
-            notes = (f"the engine throws when the node is ticked, unless `{key}` holds the name of an entry",)
-            fixes = (replace_fix(f"Replace `{value.raw}` with `{key}`", value.span, key),) if is_name(key) else ()
+            message = f"`{value.text}` is the entry whose name `{entry}` holds; write `{port}` without braces"
+            notes = (f"the engine throws when the node is ticked, unless `{entry}` holds the name of an entry",)
+            fixes = (replace_fix(f"Replace `{value.raw}` with `{entry}`", value.span, entry),) if is_name(entry) else ()
             yield Diagnostic("key-in-braces", value.span, message, notes=notes, fixes=fixes)
 
 
-def _given(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
+def _entries_with_value(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
     """The entries that something in scope certainly gives a value, which may be a name, and the ports of trees."""
     from btq_lang.checks.writers import all_entries
 

@@ -50,8 +50,8 @@ def unknown_node(view: View) -> Iterator[Diagnostic]:
         if word is not None and (name is None or name.text == ""):
             if not view.is_torn(seen.node.start, seen.node.end):
                 what, pairs = f"missing ID of this {word.raw}", seen.node.attributes
-                found = missing_id(view, "unknown-node", word.span, what, word.raw, pairs)
-                yield replace(found, severity=Severity.ERROR)
+                diagnostic = missing_id(view, "unknown-node", word.span, what, word.raw, pairs)
+                yield replace(diagnostic, severity=Severity.ERROR)
         elif name is None:
             continue
         elif view.ask(lookups.is_defined, Kind.TREE, name.text):
@@ -95,12 +95,16 @@ def not_an_engine_node(view: View) -> Iterator[Diagnostic]:
         if seen.kind is not None and seen.kind.tag == text:
             continue
         message = f"`{text}` is not built into BehaviorTree.CPP {VERSIONS[0]}–{VERSIONS[-1]}"
-        known = KNOWN_WORDS.get(text)
+        known_word = KNOWN_WORDS.get(text)
         if _is_of(view, text):
             continue
-        if known is not None and (not name.quoted or known.tag == name.text):
-            fixes = _of_today(view, seen, name, known)
-            notes = (known.why, *_as_precondition(view, seen), *(way_in(view) if known.word in _TRANSLATED else ()))
+        if known_word is not None and (not name.quoted or known_word.tag == name.text):
+            fixes = _of_today(view, seen, name, known_word)
+            notes = (
+                known_word.why,
+                *_as_precondition(view, seen),
+                *(way_in(view) if known_word.word in _TRANSLATED else ()),
+            )
             yield Diagnostic("not-an-engine-node", name.span, message, notes=notes, fixes=fixes)
         elif (meant := _quoted_alias(seen, name)) is not None and not _is_refused(view, seen, name):
             yield _aliased(view, seen, name, message, meant)
@@ -124,11 +128,11 @@ def newer_engine_node(view: View) -> Iterator[Diagnostic]:
         for seen in tagged if missing else ():
             if seen.kind is None or seen.id is None or _is_of(view, seen.id.text):
                 continue
-            known = KNOWN_WORDS.get(seen.id.text)
+            known_word = KNOWN_WORDS.get(seen.id.text)
             if (
-                known is not None
-                and known.until is not None
-                and all(at_least(last_of(known.until), v) for v in missing)
+                known_word is not None
+                and known_word.until is not None
+                and all(at_least(last_of(known_word.until), v) for v in missing)
             ):
                 continue  # they have it by this name
             since = "4" if is_before_4(missing[0]) else seen.kind.since
@@ -149,23 +153,23 @@ def no_models(view: View) -> Iterator[Diagnostic]:
     report."""
     if view.is_xml or not view.ask(is_first_tree, view.facts) or view.ask(has_names, Kind.MODEL):
         return
-    given = view.ask(_given_ports) if view.ask(inputs.is_complete) and view.is_read else ()
-    own = view.nodes
-    if own and len(given) >= _MANY:
-        shown = ", ".join(f"`{name}`" for name in given[:3])
-        message = f"no models in scope, so btq cannot check the ports of {len(given)} nodes: {shown} …"
+    names = view.ask(_nodes_with_ports) if view.ask(inputs.is_complete) and view.is_read else ()
+    nodes = view.nodes
+    if nodes and len(names) >= _MANY:
+        shown = ", ".join(f"`{name}`" for name in names[:3])
+        message = f"no models in scope, so btq cannot check the ports of {len(names)} nodes: {shown} …"
         notes = ("declare the nodes (`Action …` with its ports), or include the file that declares them",)
-        yield Diagnostic("no-models", own[0].node.head.span, message, notes=notes)
+        yield Diagnostic("no-models", nodes[0].node.head.span, message, notes=notes)
 
 
-def _given_ports(store: Store[Workspace], viewpoint: str) -> tuple[str, ...]:
+def _nodes_with_ports(store: Store[Workspace], viewpoint: str) -> tuple[str, ...]:
     """The custom nodes of the file that have ports."""
     view = View(store, viewpoint)
-    found = (view.ask(_given_ports_in, tree) for tree in view.ask(lookups.trees))
-    return tuple(dict.fromkeys(name for names in found for name in names))
+    by_tree = (view.ask(_nodes_with_ports_in, tree) for tree in view.ask(lookups.trees))
+    return tuple(dict.fromkeys(name for names in by_tree for name in names))
 
 
-def _given_ports_in(store: Store[Workspace], viewpoint: str, tree: Facts) -> tuple[str, ...]:
+def _nodes_with_ports_in(store: Store[Workspace], viewpoint: str, tree: Facts) -> tuple[str, ...]:
     nodes = View(store, viewpoint).seen_in(viewpoint, tree).all
     return tuple(dict.fromkeys(seen.node.head.text for seen in nodes if _gives_ports(seen)))
 
@@ -272,35 +276,35 @@ def way_in(view: View) -> tuple[str, ...]:
 
 def _is_of(view: View, word: str) -> bool:
     """Whether the engine that the file is for has the node of an older engine's word, or is said to be an older one."""
-    known = KNOWN_WORDS.get(word)
-    if known is None or known.until is None:
+    known_word = KNOWN_WORDS.get(word)
+    if known_word is None or known_word.until is None:
         return False
-    return at_least(last_of(known.until), view.target) or (
-        is_before_4(view.target) and known.tag in view.ask(old_words)
+    return at_least(last_of(known_word.until), view.target) or (
+        is_before_4(view.target) and known_word.tag in view.ask(old_words)
     )
 
 
-def _of_today(view: View, seen: ResolvedNode, name: Word, known: KnownWord) -> tuple[Fix, ...]:
+def _of_today(view: View, seen: ResolvedNode, name: Word, known_word: KnownWord) -> tuple[Fix, ...]:
     """The fix that replaces an older engine's node by its successor."""
-    if known.replacement is not None:
+    if known_word.replacement is not None:
         # Without quotes the old word is read as the new one already, so only this diagnostic changes.
-        title = f"Replace it with `{known.replacement}`"
-        safe = not name.quoted and not _missing(known.replacement, view.engines)
-        return (replace_fix(title, name.span, known.replacement, safe=safe),)
-    if known.category == "SubTree" and seen.node.category is None:
+        title = f"Replace it with `{known_word.replacement}`"
+        safe = not name.quoted and not _missing(known_word.replacement, view.engines)
+        return (replace_fix(title, name.span, known_word.replacement, safe=safe),)
+    if known_word.category == "SubTree" and seen.node.category is None:
         return (replace_fix("Replace it with `SubTree`", name.span, "SubTree"),)
     return ()
 
 
 def _as_precondition(view: View, seen: ResolvedNode) -> tuple[str, ...]:
     """What does the same as a BlackboardCheck of version 3."""
-    given = {pair.key.text: pair.value.text for pair in seen.node.attributes if pair.value is not None}
-    if not given.keys() >= {"value_A", "value_B"}:
+    values = {pair.key.text: pair.value.text for pair in seen.node.attributes if pair.value is not None}
+    if not values.keys() >= {"value_A", "value_B"}:
         return ()
     is_text = seen.id is not None and seen.id.text.endswith("String")
-    sides = [given[key] for key in ("value_A", "value_B")]
+    sides = [values[key] for key in ("value_A", "value_B")]
     one, two = (side[1:-1] if is_pointer(side) else f"'{side}'" if is_text else side for side in sides)
-    script, otherwise = f"{one} == {two}", given.get("return_on_mismatch", "FAILURE")
+    script, otherwise = f"{one} == {two}", values.get("return_on_mismatch", "FAILURE")
     shown = f'Precondition (if = "{script}", else = "{otherwise}")'
     if view.is_xml:
         shown = f'<Precondition if="{script}" else="{otherwise}">'
@@ -309,10 +313,10 @@ def _as_precondition(view: View, seen: ResolvedNode) -> tuple[str, ...]:
 
 def _as_child_condition(view: View, seen: ResolvedNode, tag: str) -> tuple[str, ...]:
     """Where the condition goes that an `If` or a `While` has as an attribute."""
-    found = [pair.value for pair in seen.node.attributes if pair.key.text.casefold() in _CONDITIONS]
-    if BUILTINS[tag].flow != "choice" or not found or found[0] is None:
+    conditions = [pair.value for pair in seen.node.attributes if pair.key.text.casefold() in _CONDITIONS]
+    if BUILTINS[tag].flow != "choice" or not conditions or conditions[0] is None:
         return ()
-    script = found[0].text.strip("{}")
+    script = conditions[0].text.strip("{}")
     shown = f'<ScriptCondition code="{script}"/>' if view.is_xml else f'ScriptCondition (code = "{script}")'
     return (f"write `{shown}` as its first child",)
 

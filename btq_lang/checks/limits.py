@@ -85,12 +85,12 @@ def outbid_bound(demanded: Demanded) -> Iterator[Found]:
             kinds.setdefault((id(node), applied.requirement.name, claim.verb, limit[0]), []).append(
                 (claim, limit, place)
             )
-    for same in kinds.values():
-        lows = [(low[0], low[1], claim, place) for claim, (_, low, _), place in same if low is not None]
-        highs = [(high[0], high[1], claim, place) for claim, (_, _, high), place in same if high is not None]
+    for group in kinds.values():
+        lows = [(low[0], low[1], claim, place) for claim, (_, low, _), place in group if low is not None]
+        highs = [(high[0], high[1], claim, place) for claim, (_, _, high), place in group if high is not None]
         for word, bounds in (("least", lows), ("most", highs)):
             pick = max if word == "least" else min
-            tight = pick(bounds, key=lambda each: each[0], default=None)
+            tight = pick(bounds, key=lambda bound: bound[0], default=None)
             for bound in bounds:
                 # Two equal ones that are written differently may differ: `at most 30 s`, `less than 30 s`.
                 if tight is None or (bound[0] == tight[0] and bound[2].text != tight[2].text):
@@ -157,14 +157,14 @@ def contradicting_bounds(demanded: Demanded) -> Iterator[Found]:
         scopes = tuple(scope.text for scope in applied.requirement.scopes)
         for what, low, high in _limits(claim):
             key = id(node), what, scopes
-            before_most, before_least = most.get(key), least.get(key)
+            earlier_most, earlier_least = most.get(key), least.get(key)
             if low is not None and (key not in least or low[0] > least[key][0]):
                 least[key] = (*low, place)
             if high is not None and (key not in most or high[0] < most[key][0]):
                 most[key] = (*high, place)
             if key not in least or key not in most or least[key][0] <= most[key][0]:
                 continue
-            if before_least is not None and before_most is not None and before_least[0] > before_most[0]:
+            if earlier_least is not None and earlier_most is not None and earlier_least[0] > earlier_most[0]:
                 continue  # reported
             other = least[key] if high is not None and most[key][2] is place else most[key]
             related = () if other[2] is place else (Related(other[2], "other bound"),)
@@ -205,28 +205,32 @@ def _compared(verb: str, condition: Compare) -> Iterator[_Limit]:
 
 def _tightest_timeout(node: ResolvedNode) -> tuple[ResolvedNode, float] | None:
     """The Timeout around a node in its tree that ends first."""
-    found = [(each, limit) for each in node.ancestors() if each.flow == "timeout" and (limit := port_seconds(each))]
-    return min(found, key=lambda each: each[1], default=None)
+    timeouts = [
+        (ancestor, limit)
+        for ancestor in node.ancestors()
+        if ancestor.flow == "timeout" and (limit := port_seconds(ancestor))
+    ]
+    return min(timeouts, key=lambda timeout: timeout[1], default=None)
 
 
 def _loops(node: ResolvedNode, top: ResolvedNode) -> list[tuple[ResolvedNode, int]]:
     """The loops between a node and one above it in the same tree, with their counts; empty if one is unknown."""
-    found: list[tuple[ResolvedNode, int]] = []
-    for at in node.ancestors() if node is not top else ():
-        if at.flow in ("retry", "repeat"):
-            count = port_count(at, "count")
+    loops: list[tuple[ResolvedNode, int]] = []
+    for ancestor in node.ancestors() if node is not top else ():
+        if ancestor.flow in ("retry", "repeat"):
+            count = port_count(ancestor, "count")
             if count is None or count < 1:
                 return []
-            found.append((at, count))
-        if at is top:
-            return found
+            loops.append((ancestor, count))
+        if ancestor is top:
+            return loops
     return []
 
 
 def _goal_clause(view: View, name: str) -> Goal | None:
     """The clause with a requirement's goal."""
-    found = view.ask(inputs.definition, Kind.REQUIREMENT, name)
-    written = inputs.symbol(found[1], Kind.REQUIREMENT, name).target if found is not None else None
+    definition = view.ask(inputs.definition, Kind.REQUIREMENT, name)
+    written = inputs.symbol(definition[1], Kind.REQUIREMENT, name).target if definition is not None else None
     clauses = written.clauses if isinstance(written, WrittenRequirement) else ()
     return next((clause for clause in clauses if isinstance(clause, Goal)), None)
 

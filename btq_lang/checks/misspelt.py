@@ -123,7 +123,7 @@ def _root_names(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
 
 def _is_created(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
     """Whether anything creates an entry."""
-    return any(each.creates for each in store.ask(blackboards, viewpoint).of(tree, name))
+    return any(each.creates for each in store.ask(blackboards, viewpoint).uses_of(tree, name))
 
 
 def _is_set(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
@@ -143,7 +143,7 @@ def _is_meant(store: Store[Workspace], viewpoint: str, tree: str, name: str, mea
     place = boards.place(tree, name)
     if not place[0] and boards.root_names.get(place[1], 0) > 1:
         return False
-    uses, others = boards.of(tree, name), boards.of(tree, meant)
+    uses, others = boards.uses_of(tree, name), boards.uses_of(tree, meant)
     is_port = boards.is_port(tree, meant)
     of_program = store.ask(lookups.set_in_cpp, viewpoint)
     if name.removeprefix("@") in of_program:

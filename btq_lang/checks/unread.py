@@ -107,7 +107,7 @@ def _actions_with_codes_in(view: View, distribution: str, tree: str, name: str) 
     writers = [each.node for each in named if each.writes]
     # Before the next goal bt_navigator sets those that it collects to 0.
     resets = [each for each, way in view.ask(lookups.outside_entries) if way != "input" and each == name]
-    writes = sum(each.writes for each in boards.of(tree, name))
+    writes = sum(each.writes for each in boards.uses_of(tree, name))
     if boards.is_given(tree, name) or writes > len(writers) + len(resets):
         return set()
     found = [of_distribution(view, seen, distribution) for seen in writers if seen.node.attribute("error_code_id")]
@@ -117,7 +117,7 @@ def _actions_with_codes_in(view: View, distribution: str, tree: str, name: str) 
 def _is_read(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
     """Whether anything reads an entry, or the tree is given it."""
     boards = store.ask(blackboards, viewpoint)
-    return boards.is_given(tree, name) or any(each.reads for each in boards.of(tree, name))
+    return boards.is_given(tree, name) or any(each.reads for each in boards.uses_of(tree, name))
 
 
 def _default(view: View, seen: ResolvedNode, pair: Pair, value: Word, what: str) -> Diagnostic:
