@@ -279,17 +279,17 @@ def check_each(workspace: Workspace, paths: Iterable[str]) -> Iterator[tuple[Dia
     store.sweep(always=True)  # cached results refer to each other, and so to the workspace
 
 
-def findings(store: Store[Workspace], path: str, seen: Iterable[Reported] = ()) -> FileFindings:
+def findings(store: Store[Workspace], path: str, of_logs: Iterable[Reported] = ()) -> FileFindings:
     """The same for a file of the store's workspace, with the diagnostics of each item.
 
     Args:
-        seen: what logs show, which no check reads, as the project configures it.
+        of_logs: what logs show, which no check reads, as the project configures it.
     """
     # Without a text, as XML that cannot be read, it has no items: what was found in them is kept until it can be read.
     # Of C++, the text has the models, of which only what is wrong in the C++ itself is reported.
     file = store.state.files[path]
     reported = store.ask(reported_in_file, path, False) if file.text and not file.is_cpp else ()
-    return findings_of(store.state, path, (*reported, *seen))
+    return findings_of(store.state, path, (*reported, *of_logs))
 
 
 def findings_of(workspace: Workspace, path: str, reported: Iterable[Reported]) -> FileFindings:

@@ -26,9 +26,9 @@ def unread_argument(view: View) -> Iterator[Diagnostic]:
     """An argument of a SubTree that nothing in its tree names, once for each tree; one that the tree's declared ports
     lack is an unknown port."""
     reported: set[tuple[str, str]] = set()
-    for seen in view.seen.subtrees:
-        tree = seen.id.text if seen.id is not None else ""
-        for pair in seen.node.attributes:
+    for resolved in view.seen.subtrees:
+        tree = resolved.id.text if resolved.id is not None else ""
+        for pair in resolved.node.attributes:
             name = pair.key.text
             if not is_port_name(name) or (tree, name) in reported or not view.ask(lookups.is_defined, Kind.TREE, tree):
                 continue
@@ -38,7 +38,9 @@ def unread_argument(view: View) -> Iterator[Diagnostic]:
             if view.ask(_is_named, tree, name):
                 continue
             reported.add((tree, name))
-            meant = [entry for entry in view.ask(_similar_entries, tree, name) if seen.node.attribute(entry) is None]
+            meant = [
+                entry for entry in view.ask(_similar_entries, tree, name) if resolved.node.attribute(entry) is None
+            ]
             fixes = tuple([replace_fix(f"Replace `{name}` with `{entry}`", pair.key.span, entry) for entry in meant])
             message = f"nothing in `{tree}` reads `{name}`{did_you_mean(tuple(meant))}"
             yield Diagnostic("unread-argument", pair.key.span, message, fixes=fixes)
@@ -78,7 +80,7 @@ def _is_named(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> 
     own, definition = view.ask(handling, tree), view.ask(inputs.definition, Kind.TREE, tree)
     if own.is_open or own.has_strangers or definition is None or name in view.ask(_words, tree):
         return True
-    if any(seen.kind is None and not seen.is_subtree for seen in view.seen_in(*definition).all):
+    if any(resolved.kind is None and not resolved.is_subtree for resolved in view.seen_in(*definition).all):
         from btq_lang.catalog.nav2.navigator import ENTRIES  # few arguments are not named
 
         if name in ENTRIES:
@@ -92,8 +94,8 @@ def _words(store: Store[Workspace], viewpoint: str, tree: str) -> frozenset[str]
     view = View(store, viewpoint)
     definition = view.ask(inputs.definition, Kind.TREE, tree)
     words: set[str] = set()
-    for seen in view.seen_in(*definition).given if definition is not None else ():
-        for pair in seen.node.attributes:
+    for resolved in view.seen_in(*definition).given if definition is not None else ():
+        for pair in resolved.node.attributes:
             if pair.value is not None:
                 words.update(_WORD(pair.value.text) if pair.value.text not in ("=", "{=}") else (pair.key.text,))
     return frozenset(words)

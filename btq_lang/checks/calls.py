@@ -124,13 +124,13 @@ def _run_from(mains: tuple[str, ...], graph: Mapping[str, Runs]) -> Set[str]:
 
 def _way_back(start: str, graph: Mapping[str, Iterable[str]]) -> tuple[str, ...]:
     """The shortest way from a tree to itself, both ends included."""
-    before: dict[str, str] = {}
+    predecessors: dict[str, str] = {}
     for tree in reached([start], graph.__getitem__):
         for called in graph[tree]:
-            before.setdefault(called, tree)
-    way = [start, before[start]]
+            predecessors.setdefault(called, tree)
+    way = [start, predecessors[start]]
     while way[-1] != start:
-        way.append(before[way[-1]])
+        way.append(predecessors[way[-1]])
     return tuple(reversed(way))
 
 
@@ -153,7 +153,7 @@ def _runs(store: Store[Workspace], viewpoint: str, tree: str) -> Runs:
     uses = definition[1].summary.uses
     called = dict.fromkeys([use.name for use in uses if use.kind is Kind.TREE])
     subtrees = view.seen_in(*definition).subtrees
-    declared = {seen.id.text for seen in subtrees if seen.id is not None}  # by a model, perhaps
+    declared = {resolved.id.text for resolved in subtrees if resolved.id is not None}  # by a model, perhaps
     meant_trees = [name for use in uses for name in (_meant_tree(use), _for_goal(use)) if name and name not in declared]
     trees = {
         name
@@ -161,7 +161,7 @@ def _runs(store: Store[Workspace], viewpoint: str, tree: str) -> Runs:
         if name not in called and view.ask(lookups.is_defined, Kind.TREE, name)
     }
     called.update(dict.fromkeys(sorted(declared & trees)))
-    called.update(dict.fromkeys("" for seen in subtrees if seen.id is None))
+    called.update(dict.fromkeys("" for resolved in subtrees if resolved.id is None))
     return tuple(called), tuple([name for name in meant_trees if name in trees])
 
 

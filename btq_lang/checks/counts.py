@@ -21,19 +21,19 @@ def count_of_nothing(view: View) -> Iterator[Diagnostic]:
     """A Repeat or a Retry that never runs its child, a Timeout that never ends, a Delay that does not wait."""
     if view.is_pinned and not view.project.written_for:  # what moves on meets the change itself
         yield from _delays(view)
-    for seen in view.seen.of_flow("repeat", "retry", "timeout"):
-        if seen.kind is None:
+    for resolved in view.seen.of_flow("repeat", "retry", "timeout"):
+        if resolved.kind is None:
             continue
-        port = seen.kind.port_for("time" if seen.flow == "timeout" else "count")
-        value = seen.node.attribute(port.name) if port is not None else None
+        port = resolved.kind.port_for("time" if resolved.flow == "timeout" else "count")
+        value = resolved.node.attribute(port.name) if port is not None else None
         number = _number(value) if value is not None else None
         if value is None or number is None:
             continue
-        if seen.flow == "timeout":
+        if resolved.flow == "timeout":
             if number == 0:
-                yield _timeout(seen.kind, value)
+                yield _timeout(resolved.kind, value)
         elif number < 1 and number != -1:
-            yield _loop(seen, value, number)
+            yield _loop(resolved, value, number)
 
 
 def _delays(view: View) -> Iterator[Diagnostic]:
@@ -44,14 +44,14 @@ def _delays(view: View) -> Iterator[Diagnostic]:
     from btq_lang.catalog.engine_changes import NO_DELAY  # few files have a Delay and are for one line
 
     if any(at_least(last_of(line), NO_DELAY.since) and not at_least(line, NO_DELAY.until) for line in view.engines):
-        for seen in delays:
-            message = f"{seen.shown_kind} {NO_DELAY.what}"
-            yield Diagnostic("count-of-nothing", seen.node.head.span, message, notes=(NO_DELAY.instead,))
+        for resolved in delays:
+            message = f"{resolved.shown_kind} {NO_DELAY.what}"
+            yield Diagnostic("count-of-nothing", resolved.node.head.span, message, notes=(NO_DELAY.instead,))
 
 
-def _loop(seen: ResolvedNode, value: Word, number: float) -> Diagnostic:
+def _loop(resolved: ResolvedNode, value: Word, number: float) -> Diagnostic:
     fixes = (replace_fix("Write `-1` for endless", value.span, "-1"),) if number < 0 else ()
-    message = f"{seen.shown_kind} never runs its child with `{value.raw}`"
+    message = f"{resolved.shown_kind} never runs its child with `{value.raw}`"
     notes = ("-1 means endless, other numbers below 1 mean never",)
     return Diagnostic("count-of-nothing", value.span, message, notes=notes, fixes=fixes)
 

@@ -135,9 +135,9 @@ def _below_model(element: Element, part: Placed) -> Iterator[Diagnostic]:
         yield _ignored(part, ignored, severity=Severity.HINT)
         return
     name = element.get("name") or element.get("label")
-    written = f'<{port} name="{name}"/>' if name is not None else f"<{port}>"
-    notes = (f"version 2 wrote <{tag}>; now it is `{written}`",) if tag == "Parameter" else ()
-    yield _ignored(part, f"{ignored}; did you mean `{written}`?", *notes)
+    shown = f'<{port} name="{name}"/>' if name is not None else f"<{port}>"
+    notes = (f"version 2 wrote <{tag}>; now it is `{shown}`",) if tag == "Parameter" else ()
+    yield _ignored(part, f"{ignored}; did you mean `{shown}`?", *notes)
 
 
 def _port_meant(tag: str) -> str | None:

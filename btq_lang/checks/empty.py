@@ -17,11 +17,11 @@ def empty_text(view: View) -> Iterator[Diagnostic]:
         return
     searched: object = view.item
     if isinstance(view.item, syntax.Tree):
-        searched = (view.item.clauses, *[seen.node.clauses for seen in view.seen.demanding])
+        searched = (view.item.clauses, *[resolved.node.clauses for resolved in view.seen.demanding])
     for part in syntax.walk(searched):
         for field, what in _NAMES.get(type(part), {}).items():
-            named = getattr(part, field)
-            for word in named if isinstance(named, tuple) else (named,):
+            value = getattr(part, field)
+            for word in value if isinstance(value, tuple) else (value,):
                 if word is not None and word.raw in _EMPTY and not _is_without_content(part, what):
                     severity = Severity.HINT if what in _FOR_PEOPLE else None
                     yield Diagnostic("empty-text", word.span, f"{what} is empty", severity=severity)

@@ -87,25 +87,25 @@ def handling(store: Store[Workspace], viewpoint: str, tree: str) -> Handling:
         tuple([port.name.text for port in (*item.ports, *declared) if port.name is not None]),
         tuple(touches),
         frozenset(_bare_values(nodes.given)),
-        tuple([call for seen in nodes.all if (call := _call(view, seen)) is not None]),
+        tuple([call for resolved in nodes.all if (call := _call(view, resolved)) is not None]),
         _has_verbatim(item, nodes.all)
         or bool(store.ask(inputs.entry, *definition).diagnostics)
         or any(map(_names_by_value, nodes.given))
         or any(not touch.name.removeprefix("@").isidentifier() for touch in touches),
-        any(_is_stranger(view, seen) for seen in nodes.all),
+        any(_is_stranger(view, resolved) for resolved in nodes.all),
     )
 
 
 def _mentions(view: View, path: str, tree: Facts) -> Iterator[EntryMention]:
-    for seen, pair, value in view.seen_in(path, tree).values():
+    for resolved, pair, value in view.seen_in(path, tree).values():
         if "{" in value.raw and (name := pointed_at(pair.key.text, value.text)) is not None:
             inner = value.span if name == pair.key.text else _inside(value, name)
-            yield EntryMention(name, inner, seen, *_use(view, seen, pair), False)
-        elif is_script(seen, pair):
-            yield from _in_script(view, seen, value)
-        elif seen.kind is not None and (port := seen.kind.port(pair.key.text)) and port.content == "key":
+            yield EntryMention(name, inner, resolved, *_use(view, resolved, pair), False)
+        elif is_script(resolved, pair):
+            yield from _in_script(view, resolved, value)
+        elif resolved.kind is not None and (port := resolved.kind.port(pair.key.text)) and port.content == "key":
             creates = port.direction != "input"
-            yield EntryMention(value.text, value.span, seen, not creates, creates, creates, False)
+            yield EntryMention(value.text, value.span, resolved, not creates, creates, creates, False)
 
 
 class Handling(Record):
@@ -244,17 +244,17 @@ class Blackboards:
         return name
 
 
-def _call(view: View, seen: ResolvedNode) -> SubTreeCall | None:
+def _call(view: View, resolved: ResolvedNode) -> SubTreeCall | None:
     """How a node passes entries to the tree that it runs; None if it runs none."""
-    is_plus = seen.node.kind is not None and seen.node.kind.raw == "SubTreePlus"
-    tree_name = seen.node.attribute("ID") if is_plus else seen.id if seen.is_subtree else None
+    is_plus = resolved.node.kind is not None and resolved.node.kind.raw == "SubTreePlus"
+    tree_name = resolved.node.attribute("ID") if is_plus else resolved.id if resolved.is_subtree else None
     if tree_name is None:
         return None
     is_old = is_before_4(view.target)
     is_new = not view.is_xml or view.ask(is_for_version_4)
     entries: dict[str, str] = {}
     values: list[str] = []
-    for pair in seen.node.attributes:
+    for pair in resolved.node.attributes:
         port, text = pair.key.text, pair.value.text if pair.value is not None else ""
         if not is_port_name(port):
             continue
@@ -265,37 +265,37 @@ def _call(view: View, seen: ResolvedNode) -> SubTreeCall | None:
             entries.setdefault(port, name)
         if name is None or (is_name and not is_old):
             values.append(port)
-    is_one = not is_new and is_on(seen, "__shared_blackboard")
-    shares = is_one or remaps_all(seen) or (is_plus and is_on(seen, "__autoremap"))
+    is_one = not is_new and is_on(resolved, "__shared_blackboard")
+    shares = is_one or remaps_all(resolved) or (is_plus and is_on(resolved, "__autoremap"))
     return SubTreeCall(tree_name.text, entries, frozenset(values), shares, is_one)
 
 
 def _bare_values(nodes: Iterable[ResolvedNode]) -> Iterator[str]:
     """The values of custom nodes, and of built-in ones that remove entries, which look like names."""
-    for seen in nodes:
-        for pair in seen.node.attributes if not seen.is_subtree else ():
-            port = seen.kind.port(pair.key.text) if seen.kind is not None else None
+    for resolved in nodes:
+        for pair in resolved.node.attributes if not resolved.is_subtree else ():
+            port = resolved.kind.port(pair.key.text) if resolved.kind is not None else None
             text = pair.value.text.removeprefix("@") if pair.value is not None else ""
-            if text.isidentifier() and (seen.kind is None or (port is not None and port.removes)):
+            if text.isidentifier() and (resolved.kind is None or (port is not None and port.removes)):
                 yield text
 
 
-def _names_by_value(seen: ResolvedNode) -> bool:
+def _names_by_value(resolved: ResolvedNode) -> bool:
     """Whether an entry of a built-in node says which other entry it writes."""
-    for pair in seen.node.attributes if seen.kind is not None else ():
-        port = seen.kind.port(pair.key.text) if seen.kind is not None else None
+    for pair in resolved.node.attributes if resolved.kind is not None else ():
+        port = resolved.kind.port(pair.key.text) if resolved.kind is not None else None
         if port is not None and port.content == "key" and pair.value is not None and is_pointer(pair.value.text):
             return True
     return False
 
 
-def _is_stranger(view: View, seen: ResolvedNode) -> bool:
+def _is_stranger(view: View, resolved: ResolvedNode) -> bool:
     """Whether it is not known which ports a node has: nothing declares it, or it has more than are declared."""
-    if seen.kind is not None or seen.is_subtree or seen.is_placeholder:
+    if resolved.kind is not None or resolved.is_subtree or resolved.is_placeholder:
         return False
-    names = {port.id.text for port in ports_beside(view, seen) if port.id is not None}
-    keys = [pair.key.text for pair in seen.node.attributes]
-    return seen.of_model is None or any(is_port_name(name) and name not in names for name in keys)
+    names = {port.id.text for port in ports_beside(view, resolved) if port.id is not None}
+    keys = [pair.key.text for pair in resolved.node.attributes]
+    return resolved.of_model is None or any(is_port_name(name) and name not in names for name in keys)
 
 
 def _has_verbatim(tree: Tree, resolved_nodes: Iterable[ResolvedNode]) -> bool:
@@ -312,12 +312,12 @@ def signal_entries(store: Store[Workspace], viewpoint: str) -> frozenset[Name]:
     return frozenset([("", source.text.strip("{}").removeprefix("@")) for source in sources])
 
 
-def _use(view: View, seen: ResolvedNode, pair: Pair) -> tuple[bool, bool, bool]:
+def _use(view: View, resolved: ResolvedNode, pair: Pair) -> tuple[bool, bool, bool]:
     """Whether a port reads, writes and creates the entry that it is given."""
-    if seen.is_subtree:
-        unknown = seen.node.id is None or not view.ask(lookups.is_defined, Kind.TREE, seen.node.id.text)
+    if resolved.is_subtree:
+        unknown = resolved.node.id is None or not view.ask(lookups.is_defined, Kind.TREE, resolved.node.id.text)
         return unknown, unknown, unknown
-    port = port_of(view, seen, pair.key.text)
+    port = port_of(view, resolved, pair.key.text)
     return port is None or port.direction != "output", port is None or port.direction != "input", True
 
 
@@ -328,9 +328,9 @@ def _inside(value: Word, name: str) -> Span:
     return Span(start, start + len(name)) if offset > 0 else value.span
 
 
-def _in_script(view: View, seen: ResolvedNode, value: Word) -> Iterator[EntryMention]:
+def _in_script(view: View, resolved: ResolvedNode, value: Word) -> Iterator[EntryMention]:
     from btq_lang.syntax.script.tree import variables  # most files have no script, and it is large
 
     for variable in variables(view.script(value.text)):
         span = in_source(value, variable.span)
-        yield EntryMention(variable.name, span, seen, variable.reads, variable.writes, variable.creates, True)
+        yield EntryMention(variable.name, span, resolved, variable.reads, variable.writes, variable.creates, True)

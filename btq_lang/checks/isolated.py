@@ -29,10 +29,10 @@ def isolated_node(view: View) -> Iterator[Diagnostic]:
     if not view.seen.subtrees or view.ask(lookups.distribution) is None:
         return
     is_old = is_before_4(view.target)
-    for seen in view.seen.subtrees:
-        tree = seen.node.id
+    for resolved in view.seen.subtrees:
+        tree = resolved.node.id
         needed = view.ask(_needed, tree.text) if tree is not None else ()
-        lacking = {entry: node for entry, node in needed if _passed(seen, entry, is_old) is None}
+        lacking = {entry: node for entry, node in needed if _passed(resolved, entry, is_old) is None}
         if tree is None or not lacking:
             continue
         names = ", ".join(f"`{entry}`" for entry in lacking)
@@ -41,15 +41,15 @@ def isolated_node(view: View) -> Iterator[Diagnostic]:
         message = f"`{node}` cannot be created in the tree `{tree.text}`: this SubTree does not pass {names}"
         notes = (f'write `{sharing}="true"`: the engine refuses the tree without these entries of bt_navigator',)
         related = view.declared_at(Kind.TREE, tree.text, "its tree")
-        fixes = adding_fix(view, seen.node, "Pass all entries", f"{sharing} = true") if not is_old else ()
-        yield Diagnostic("isolated-node", seen.node.head.span, message, related, notes, fixes)
+        fixes = adding_fix(view, resolved.node, "Pass all entries", f"{sharing} = true") if not is_old else ()
+        yield Diagnostic("isolated-node", resolved.node.head.span, message, related, notes, fixes)
 
 
 @on_circle(())
 def _needed(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[tuple[str, str], ...]:
     """The entries that a tree must have to be created, each with the first node that takes it."""
-    own, below = store.ask(_in_tree, viewpoint, tree)
-    needed = dict(own)
+    own_entries, below = store.ask(_in_tree, viewpoint, tree)
+    needed = dict(own_entries)
     for called, passed in below:
         names = dict(passed)
         for entry, name in store.ask(_needed, viewpoint, called):
@@ -69,30 +69,34 @@ def _in_tree(store: Store[Workspace], viewpoint: str, tree: str) -> _InTree:
         return (), ()
     nodes = view.seen_in(*definition)
     needed: dict[str, str] = {}
-    for seen, name, _ in of_nav2(view, distribution, nodes.all):
-        ports = {port.id.text for port in ports_beside(view, seen) if port.id is not None}
+    for resolved, name, _ in of_nav2(view, distribution, nodes.all):
+        ports = {port.id.text for port in ports_beside(view, resolved) if port.id is not None}
         for entry in created_with(distribution, name, ports):
             needed.setdefault(entry, name)
     is_old = is_before_4(view.target)
-    below = [(seen.node.id.text, tuple(_renamed(seen, is_old))) for seen in nodes.subtrees if seen.node.id is not None]
+    below = [
+        (resolved.node.id.text, tuple(_renamed(resolved, is_old)))
+        for resolved in nodes.subtrees
+        if resolved.node.id is not None
+    ]
     return tuple(needed.items()), tuple(below)
 
 
-def _renamed(seen: ResolvedNode, is_old: bool) -> Iterator[tuple[str, str]]:
+def _renamed(resolved: ResolvedNode, is_old: bool) -> Iterator[tuple[str, str]]:
     """The entries that a SubTree passes under another name."""
-    for pair in seen.node.attributes:
-        if passed := _passed(seen, pair.key.text, is_old):
+    for pair in resolved.node.attributes:
+        if passed := _passed(resolved, pair.key.text, is_old):
             yield pair.key.text, passed
 
 
-def _passed(seen: ResolvedNode, entry: str, is_old: bool) -> str | None:
+def _passed(resolved: ResolvedNode, entry: str, is_old: bool) -> str | None:
     """The entry that a SubTree passes to its tree under a name; None: it passes none.
 
     Version 3 takes the value of a port for the name of an entry.
     """
     if not is_old:
-        return passed_on(seen, entry)
-    shared, value = (seen.node.attribute(key) for key in ("__shared_blackboard", entry))
+        return passed_on(resolved, entry)
+    shared, value = (resolved.node.attribute(key) for key in ("__shared_blackboard", entry))
     if value is not None:
         return value.text.strip("{}")
     return entry if shared is not None and shared.text in ("true", "True", "TRUE", "1") else None

@@ -23,8 +23,8 @@ _INDIRECT = tuple((kind.tag, port.name) for kind in BUILTINS.values() for port i
 def key_in_braces(view: View) -> Iterator[Diagnostic]:
     """`SetBlackboard (output_key = {speed})`, unless something gives `speed` the name of an entry."""
     for tag, port in _INDIRECT:
-        for seen in view.seen.by_tag.get(tag, ()):
-            value = seen.node.attribute(port)
+        for resolved in view.seen.by_tag.get(tag, ()):
+            value = resolved.node.attribute(port)
             if value is None or not is_pointer(value.text):
                 continue
             from btq_lang.checks.writers import key_of  # few files have such a name
@@ -46,8 +46,8 @@ def _entries_with_value(store: Store[Workspace], viewpoint: str) -> frozenset[st
     written = {
         key.removeprefix("@")
         for entries in view.ask(all_entries)
-        for seen, key in entries.sure
-        if not any(is_pointer(value.text) for value in map(seen.node.attribute, _PORTS) if value is not None)
+        for resolved, key in entries.sure
+        if not any(is_pointer(value.text) for value in map(resolved.node.attribute, _PORTS) if value is not None)
     }
     return frozenset(written).union(*(view.ask(_passed, *tree) for tree in store.ask(inputs.trees, viewpoint)))
 
@@ -58,7 +58,7 @@ def _passed(store: Store[Workspace], viewpoint: str, path: str, tree: Facts) -> 
     nodes = view.seen_in(path, tree)
     ports = tree.item.ports if isinstance(tree.item, Tree) else ()
     own = (port.name.text for port in ports if port.name is not None)
-    return frozenset([*own, *(pair.key.text for seen in nodes.subtrees for pair in seen.node.attributes)])
+    return frozenset([*own, *(pair.key.text for resolved in nodes.subtrees for pair in resolved.node.attributes)])
 
 
 _PORTS = tuple(port for _, port in _INDIRECT)

@@ -98,10 +98,10 @@ def outbid_bound(demanded: Demanded) -> Iterator[Found]:
                 if bound[2].place == tight[2].place:  # the same claim, which may apply to the node in several ways
                     continue
                 message = f"the same requirement already demands at {word} `{tight[1]}`, so `{bound[1]}` has no effect"
-                at = tight[3]
-                if at.path == bound[3].path and at.anchor is bound[3].anchor:
-                    at = Place(at.span)  # without its item, which would be hashed for each of many claims
-                related = (Related(at, "tighter bound"),) if tight[3].span != bound[3].span else ()
+                tighter = tight[3]
+                if tighter.path == bound[3].path and tighter.anchor is bound[3].anchor:
+                    tighter = Place(tighter.span)  # without its item, which would be hashed for each of many claims
+                related = (Related(tighter, "tighter bound"),) if tight[3].span != bound[3].span else ()
                 yield found_at(bound[3], "dead-bound", message, related=related)
 
 
@@ -230,8 +230,8 @@ def _loops(node: ResolvedNode, top: ResolvedNode) -> list[tuple[ResolvedNode, in
 def _goal_clause(view: View, name: str) -> Goal | None:
     """The clause with a requirement's goal."""
     definition = view.ask(inputs.definition, Kind.REQUIREMENT, name)
-    written = inputs.symbol(definition[1], Kind.REQUIREMENT, name).target if definition is not None else None
-    clauses = written.clauses if isinstance(written, WrittenRequirement) else ()
+    target = inputs.symbol(definition[1], Kind.REQUIREMENT, name).target if definition is not None else None
+    clauses = target.clauses if isinstance(target, WrittenRequirement) else ()
     return next((clause for clause in clauses if isinstance(clause, Goal)), None)
 
 

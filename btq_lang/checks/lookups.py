@@ -219,8 +219,10 @@ def registers_all(workspace: Workspace, viewpoint: str) -> bool:
     if factory is None or factory.nav2 or factory.lost:
         return False
     files = [workspace.files[path] for path in factory.cpp_files if path in workspace.files]
-    own = {_package(file.path) for file in files if file.names_of(Kind.MODEL) and not _OF_LIBRARY(file.source)}
-    return bool(own) and not any(_package(file.path) in own and _LOADS_LIBRARIES(file.source) for file in files)
+    own_packages = {_package(file.path) for file in files if file.names_of(Kind.MODEL) and not _OF_LIBRARY(file.source)}
+    return bool(own_packages) and not any(
+        _package(file.path) in own_packages and _LOADS_LIBRARIES(file.source) for file in files
+    )
 
 
 @of_viewpoint
@@ -231,17 +233,17 @@ def clashes(workspace: Workspace, viewpoint: str) -> tuple[tuple[Facts, Declarat
         return ()
     file = workspace.files[viewpoint]
     collisions: list[tuple[Facts, Declaration, Declaration]] = []
-    before: set[str] = set()
+    earlier: set[str] = set()
     for include in file.includes if len(file.includes) > 1 else ():
         target = workspace.included_by(viewpoint, include)
         brought = workspace.closure(target) if target is not None else ()
-        for path in brought if before else ():
-            for second in workspace.files[path].defined if path not in before else ():
+        for path in brought if earlier else ():
+            for second in workspace.files[path].defined if path not in earlier else ():
                 first = workspace.scope(viewpoint).find(second.symbol.kind, second.symbol.name)
-                if first is not None and first.path in before and first.path not in brought:
+                if first is not None and first.path in earlier and first.path not in brought:
                     both = _declaration(workspace, first), _declaration(workspace, second)
                     collisions.append((file.facts[id(include)], *both))
-        before.update(brought)
+        earlier.update(brought)
     return tuple(collisions)
 
 
@@ -357,8 +359,8 @@ def is_asked_for(workspace: Workspace, viewpoint: str, name: str) -> bool:
 def asked_for_in_vain(workspace: Workspace, viewpoint: str) -> frozenset[str]:
     """The names in the file's conditions, bounds and arguments that are neither signals nor contexts."""
     find = workspace.scope(viewpoint).find
-    asked = workspace.files[viewpoint].said("asked_for")
-    return frozenset([name for name in asked if not (find(Kind.SIGNAL, name) or find(Kind.CONTEXT, name))])
+    names = workspace.files[viewpoint].said("asked_for")
+    return frozenset([name for name in names if not (find(Kind.SIGNAL, name) or find(Kind.CONTEXT, name))])
 
 
 @of_viewpoint

@@ -33,9 +33,9 @@ def is_measured(store: Store[Workspace], viewpoint: str) -> bool:
 def _has_clauses(store: Store[Workspace], viewpoint: str, name: str) -> bool:
     view = View(store, viewpoint)
     meaning = view.ask(lookups.meaning, Kind.REQUIREMENT, name)
-    written = meaning.target if meaning is not None else None
-    return isinstance(written, Requirement) and bool(
-        written.clauses or written.parameters or any(checkable for _, checkable in view.constraints(written))
+    target = meaning.target if meaning is not None else None
+    return isinstance(target, Requirement) and bool(
+        target.clauses or target.parameters or any(checkable for _, checkable in view.constraints(target))
     )
 
 
@@ -54,34 +54,41 @@ def requirement_without_subject(view: View) -> Iterator[Diagnostic]:
     if not isinstance(view.item, Requirement) or not view.ask(is_measured):
         return
     names = [symbol.name for symbol in view.facts.summary.symbols]
-    found = [each for name in names if view.defines_here(Kind.REQUIREMENT, name) for each in _found_in(view, name)]
+    diagnostics = [
+        diagnostic
+        for name in names
+        if view.defines_here(Kind.REQUIREMENT, name)
+        for diagnostic in _without_subject(view, name)
+    ]
     if (
-        found and view.is_read and not view.ask(inputs.is_included)
+        diagnostics and view.is_read and not view.ask(inputs.is_included)
     ):  # last, for both often change with an edit elsewhere
-        yield from found
+        yield from diagnostics
 
 
-def _found_in(view: View, name: str) -> Iterator[Diagnostic]:
+def _without_subject(view: View, name: str) -> Iterator[Diagnostic]:
     from btq_lang.requirements.definitions import requirement  # as above
     from btq_lang.requirements.model import DurationSum, Interval
     from btq_lang.requirements.nodes import has_nodes
 
-    found, _ = view.ask(requirement, name)
-    claims = found.claims if found is not None and view.ask(has_nodes) else ()
+    resolved, _ = view.ask(requirement, name)
+    claims = resolved.claims if resolved is not None and view.ask(has_nodes) else ()
     is_about_nothing = all(claim.subject is None for claim in claims)
     for claim in claims:
         if isinstance(claim.subject, Interval | DurationSum) and VERBS[claim.verb].limits != "completion":
-            of = "the time from one event to another" if isinstance(claim.subject, Interval) else "a sum of durations"
-            message = f"`{claim.verb}` is about a node, not about {of}, so nothing can check it"
+            subject = (
+                "the time from one event to another" if isinstance(claim.subject, Interval) else "a sum of durations"
+            )
+            message = f"`{claim.verb}` is about a node, not about {subject}, so nothing can check it"
             note = "write `takes` after it, or a node before the verb"
-            yield _found(claim, message, note)
+            yield _diagnostic(claim, message, note)
         elif claim.subject is None and not is_about_nothing and not view.ask(_is_attached, name):
             message = f"missing subject of `{claim.text}`"
             note = "write a node before the verb, or attach the requirement to a node with `satisfies`"
-            yield _found(claim, message, note)
+            yield _diagnostic(claim, message, note)
 
 
-def _found(claim: ResolvedClaim, message: str, note: str) -> Diagnostic:
+def _diagnostic(claim: ResolvedClaim, message: str, note: str) -> Diagnostic:
     return Diagnostic("requirement-without-subject", claim.place.span, message, notes=(note,))
 
 

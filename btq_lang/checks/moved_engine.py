@@ -41,13 +41,13 @@ def engine_changes(view: View, origin: str, target: str) -> Iterator[Diagnostic]
         target: the version that it moves to.
     """
     rows = [row for row in ENGINE_CHANGES if is_between(row.since, row.until, row.after, origin, target)]
-    for seen in view.nodes:
-        kind = seen.kind.tag if seen.kind is not None else None
-        for row in rows if kind is not None and seen.id is not None else ():
-            if kind is not None and row.concerns(kind) and (not row.when or _WHEN[row.when](view, seen)):
-                yield from changed(view, seen, seen.node.head, row)
-        if seen.is_subtree and is_between(ENTRIES_OF_SUBTREE.since, "", "", origin, target):
-            yield from _entries(seen)
+    for resolved in view.nodes:
+        kind = resolved.kind.tag if resolved.kind is not None else None
+        for row in rows if kind is not None and resolved.id is not None else ():
+            if kind is not None and row.concerns(kind) and (not row.when or _WHEN[row.when](view, resolved)):
+                yield from changed(view, resolved, resolved.node.head, row)
+        if resolved.is_subtree and is_between(ENTRIES_OF_SUBTREE.since, "", "", origin, target):
+            yield from _entries(resolved)
     yield from _first_tree(view) if is_between(LAST_TREE_COUNTS.since, "", "", origin, target) else ()
 
 
@@ -58,40 +58,40 @@ def is_between(since: str, until: str, after: str, origin: str, target: str) -> 
     return (not until or not at_least(target, until)) and (not after or at_least(last_of(origin), after))
 
 
-def new_in_target(view: View, checks: tuple[Check, ...], found: list[Diagnostic]) -> Iterator[Diagnostic]:
+def new_in_target(view: View, checks: tuple[Check, ...], diagnostics: list[Diagnostic]) -> Iterator[Diagnostic]:
     """What the target refuses, or reads otherwise, and the version that the tree is for does not."""
     workspace = view.ask(inputs.everything).moved
     moved = View(workspace.store, view.path, view.facts)
-    known = {(each.rule, each.span) for each in found if is_severe(each)}
-    of_engine = [each for check in checks for each in check(moved)]
-    for each in of_engine:
-        if (each.rule, each.span) not in known and is_severe(each):
-            yield of_target(each, workspace.project.target)
+    reported = {(diagnostic.rule, diagnostic.span) for diagnostic in diagnostics if is_severe(diagnostic)}
+    in_engine = [diagnostic for check in checks for diagnostic in check(moved)]
+    for diagnostic in in_engine:
+        if (diagnostic.rule, diagnostic.span) not in reported and is_severe(diagnostic):
+            yield of_target(diagnostic, workspace.project.target)
     target = view.project.moves_to
     if target is None or target not in FILES or view.ask(lookups.distribution) is None:
         return
-    known.update((each.rule, each.span) for each in of_engine)
+    reported.update((diagnostic.rule, diagnostic.span) for diagnostic in in_engine)
     moved = View(view.ask(inputs.everything).moved_nodes.store, view.path, view.facts)
-    for each in (*entry_with_two_types(moved), *isolated_node(moved)):  # all else that changes is in a table
-        if (each.rule, each.span) not in known:
-            yield of_target(each, target.capitalize())
+    for diagnostic in (*entry_with_two_types(moved), *isolated_node(moved)):  # all else that changes is in a table
+        if (diagnostic.rule, diagnostic.span) not in reported:
+            yield of_target(diagnostic, target.capitalize())
 
 
-def is_severe(found: Diagnostic) -> bool:
+def is_severe(diagnostic: Diagnostic) -> bool:
     """Whether it is more than a hint."""
-    return found.effective_severity in (Severity.ERROR, Severity.WARNING)
+    return diagnostic.effective_severity in (Severity.ERROR, Severity.WARNING)
 
 
-def of_target(found: Diagnostic, target: str) -> Diagnostic:
+def of_target(diagnostic: Diagnostic, target: str) -> Diagnostic:
     """What is found for a target alone, as a finding of the rules about moving on."""
-    breaks = found.effective_severity is Severity.ERROR or found.rule == "not-an-engine-node"
-    notes = (*found.notes, f"in {target} this is {found.rule}: `btq explain {found.rule}`")
-    return replace(found, rule="target-breaks" if breaks else "target-differs", notes=notes, severity=None)
+    breaks = diagnostic.effective_severity is Severity.ERROR or diagnostic.rule == "not-an-engine-node"
+    notes = (*diagnostic.notes, f"in {target} this is {diagnostic.rule}: `btq explain {diagnostic.rule}`")
+    return replace(diagnostic, rule="target-breaks" if breaks else "target-differs", notes=notes, severity=None)
 
 
-def _entries(seen: ResolvedNode) -> Iterator[Diagnostic]:
+def _entries(resolved: ResolvedNode) -> Iterator[Diagnostic]:
     """The values of a SubTree's ports that are names of entries before version 4."""
-    for pair in seen.node.attributes:
+    for pair in resolved.node.attributes:
         if pair.value is not None and is_port_name(pair.key.text) and not is_pointer(pair.value.text):
             text, since = pair.value.text, ENTRIES_OF_SUBTREE.since
             fix = replace_fix(f"Replace `{text}` with `{{{text}}}`", pair.value.span, f"{{{text}}}")
@@ -112,29 +112,31 @@ def _first_tree(view: View) -> Iterator[Diagnostic]:
         yield Diagnostic("target-differs", name.span, what, notes=("write another ID for one of them",))
 
 
-def _running(view: View, seen: ResolvedNode) -> int:
+def _count_running(view: View, resolved: ResolvedNode) -> int:
     """How many children may take several ticks."""
-    return sum(bool(result(view, child).ever & RUNNING) for child in seen.node.nodes)
+    return sum(bool(result(view, child).ever & RUNNING) for child in resolved.node.nodes)
 
 
-def _skipped_in_the_end(view: View, seen: ResolvedNode) -> bool:
+def _skipped_in_the_end(view: View, resolved: ResolvedNode) -> bool:
     """Whether all children may be skipped, one of them after it has run."""
-    found = [result(view, child).ever for child in seen.node.nodes]
-    return all(ever & SKIPPED for ever in found) and any(ever & RUNNING for ever in found)
+    statuses = [result(view, child).ever for child in resolved.node.nodes]
+    return all(ever & SKIPPED for ever in statuses) and any(ever & RUNNING for ever in statuses)
 
 
-def _queue_of_script(view: View, seen: ResolvedNode) -> bool:
+def _queue_of_script(view: View, resolved: ResolvedNode) -> bool:
     """Whether a script of the tree writes the queue."""
-    value = seen.node.attribute("queue")
+    value = resolved.node.attribute("queue")
     name = pointed_at("queue", value.text) if value is not None else None
-    written = [each.name for each in view.ask(mentions, view.path, view.facts) if each.in_script and each.writes]
-    return name in written
+    names = [
+        mention.name for mention in view.ask(mentions, view.path, view.facts) if mention.in_script and mention.writes
+    ]
+    return name in names
 
 
 _WHEN: Final[Mapping[str, Callable[[View, ResolvedNode], bool]]] = {
-    "runs on": lambda view, seen: _running(view, seen) > 0,
-    "completes at once": lambda view, seen: bool(seen.node.nodes) and not _running(view, seen),
-    "restarts": lambda view, seen: _running(view, seen) > 1,  # one of them is before another one
+    "runs on": lambda view, resolved: _count_running(view, resolved) > 0,
+    "completes at once": lambda view, resolved: bool(resolved.node.nodes) and not _count_running(view, resolved),
+    "restarts": lambda view, resolved: _count_running(view, resolved) > 1,  # one of them is before another one
     "skipped in the end": _skipped_in_the_end,
     "queue of a script": _queue_of_script,
 }

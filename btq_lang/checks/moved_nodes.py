@@ -28,37 +28,37 @@ def ports_in(view: View, distribution: str, node: str) -> frozenset[str] | None:
     return view.store.ask(lookups.ports_in_file, FILES[distribution], Kind.MODEL, node)
 
 
-def changes_of(view: View, seen: ResolvedNode, name: Word, steps: tuple[str, ...]) -> Iterator[Diagnostic]:
+def changes_of(view: View, resolved: ResolvedNode, name: Word, steps: tuple[str, ...]) -> Iterator[Diagnostic]:
     """What changes for a node of Nav2 on some steps."""
-    renamed = _first(RENAMED, ((step, name.text) for step in steps))
-    before, ports = ports_in(view, steps[0], name.text), ports_in(view, steps[-1], renamed or name.text)
-    if before is not None and ports is not None:
-        yield from _without_ports(seen, name.text, before - ports, steps)
+    renamed = _first_in(RENAMED, ((step, name.text) for step in steps))
+    ports_before, ports = ports_in(view, steps[0], name.text), ports_in(view, steps[-1], renamed or name.text)
+    if ports_before is not None and ports is not None:
+        yield from _without_ports(resolved, name.text, ports_before - ports, steps)
     is_forward = DISTRIBUTIONS.index(steps[-1]) > DISTRIBUTIONS.index(steps[0])
     differing = [
-        found
+        diagnostic
         for change in (CHANGES if is_forward else ())
-        if change.since in steps[1:] and change.concerns(name.text) and (not change.when or _collects(view, seen))
-        for found in changed(view, seen, name, change)
+        if change.since in steps[1:] and change.concerns(name.text) and (not change.when or _collects(view, resolved))
+        for diagnostic in changed(view, resolved, name, change)
     ]
     if ports_in(view, steps[-1], name.text) is None:
-        yield _without_node(view, name, renamed, steps, [each.message for each in differing])
+        yield _without_node(view, name, renamed, steps, [diagnostic.message for diagnostic in differing])
     else:
         yield from differing
 
 
-def _collects(view: View, seen: ResolvedNode) -> bool:
+def _collects(view: View, resolved: ResolvedNode) -> bool:
     """Whether bt_navigator may collect the error code of a node in the distribution that the tree is for."""
-    value = seen.node.attribute("error_code_id")
+    value = resolved.node.attribute("error_code_id")
     name = pointed_at("error_code_id", value.text) if value is not None else None
     if view.factory is None or not view.factory.entries:
         return True
     return any(entry == name for entry, _ in view.ask(lookups.outside_entries))
 
 
-def changed(view: View, seen: ResolvedNode, name: Word, change: BehaviorChange) -> Iterator[Diagnostic]:
+def changed(view: View, resolved: ResolvedNode, name: Word, change: BehaviorChange) -> Iterator[Diagnostic]:
     """A row about a node, if the value of its port is one that the row concerns."""
-    value = seen.node.attribute(change.port) if change.port else None
+    value = resolved.node.attribute(change.port) if change.port else None
     if not change.matches(value.text if value is not None else None):
         return
     fixes: tuple[Fix, ...] = ()
@@ -68,7 +68,7 @@ def changed(view: View, seen: ResolvedNode, name: Word, change: BehaviorChange) 
             f'{change.port}="{change.keeps}"' if view.is_xml else f"{written(change.port)} = {written(change.keeps)}"
         )
         notes.append(f"write `{keeping}` to keep its meaning")
-        fixes = adding_fix(view, seen.node, "Keep its meaning", f"{written(change.port)} = {written(change.keeps)}")
+        fixes = adding_fix(view, resolved.node, "Keep its meaning", f"{written(change.port)} = {written(change.keeps)}")
     rule = "target-breaks" if change.breaks else "target-differs"
     message = f"from {change.since.title()} on `{name.text}` {change.what}"
     yield Diagnostic(rule, (value or name).span, message, notes=tuple(notes), fixes=fixes)
@@ -87,12 +87,14 @@ def _without_node(
     return Diagnostic("target-breaks", name.span, message, notes=notes, fixes=fixes)
 
 
-def _without_ports(seen: ResolvedNode, node: str, gone: frozenset[str], steps: tuple[str, ...]) -> Iterator[Diagnostic]:
-    for pair in seen.node.attributes:
+def _without_ports(
+    resolved: ResolvedNode, node: str, gone: frozenset[str], steps: tuple[str, ...]
+) -> Iterator[Diagnostic]:
+    for pair in resolved.node.attributes:
         port = pair.key.text
         if port not in gone:
             continue
-        renamed = _first(RENAMED_PORTS, ((step, node, port) for step in steps))
+        renamed = _first_in(RENAMED_PORTS, ((step, node, port) for step in steps))
         message = f"`{node}` has no port `{port}` in {steps[-1].title()}" + _called(renamed)
         fixes = (replace_fix(f"Replace `{port}` with `{renamed}`", pair.key.span, renamed),) if renamed else ()
         notes = () if renamed else ("remove it",)
@@ -103,5 +105,5 @@ def _called(renamed: str | None) -> str:
     return f": it is called `{renamed}`" if renamed else ""
 
 
-def _first(table: Mapping[Key, str], keys: Iterable[Key]) -> str | None:
+def _first_in(table: Mapping[Key, str], keys: Iterable[Key]) -> str | None:
     return next((table[key] for key in keys if key in table), None)

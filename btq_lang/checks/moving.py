@@ -29,9 +29,13 @@ def moving_on(view: View) -> Iterator[Diagnostic]:
         return
     from btq_lang.checks.moved_nodes import changes_of, ports_in  # as above
 
-    for seen in view.nodes:
-        if not seen.is_subtree and seen.id is not None and ports_in(view, steps[0], seen.id.text) is not None:
-            yield from changes_of(view, seen, seen.id, steps)
+    for resolved in view.nodes:
+        if (
+            not resolved.is_subtree
+            and resolved.id is not None
+            and ports_in(view, steps[0], resolved.id.text) is not None
+        ):
+            yield from changes_of(view, resolved, resolved.id, steps)
 
 
 def moving_include(view: View) -> Iterator[Diagnostic]:

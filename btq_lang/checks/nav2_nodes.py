@@ -13,15 +13,15 @@ from btq_lang.workspace.resolved import ResolvedNode
 
 def of_nav2(view: View, distribution: str, nodes: Iterable[ResolvedNode]) -> Iterator[tuple[ResolvedNode, str, str]]:
     """Those nodes that are Nav2's, each with its ID and the name of its tree."""
-    for seen in nodes:
-        name = of_distribution(view, seen, distribution)
-        if name is not None and seen.tree is not None:
-            yield seen, name, seen.tree
+    for resolved in nodes:
+        name = of_distribution(view, resolved, distribution)
+        if name is not None and resolved.tree is not None:
+            yield resolved, name, resolved.tree
 
 
-def of_distribution(view: View, seen: ResolvedNode, distribution: str) -> str | None:
+def of_distribution(view: View, resolved: ResolvedNode, distribution: str) -> str | None:
     """The ID of a node of Nav2; None for another one."""
-    if seen.of_model is None or seen.id is None:
+    if resolved.of_model is None or resolved.id is None:
         return None
-    model = view.ask(lookups.declaration, Kind.MODEL, seen.id.text)
-    return seen.id.text if model is not None and model.path == FILES[distribution] else None
+    model = view.ask(lookups.declaration, Kind.MODEL, resolved.id.text)
+    return resolved.id.text if model is not None and model.path == FILES[distribution] else None

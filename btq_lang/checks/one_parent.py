@@ -31,20 +31,20 @@ def below(view: View, parent: Node, siblings: Sequence[Node | Verbatim]) -> tupl
     return (Fix(title, tuple(_indented(starts, step))),) if starts else ()
 
 
-def dedented(view: View, seen: ResolvedNode, children: Sequence[Node | Verbatim]) -> tuple[Fix, ...]:
+def dedented(view: View, resolved: ResolvedNode, children: Sequence[Node | Verbatim]) -> tuple[Fix, ...]:
     """The fix that dedents some children of a node to its level; none if its parent takes no more."""
-    parent = seen.parent
+    parent = resolved.parent
     category = parent.stated_category if parent is not None else None
     if parent is None or (
         category and (parent.behavior.children if parent.behavior else CHILDREN[category])[1] is not None
     ):
         return ()
     margin, _, starts = _lines(view, children)
-    outer = view.text[line_start(view.text, 0, seen.node.start) : seen.node.start]
+    outer = view.text[line_start(view.text, 0, resolved.node.start) : resolved.node.start]
     if not margin.startswith(outer) or not all(view.text.startswith(margin, start) for start in starts):
         return ()
     changes = [FixEdit(Place(Span(start + len(outer), start + len(margin))), "") for start in starts]
-    title = f"Dedent {'it' if len(children) == 1 else 'them'} to the level of `{seen.node.head.text}`"
+    title = f"Dedent {'it' if len(children) == 1 else 'them'} to the level of `{resolved.node.head.text}`"
     return (Fix(title, tuple(changes)),) if changes else ()
 
 
@@ -68,8 +68,8 @@ def _lines(view: View, children: Sequence[Node | Verbatim]) -> tuple[str, str, l
 
 def _end(child: Node | Verbatim) -> int:
     """Where a node and all that is below it ends."""
-    below = [each for node in child.walk() for each in (node, *node.children)] if isinstance(child, Node) else []
-    return max(each.end for each in (child, *below))
+    below = [part for node in child.walk() for part in (node, *node.children)] if isinstance(child, Node) else []
+    return max(part.end for part in (child, *below))
 
 
 TOO_FAR: Final = "what is below it may be indented too far"

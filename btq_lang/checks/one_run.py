@@ -17,10 +17,10 @@ from btq_lang.util.text import Span
 
 def same_in_every_run(view: View, claim: syntax.Claim) -> Diagnostic | None:
     """What is wrong with a clause that each run answers alike; None if runs may differ."""
-    found = _of_subject(view, claim) or _of_event(view, claim) or _of_span(view, claim)
-    if found is None:
+    problem = _of_subject(view, claim) or _of_event(view, claim) or _of_span(view, claim)
+    if problem is None:
         return None
-    message, note = found
+    message, note = problem
     return Diagnostic("impossible-bound", Span(claim.start, claim.end), message, notes=(note,))
 
 
@@ -47,7 +47,7 @@ def _of_event(view: View, claim: syntax.Claim) -> tuple[str, str] | None:
         return f"nothing happens in a run after `{_shown(event)}`", _BY_ITSELF
     if claim.verb.raw != "ends" or not _starts_first(view) or _is_mission(view, claim.subject):
         return None
-    ending = _written(claim.subject) if isinstance(claim.subject, syntax.Path) else "…"
+    ending = _path_text(claim.subject) if isinstance(claim.subject, syntax.Path) else "…"
     note = f"for the time from there on, write `from mission starts to {ending} finishes takes at most …`"
     return f"no other node runs yet at `{_shown(event)}`", note
 
@@ -88,10 +88,10 @@ def _starts_first(view: View) -> bool:
 
 
 def _shown(event: syntax.Event) -> str:
-    return f"{_written(event.path) if event.path is not None else 'mission'} {event.happening}"
+    return f"{_path_text(event.path) if event.path is not None else 'mission'} {event.happening}"
 
 
-def _written(path: syntax.Path) -> str:
+def _path_text(path: syntax.Path) -> str:
     return "/".join(name.raw for name in path.names)
 
 

@@ -30,7 +30,7 @@ def literal_for_output(view: View) -> Iterator[Diagnostic]:
     """
     if not OUTPUT_IN_BRACES.holds(view.target):
         return
-    for seen, pair, value, type_ in _outputs(view, view.seen.given):
+    for resolved, pair, value, type_ in _outputs(view, view.seen.given):
         if not _is_literal(value) or OLD_ENTRY.fullmatch(value.text):
             continue  # `${key}` is one mistake, which old_entry reports
         problem = check_literal(type_, value.text, view.target)
@@ -49,34 +49,34 @@ def literal_for_output(view: View) -> Iterator[Diagnostic]:
             )
         elif is_refused and problem is not None:
             notes = (f"the engine refuses this value: the port expects {problem.expected}",)
-        output = f"the output `{pair.key.text}` of {seen.shown_kind}"
+        output = f"the output `{pair.key.text}` of {resolved.shown_kind}"
         message = f"expected a blackboard entry for {output}, found `{value.raw}`"
         severity = Severity.HINT if is_custom else Severity.ERROR if is_refused else None
         yield Diagnostic("literal-for-output", value.span, message, notes=notes, fixes=fixes, severity=severity)
 
 
-def _outputs(view: View, given: Iterable[ResolvedNode]) -> Iterator[tuple[ResolvedNode, Pair, Word, str]]:
+def _outputs(view: View, nodes: Iterable[ResolvedNode]) -> Iterator[tuple[ResolvedNode, Pair, Word, str]]:
     """The values for the outputs of nodes with attributes, and the outputs' types; empty for a tree's, which keep
     whatever they are given."""
-    for seen in given:
-        if seen.is_placeholder:
+    for resolved in nodes:
+        if resolved.is_placeholder:
             continue
-        types = _types(view, seen)
-        for pair in seen.node.attributes if types else ():
+        types = _types(view, resolved)
+        for pair in resolved.node.attributes if types else ():
             if pair.value is not None and (type_ := types.get(pair.key.text)) is not None:
-                yield seen, pair, pair.value, type_
+                yield resolved, pair, pair.value, type_
 
 
 def _is_custom(store: Store[Workspace], viewpoint: str) -> bool:
     """Whether the file assigns values to outputs as a rule."""
     counts = [store.ask(_counts, viewpoint, tree) for tree in store.ask(lookups.trees, viewpoint)]
-    given, values = sum(each[0] for each in counts), sum(each[1] for each in counts)
-    return values > 2 and (values > given / 2 or values > 9)
+    assigned, values = sum(count[0] for count in counts), sum(count[1] for count in counts)
+    return values > 2 and (values > assigned / 2 or values > 9)
 
 
 def _is_first_value(view: View, pair: Pair) -> bool:
     """Whether no output of the file before this one has a value."""
-    values = (each for _, each, value, _ in _outputs(view, view.seen.given) if _is_literal(value))
+    values = (other for _, other, value, _ in _outputs(view, view.seen.given) if _is_literal(value))
     return view.ask(_first_with_value) is view.facts and next(values, None) is pair
 
 
@@ -89,8 +89,8 @@ def _counts(store: Store[Workspace], viewpoint: str, tree: Facts) -> tuple[int, 
     """The number of a tree's assigned outputs, and of those with a value."""
     view = View(store, viewpoint)
     nodes = view.seen_in(viewpoint, tree).given
-    given = [value for _, _, value, _ in _outputs(view, nodes)]
-    return len(given), sum(map(_is_literal, given))
+    assigned = [value for _, _, value, _ in _outputs(view, nodes)]
+    return len(assigned), sum(map(_is_literal, assigned))
 
 
 def _is_literal(value: Word) -> bool:
@@ -98,14 +98,14 @@ def _is_literal(value: Word) -> bool:
     return value.text not in ("", "=") and not is_pointer(value.text)
 
 
-def _types(view: View, seen: ResolvedNode) -> dict[str, str]:
+def _types(view: View, resolved: ResolvedNode) -> dict[str, str]:
     """The outputs of a node, and their types."""
-    if seen.kind is not None:
-        return _outputs_of(seen.kind.tag)
-    types = _declared(ports_beside(view, seen))
-    if seen.is_subtree:
+    if resolved.kind is not None:
+        return _outputs_of(resolved.kind.tag)
+    types = _declared(ports_beside(view, resolved))
+    if resolved.is_subtree:
         return dict.fromkeys(types, "")
-    index = seen.behavior.port_for("index") if seen.behavior is not None else None
+    index = resolved.behavior.port_for("index") if resolved.behavior is not None else None
     return types if index is None else {**types, index.name: index.type}
 
 

@@ -25,17 +25,17 @@ from btq_lang.util.text import Span
 from btq_lang.workspace.resolved import ResolvedNode
 
 
-def label_as_child(view: View, seen: ResolvedNode, tag: str = "") -> tuple[tuple[str, ...], tuple[Fix, ...]]:
+def label_as_child(view: View, resolved: ResolvedNode, tag: str = "") -> tuple[tuple[str, ...], tuple[Fix, ...]]:
     """The note and the fix for a node without children whose label is probably its child; empty if it has none.
 
     Args:
         tag: the built-in that the fix writes in place of the node's kind.
     """
-    node = seen.node
+    node = resolved.node
     if not has_bare_label(view, node) or node.label is None:
         return (), ()
     notes = (f"btq reads `{node.label.raw}` as the label of `{node.head.text}`; {CHILD}",)
-    has_own_ports = seen.kind is not None and any(seen.kind.port(pair.key.text) for pair in node.attributes)
+    has_own_ports = resolved.kind is not None and any(resolved.kind.port(pair.key.text) for pair in node.attributes)
     fixes = () if has_own_ports or node.clauses else _on_lines(view, node, (node.label.start,))
     if tag:
         title = f"Write `{tag}`, and `{node.label.raw}` on a line of its own"
@@ -50,24 +50,28 @@ def has_bare_label(view: View, node: Node) -> bool:
 
 def on_own_lines(view: View, reported: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """What the parser has reported of an item, with what it took for labels and is a child."""
-    for each in reported:
-        yield _on_own_line(view, each) if isinstance(view.item, Tree) and each.notes[:1] in _TOLD else each
+    for diagnostic in reported:
+        yield (
+            _on_own_line(view, diagnostic)
+            if isinstance(view.item, Tree) and diagnostic.notes[:1] in _REPORTED
+            else diagnostic
+        )
 
 
 def _on_own_line(view: View, reported: Diagnostic) -> Diagnostic:
-    text, at = view.text, reported.span.start
-    seen = view.node_before(at)
-    if seen is None or seen.behavior is None or seen.behavior.children[0] == 0:
+    text, offset = view.text, reported.span.start
+    resolved = view.node_before(offset)
+    if resolved is None or resolved.behavior is None or resolved.behavior.children[0] == 0:
         return reported
-    end = line_end(text, seen.node.start)
-    if at > end:
+    end = line_end(text, resolved.node.start)
+    if offset > end:
         return reported
-    node = seen.node
+    node = resolved.node
     if reported.notes == (CHILD,):
-        word = text[at : reported.span.end]
+        word = text[offset : reported.span.end]
         if node.label is not None or not is_name(word) or (node.children and not _is_node(view, word)):
             return reported
-        fixes = () if node.children else _on_lines(view, node, (at,))
+        fixes = () if node.children else _on_lines(view, node, (offset,))
         return replace(reported, message=CHILD, notes=(), fixes=fixes)
     names = _NAMES.match(text, node.head.end, end)
     words = [*_NAME.finditer(text, node.head.end, names.end(1))] if names is not None else []
@@ -96,6 +100,6 @@ def _on_lines(view: View, node: Node, starts: Sequence[int]) -> tuple[Fix, ...]:
     return () if margin.strip() else (Fix(title, tuple(changes)),)
 
 
-_TOLD: Final = ((CHILD,), (CHILDREN,), (QUOTES,))
+_REPORTED: Final = ((CHILD,), (CHILDREN,), (QUOTES,))
 _NAME: Final = re.compile(r"[^\W\d]\w*")
 _NAMES: Final = re.compile(r"((?:[ \t,]+[^\W\d]\w*)+)[ \t]*(?=#|\r?\n|\Z|\r)")

@@ -27,20 +27,20 @@ WHY: Final = (
 )
 
 
-def may_be_own(view: View, seen: ResolvedNode, ports: Collection[str], is_near: bool = False) -> bool:
+def may_be_own(view: View, resolved: ResolvedNode, ports: Collection[str], is_near: bool = False) -> bool:
     """Whether a node with the name of one of Nav2's may be another one.
 
     Args:
         ports: of Nav2's node.
         is_near: whether what is wrong is nearly the name of one.
     """
-    if seen.kind is not None or seen.id is None or not seen.is_defined:
+    if resolved.kind is not None or resolved.id is None or not resolved.is_defined:
         return False
-    given = {*filter(is_port_name, (pair.key.text for pair in seen.node.attributes))}
-    strange = given.difference(ports)
-    if given != strange and (is_near or not strange):
+    keys = {*filter(is_port_name, (pair.key.text for pair in resolved.node.attributes))}
+    strange = keys.difference(ports)
+    if keys != strange and (is_near or not strange):
         return False
-    model = view.ask(lookups.declaration, Kind.MODEL, seen.id.text)
+    model = view.ask(lookups.declaration, Kind.MODEL, resolved.id.text)
     return model is not None and model.path in FILES.values() and view.ask(_has_other_nodes)
 
 

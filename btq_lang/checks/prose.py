@@ -28,14 +28,14 @@ def prose_constraint(view: View) -> Iterator[Diagnostic]:
     for symbol, requirement in view.requirements:
         if requirement.text is None or requirement.clauses:
             continue
-        found = _not_checked(view, requirement, symbol.name)
+        constraints = _not_checked(view, requirement, symbol.name)
         first = view.ask(lookups.declaration, Kind.REQUIREMENT, symbol.name)
-        if not found or (first is not None and first.symbol is not symbol):
+        if not constraints or (first is not None and first.symbol is not symbol):
             continue
         signals = _signals(view)
-        proposals = (_as_clause(each, signals) for each in found)
+        proposals = (_as_clause(constraint, signals) for constraint in constraints)
         clauses = tuple(dict.fromkeys(clause for clause in proposals if clause is not None))
-        keyword = found[0].keyword
+        keyword = constraints[0].keyword
         message = f"no tool can check the prose after `{requirement.text.text[keyword.start : keyword.end]}`"
         fixes = _fixes(view, requirement.text, symbol.name, clauses)
         notes = _notes(clauses)
@@ -44,19 +44,19 @@ def prose_constraint(view: View) -> Iterator[Diagnostic]:
 
 def _not_checked(view: View, requirement: Requirement, name: str) -> list[Constraint]:
     """The constraints that are neither a script nor meaningful clauses."""
-    found = view.constraints(requirement)
-    is_checked = any(checkable for _, checkable in found) and view.ask(is_measured)
+    constraints = view.constraints(requirement)
+    is_checked = any(checkable for _, checkable in constraints) and view.ask(is_measured)
     if is_checked and view.defines_here(Kind.REQUIREMENT, name) and view.ask(_claims_nothing, name):
-        return [each for each, _ in found]
-    return [each for each, checkable in found if not checkable]
+        return [constraint for constraint, _ in constraints]
+    return [constraint for constraint, checkable in constraints if not checkable]
 
 
 def _claims_nothing(store: Store[Workspace], viewpoint: str, name: str) -> bool:
     """Whether a requirement, once resolved, claims nothing."""
     from btq_lang.requirements.definitions import requirement  # a file without clauses needs none of it
 
-    found, _ = store.ask(requirement, viewpoint, name)
-    return found is not None and not found.claims
+    resolved, _ = store.ask(requirement, viewpoint, name)
+    return resolved is not None and not resolved.claims
 
 
 def _as_clause(constraint: Constraint, signals: dict[str, Dimension]) -> str | None:
@@ -78,14 +78,14 @@ def _as_clause(constraint: Constraint, signals: dict[str, Dimension]) -> str | N
 
 def _signals(view: View) -> dict[str, Dimension]:
     """The signals in scope, with what they measure."""
-    found: dict[str, Dimension] = {}
+    dimensions: dict[str, Dimension] = {}
     for name in view.ask(inputs.names, Kind.SIGNAL):
         meaning = view.ask(lookups.meaning, Kind.SIGNAL, name)
         signal = meaning.target if meaning is not None else None
         unit = parse_unit(signal.unit.text) if isinstance(signal, Signal) and signal.unit is not None else None
         if unit is not None:
-            found[name] = unit.dimension
-    return found
+            dimensions[name] = unit.dimension
+    return dimensions
 
 
 def _notes(clauses: tuple[str, ...]) -> tuple[str, ...]:

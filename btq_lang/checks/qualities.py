@@ -62,7 +62,7 @@ def _old(view: View, use: Use, match: QualityMatch) -> Diagnostic:
         message = f"`{use.name}` is called `{match.candidates[0].id}` in {view.ask(lookups.edition)}"
     # "`x` is another word for y" adds nothing to such a message.
     notes = (match.explanation,) if match.explanation and not (is_alias and match.safe) else ()
-    meant = [each.id for each in match.candidates[:3]]
+    meant = [candidate.id for candidate in match.candidates[:3]]
     fixes = tuple(replace_fix(f"Replace it with `{id_}`", _whole(view, use), id_, safe=match.safe) for id_ in meant)
     tags = () if is_alias else (Tag.DEPRECATED,)
     return Diagnostic("old-quality-name", use.span, message, notes=notes, fixes=fixes, tags=tags)
@@ -88,11 +88,11 @@ def other_word(view: View, use: Use, rule: str, *, requirement: bool, safe: bool
         requirement: whether it is one.
         safe: whether the name would be right after the other word.
     """
-    is_, is_not = ("requirement", "quality") if requirement else ("quality", "requirement")
+    kind, other_kind = ("requirement", "quality") if requirement else ("quality", "requirement")
     word, other = _WORDS if requirement else _WORDS[::-1]
     span = _alone(view, use, word)
     fixes: tuple[Fix, ...] = (replace_fix(f"Replace `{word}` with `{other}`", span, other, safe=safe),) if span else ()
-    message = f"`{use.name}` is a {is_}, not a {is_not}"
+    message = f"`{use.name}` is a {kind}, not a {other_kind}"
     notes = ("`satisfices` names qualities, `satisfies` names requirements",)
     return Diagnostic(rule, use.span, message, notes=notes, fixes=fixes)
 

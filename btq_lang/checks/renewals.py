@@ -38,7 +38,9 @@ def guard_never_renewed(demanded: Demanded) -> Iterator[Found]:
             continue
         writers = [*dict.fromkeys([writer for key in keys for writer in demanded.view.ask(_writers, key)])]
         places = (place, *(writer.place for writer in writers))
-        shown = next((each for each in places if each is not None and each.path == demanded.view.path), None)
+        shown = next(
+            (candidate for candidate in places if candidate is not None and candidate.path == demanded.view.path), None
+        )
         if shown is None:
             continue
         names = " and ".join(f"`{key}`" for key in keys)
@@ -82,9 +84,9 @@ def _is_renewed_beside(writing: frozenset[int], carrying: frozenset[int], node: 
     Args:
         writing, carrying: the result of `_renewing` for the tree.
     """
-    for below, at in pairwise((node, *node.ancestors())):
-        beside = () if _runs_one_at_a_time(at) else [each for each in at.children if each is not below]
-        if id(at) in writing or any(id(each) in carrying for each in beside):
+    for below, above in pairwise((node, *node.ancestors())):
+        beside = () if _runs_one_at_a_time(above) else [sibling for sibling in above.children if sibling is not below]
+        if id(above) in writing or any(id(sibling) in carrying for sibling in beside):
             return True
     return False
 
@@ -117,14 +119,14 @@ def _writers(store: Store[Workspace], viewpoint: str, key: str) -> tuple[Resolve
     if view.ask(inputs.is_included) or store.ask(inputs.has_xml, viewpoint):
         return ()
     entries = view.ask(all_entries)
-    if any(each.is_open or key in each.mentioned for each in entries) or key in view.ask(_keys_of_defaults):
+    if any(of_tree.is_open or key in of_tree.mentioned for of_tree in entries) or key in view.ask(_keys_of_defaults):
         return ()
-    writing = [each for each in entries if key in each.written]
-    writers = [node for each in writing for node, name in each.writes if name.removeprefix("@") == key]
+    writing = [of_tree for of_tree in entries if key in of_tree.written]
+    writers = [node for of_tree in writing for node, name in of_tree.writes if name.removeprefix("@") == key]
     running = view.ask(_reached)
     if not all(writer.tree in running for writer in writers):
         return ()  # perhaps another mission that runs beside this one
-    sure = [write for each in writing for write in each.sure]
+    sure = [write for of_tree in writing for write in of_tree.sure]
     if not any(name.removeprefix("@") == key for _, name in sure) or isolated(view, sure, key) is not None:
         return ()
     return tuple(dict.fromkeys(writers))
@@ -133,13 +135,13 @@ def _writers(store: Store[Workspace], viewpoint: str, key: str) -> tuple[Resolve
 def _keys_of_defaults(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
     """The entries, without their `@`, that are defaults of ports of trees and models in scope."""
     view = View(store, viewpoint)
-    found: set[str] = set()
+    keys: set[str] = set()
     for name in (*view.ask(inputs.names, Kind.TREE), *view.ask(inputs.names, Kind.MODEL)):
         for port in declared_ports(view, name):
             text = port.default.text if port.default is not None else ""
             if is_pointer(text):
-                found.add(key_of(text, port.name.text if port.name is not None else "").removeprefix("@"))
-    return frozenset(found)
+                keys.add(key_of(text, port.name.text if port.name is not None else "").removeprefix("@"))
+    return frozenset(keys)
 
 
 def _carrying(store: Store[Workspace], viewpoint: str, key: str) -> frozenset[str]:

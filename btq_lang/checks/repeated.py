@@ -22,7 +22,7 @@ def named_twice(view: View) -> Iterator[Diagnostic]:
                 if first.setdefault(syntax.shape(part), span) is not span:
                     yield _repeated(view, span, first[syntax.shape(part)])
     elif isinstance(item, syntax.Tree):
-        for clauses in (item.clauses, *[seen.node.clauses for seen in view.seen.demanding]):
+        for clauses in (item.clauses, *[resolved.node.clauses for resolved in view.seen.demanding]):
             if _names_several(clauses) and not view.is_torn(clauses[0].start, clauses[-1].end):
                 yield from _in_clauses(view, clauses)
 
@@ -41,10 +41,10 @@ def _in_clauses(view: View, clauses: tuple[syntax.NodeClause, ...]) -> Iterator[
     first: dict[object, Span] = {}
     for clause in clauses:
         names = [*_names(view, clause)]
-        for index, (says, span, is_plain) in enumerate(names):
-            if first.setdefault(says, span) is not span:
+        for index, (meaning, span, is_plain) in enumerate(names):
+            if first.setdefault(meaning, span) is not span:
                 fixes = (_removal(clause, [place for _, place, _ in names], index, view.text),) if is_plain else ()
-                yield _repeated(view, span, first[says], fixes)
+                yield _repeated(view, span, first[meaning], fixes)
 
 
 def _repeated(view: View, span: Span, first: Span, fixes: tuple[Fix, ...] = ()) -> Diagnostic:
@@ -62,10 +62,10 @@ def _names(view: View, clause: syntax.NodeClause) -> Iterator[tuple[object, Span
         for quality in clause.qualities:
             name = quality.path.text
             match = view.ask(quality_named, name)
-            same = match.quality.id if match is not None and match.quality is not None else name
+            quality_id = match.quality.id if match is not None and match.quality is not None else name
             # A quality that encloses requirements may be here for their sake.
-            says = "quality", same, bool(quality.requirements) and quality.path.span
-            yield says, quality.path.span, not quality.requirements
+            meaning = "quality", quality_id, bool(quality.requirements) and quality.path.span
+            yield meaning, quality.path.span, not quality.requirements
             yield from _requirements(quality.requirements)
     else:
         yield from _requirements(clause.uses)

@@ -51,9 +51,9 @@ def conflicting_requirement(view: View) -> Iterator[Diagnostic]:
     for symbol, other, counts in view.repeated(Kind.REQUIREMENT):
         if _differ(symbol, other.symbol):
             message = f"conflicting definitions of the requirement `{symbol.name}`"
-            which = Related(other.place, COUNTS if counts else SECOND)
+            definition = Related(other.place, COUNTS if counts else SECOND)
             notes = (_other_way(view, symbol),)
-            yield Diagnostic("conflicting-requirement", symbol.span, message, related=(which,), notes=notes)
+            yield Diagnostic("conflicting-requirement", symbol.span, message, related=(definition,), notes=notes)
 
 
 def unused_requirement(view: View) -> Iterator[Diagnostic]:
@@ -143,11 +143,11 @@ def _is_empty(requirement: Requirement) -> bool:
 def _is_meant(store: Store[Workspace], viewpoint: str, name: str) -> bool:
     """Whether something uses an undeclared name that looks like this one, which is reported already."""
     view = View(store, viewpoint)
-    asked = view.ask(lookups.asked_for_in_vain)
+    names = view.ask(lookups.asked_for_in_vain)
     declared = len(view.ask(inputs.names, Kind.SIGNAL)) + len(view.ask(inputs.names, Kind.CONTEXT))
-    if len(asked) * declared > _MOST_COMPARED:
+    if len(names) * declared > _MOST_COMPARED:
         return True  # among so many unknown names there is a similar one to any
-    return bool(near(name, asked, limit=1))
+    return bool(near(name, names, limit=1))
 
 
 def _is_misspelt_use(store: Store[Workspace], viewpoint: str, name: str) -> bool:

@@ -26,32 +26,36 @@ _REPEATING: Final[frozenset[Flow]] = frozenset(("pipeline", "together"))
 
 def memory_lost(view: View) -> Iterator[Diagnostic]:
     """A node that has an effect only if it is ticked again as it was left, below one that resets it before."""
-    for seen in view.seen.of_flow(*_REMEMBERING):
-        parent = seen.parent
-        if parent is None or _keeps(parent, seen):
+    for resolved in view.seen.of_flow(*_REMEMBERING):
+        parent = resolved.parent
+        if parent is None or _keeps(parent, resolved):
             continue
-        effect = "never succeeds" if seen.flow == "notices" else "holds nothing back"
-        message = f"{seen.shown} {effect} here: {parent.shown} resets it before it ticks it again"
+        effect = "never succeeds" if resolved.flow == "notices" else "holds nothing back"
+        message = f"{resolved.shown} {effect} here: {parent.shown} resets it before it ticks it again"
         related = (Related(Place(parent.node.head.span), "resets it"),)
-        yield Diagnostic("memory-lost", seen.node.head.span, message, related=related, notes=(_kept_elsewhere(seen),))
+        yield Diagnostic(
+            "memory-lost", resolved.node.head.span, message, related=related, notes=(_kept_elsewhere(resolved),)
+        )
 
 
 def last_success_lost(view: View) -> Iterator[Diagnostic]:
     """A node that takes turns and fails after its last child, though that may succeed."""
-    for seen in view.seen.of_flow("rotate"):
-        last = seen.node.children[-1] if seen.node.children else None
-        port = seen.behavior.port_for("wraps") if seen.behavior is not None else None
-        if seen.behavior is None or port is None or not isinstance(last, Node):
+    for resolved in view.seen.of_flow("rotate"):
+        last = resolved.node.children[-1] if resolved.node.children else None
+        port = resolved.behavior.port_for("wraps") if resolved.behavior is not None else None
+        if resolved.behavior is None or port is None or not isinstance(last, Node):
             continue
-        if wraps(seen.behavior, seen.node) is not False or not result(view, last).ever & SUCCESS:
+        if wraps(resolved.behavior, resolved.node) is not False or not result(view, last).ever & SUCCESS:
             continue
-        value = seen.node.attribute(port.name)
+        value = resolved.node.attribute(port.name)
         title, text = f"Let the first child follow the last one: `{port.name} = true`", f'{port.name} = "true"'
-        message = f"{seen.shown} fails after its last child, {last.shown}, even if that succeeds"
-        fixes = (replace_fix(title, value.span, "true"),) if value else adding_fix(view, seen.node, title, text)
+        message = f"{resolved.shown} fails after its last child, {last.shown}, even if that succeeds"
+        fixes = (replace_fix(title, value.span, "true"),) if value else adding_fix(view, resolved.node, title, text)
         notes = (f"it succeeds with its last child only with `{port.name}`",)
         related = (Related(Place(last.head.span), "its success is lost"),)
-        yield Diagnostic("last-success-lost", seen.node.head.span, message, related=related, notes=notes, fixes=fixes)
+        yield Diagnostic(
+            "last-success-lost", resolved.node.head.span, message, related=related, notes=notes, fixes=fixes
+        )
 
 
 def _keeps(parent: ResolvedNode, child: ResolvedNode) -> bool:
@@ -67,13 +71,13 @@ def _keeps(parent: ResolvedNode, child: ResolvedNode) -> bool:
     return parent.flow in ("", "pause", "resume")
 
 
-def _kept_elsewhere(seen: ResolvedNode) -> str:
+def _kept_elsewhere(resolved: ResolvedNode) -> str:
     """Where a node would keep its memory."""
     choice = next(kind.tag for kind in BUILTINS.values() if kind.flow == "choice" and kind.reactive)
-    found = f"the condition of a {choice}"
-    if seen.behavior is not None and seen.behavior.memory == "success":
+    place = f"the condition of a {choice}"
+    if resolved.behavior is not None and resolved.behavior.memory == "success":
         from btq_lang.catalog.nav2.nodes import NODES  # only for nodes of Nav2
 
         pipeline = next(kind.tag for kind in NODES.values() if kind.flow == "pipeline")
-        found = f"a child of a {pipeline} before its last one, and {found}"
-    return f"not reset: {found}"
+        place = f"a child of a {pipeline} before its last one, and {place}"
+    return f"not reset: {place}"

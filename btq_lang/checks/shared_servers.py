@@ -25,20 +25,20 @@ def shared_server(view: View) -> Iterator[Diagnostic]:
     """Two nodes in different children of one node that runs its children side by side, which call the same server."""
     if view.ask(lookups.distribution) is None:
         return
-    for seen in view.seen.of_flow("parallel", "parallel-all", "together"):
+    for resolved in view.seen.of_flow("parallel", "parallel-all", "together"):
         first: dict[str, ResolvedNode] = {}
-        for child in seen.children:
+        for child in resolved.children:
             callers = {server: node for node in _below(child) for server, _ in _calls(view, node)}
             for server, node in callers.items():
                 if server in first:
-                    yield _twice(view, seen, server, first[server], node)
+                    yield _twice(view, resolved, server, first[server], node)
             first = {**callers, **first}
 
 
-def _twice(view: View, seen: ResolvedNode, server: str, first: ResolvedNode, node: ResolvedNode) -> Diagnostic:
+def _twice(view: View, resolved: ResolvedNode, server: str, first: ResolvedNode, node: ResolvedNode) -> Diagnostic:
     caller = dict(_calls(view, node))[server]
     where = f" in the tree `{node.node.id.text}`" if node.is_subtree and node.node.id is not None else ""
-    message = f"`{caller}`{where} calls the server `{server}`, as another child of {seen.shown_kind} does"
+    message = f"`{caller}`{where} calls the server `{server}`, as another child of {resolved.shown_kind} does"
     notes = (
         "a server has one goal at a time: the later one ends the earlier one",
         "put both into one child, or give one of them another server with `server_name`",
@@ -47,31 +47,31 @@ def _twice(view: View, seen: ResolvedNode, server: str, first: ResolvedNode, nod
     return Diagnostic("shared-server", node.node.head.span, message, related, notes)
 
 
-def _below(seen: ResolvedNode) -> Iterator[ResolvedNode]:
+def _below(resolved: ResolvedNode) -> Iterator[ResolvedNode]:
     """A node and all below it in its tree."""
-    yield from reached([seen], lambda each: each.children)
+    yield from reached([resolved], lambda node: node.children)
 
 
-def _calls(view: View, seen: ResolvedNode) -> tuple[tuple[str, str], ...]:
+def _calls(view: View, resolved: ResolvedNode) -> tuple[tuple[str, str], ...]:
     """The servers that a node calls, each with the ID of the node that does: those of a SubTree are those of its
     tree's nodes."""
-    if seen.is_subtree:
-        return view.ask(_called, seen.node.id.text) if seen.node.id is not None else ()
+    if resolved.is_subtree:
+        return view.ask(_calls_of_tree, resolved.node.id.text) if resolved.node.id is not None else ()
     from btq_lang.catalog.nav2.creation import SERVERS  # only for Nav2
 
     distribution = view.ask(lookups.distribution)
-    name = of_distribution(view, seen, distribution) if distribution is not None else None
-    given = seen.node.attribute("server_name")
-    if name is None or name not in SERVERS or (given is not None and is_pointer(given.text)):
+    name = of_distribution(view, resolved, distribution) if distribution is not None else None
+    server_name = resolved.node.attribute("server_name")
+    if name is None or name not in SERVERS or (server_name is not None and is_pointer(server_name.text)):
         return ()
-    return (((given.text.lstrip("/") if given is not None else "") or SERVERS[name], name),)
+    return (((server_name.text.lstrip("/") if server_name is not None else "") or SERVERS[name], name),)
 
 
 @on_circle(())
-def _called(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[tuple[str, str], ...]:
+def _calls_of_tree(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[tuple[str, str], ...]:
     """The servers that the nodes of a tree and of those that it runs call."""
     calls, trees = store.ask(_in_tree, viewpoint, tree)
-    below = (call for each in trees for call in store.ask(_called, viewpoint, each))
+    below = (call for called in trees for call in store.ask(_calls_of_tree, viewpoint, called))
     return tuple(dict.fromkeys((*calls, *below)))
 
 
@@ -81,6 +81,6 @@ def _in_tree(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[tuple[
     view = View(store, viewpoint)
     definition = view.ask(inputs.definition, Kind.TREE, tree)
     nodes = view.seen_in(*definition) if definition is not None else NO_NODES
-    calls = dict.fromkeys(call for seen in nodes.all if not seen.is_subtree for call in _calls(view, seen))
-    trees = dict.fromkeys(seen.node.id.text for seen in nodes.subtrees if seen.node.id is not None)
+    calls = dict.fromkeys(call for resolved in nodes.all if not resolved.is_subtree for call in _calls(view, resolved))
+    trees = dict.fromkeys(resolved.node.id.text for resolved in nodes.subtrees if resolved.node.id is not None)
     return tuple(calls), tuple(trees)

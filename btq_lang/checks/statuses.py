@@ -49,12 +49,12 @@ def of_kind(kind: NodeKind, node: Node, children: Sequence[int], starting: bool)
 
 def _number(kind: NodeKind, node: Node, role: Role) -> int | None:
     """The literal integer of the port; None if that is not an integer."""
-    value = _written(kind, node, role)
+    value = _port_value(kind, node, role)
     text = value.text if value is not None else ""
     return int(text) if text.removeprefix("-").isdecimal() and len(text) < 12 else None
 
 
-def _written(kind: NodeKind, node: Node, role: Role) -> Word | None:
+def _port_value(kind: NodeKind, node: Node, role: Role) -> Word | None:
     port = kind.port_for(role)
     return node.attribute(port.name) if port is not None else None
 
@@ -64,20 +64,20 @@ def _in_order(children: Sequence[int], goes_on: int, pauses: bool, starting: boo
 
     `pauses`: whether it returns RUNNING between two children that complete at once.
     """
-    found = 0
+    results = 0
     skipped = ANYTHING
     for index, child in enumerate(children):
-        found |= child & (RUNNING | SUCCESS | FAILURE) & ~goes_on
+        results |= child & (RUNNING | SUCCESS | FAILURE) & ~goes_on
         skipped &= child
         if pauses and child & goes_on and index + 1 < len(children):
-            found |= RUNNING
+            results |= RUNNING
             child &= ~goes_on if starting else ANYTHING
         if not child & (goes_on | SKIPPED):
-            return found
+            return results
     # Resumed at a child that was running and is now skipped, it has forgotten that earlier ones were skipped too.
     resumed = not starting and skipped & SKIPPED and any(child & RUNNING for child in children)
     passed = goes_on if resumed or any(child & goes_on for child in children) else 0
-    return found | passed | (skipped & SKIPPED)
+    return results | passed | (skipped & SKIPPED)
 
 
 def _if(results: int, status: int, then: int) -> int:
@@ -93,29 +93,29 @@ def _if_then_else(children: Sequence[int], *_: object) -> int:
     if len(children) not in (2, 3):
         return ANYTHING
     condition, then, otherwise = (*children, FAILURE)[:3]
-    found = condition & RUNNING | _if(condition, SUCCESS, then) | _if(condition, FAILURE, otherwise)
-    return found if not condition & SKIPPED else ANYTHING
+    results = condition & RUNNING | _if(condition, SUCCESS, then) | _if(condition, FAILURE, otherwise)
+    return results if not condition & SKIPPED else ANYTHING
 
 
 def _parallel(children: Sequence[int], kind: NodeKind, node: Node) -> int:
     """Without thresholds all must succeed and one may fail; with some, any completed child may decide."""
-    found = _any_of(children)
+    results = _any_of(children)
     everyone = ANYTHING
     for child in children:
         everyone &= child | _if(child, SKIPPED, SUCCESS)
-    if not found & (SUCCESS | FAILURE | SKIPPED):
-        return found
-    if any(_written(kind, node, role) is not None for role in ("successes", "failures")):
-        return found | SUCCESS | FAILURE
-    return (found & (FAILURE | RUNNING | SKIPPED)) | (everyone & SUCCESS)
+    if not results & (SUCCESS | FAILURE | SKIPPED):
+        return results
+    if any(_port_value(kind, node, role) is not None for role in ("successes", "failures")):
+        return results | SUCCESS | FAILURE
+    return (results & (FAILURE | RUNNING | SKIPPED)) | (everyone & SUCCESS)
 
 
 def _rotate(children: Sequence[int], kind: NodeKind, node: Node) -> int:
     """One child after the other; without a first one after the last, it fails after that."""
-    found, last = _any_of(children), children[-1]
+    results, last = _any_of(children), children[-1]
     without = _any_of(children[:-1]) | last & ~SUCCESS | _if(last, SUCCESS | SKIPPED, FAILURE)
     goes_round = wraps(kind, node)
-    return found if goes_round else without if goes_round is False else found | without
+    return results if goes_round else without if goes_round is False else results | without
 
 
 def _again(child: int, repeats: int, count: int | None, starting: bool) -> int:
@@ -124,14 +124,14 @@ def _again(child: int, repeats: int, count: int | None, starting: bool) -> int:
         return repeats | SKIPPED
     if count == 1 or not child & repeats:
         return child
-    found = child | RUNNING
+    results = child | RUNNING
     counted = not starting or child & SKIPPED  # a skipped child does not change the count
-    return found if count is None or (count > 0 and counted) else found & ~repeats
+    return results if count is None or (count > 0 and counted) else results & ~repeats
 
 
 def _otherwise(kind: NodeKind, node: Node) -> int:
     """The result without its child."""
-    port, value = kind.port_for("otherwise"), _written(kind, node, "otherwise")
+    port, value = kind.port_for("otherwise"), _port_value(kind, node, "otherwise")
     text = value.text if value is not None else port.default if port is not None else None
     return _STATUSES.get(text or "", ANYTHING)
 

@@ -39,18 +39,18 @@ def swallowed_failure(demanded: Demanded) -> Iterator[Found]:
 def _above(store: Store[Workspace], viewpoint: str, tree: str | None) -> Swallower | None:
     """Where a failure of a tree ends, if it ends on every way up."""
     first: Swallower | None = None
-    seen: set[int] = set()
+    visited: set[int] = set()
     waiting = [*store.ask(_callers, viewpoint, tree)]
     ends = not waiting
     while waiting:
-        at = waiting.pop()
-        if id(at) in seen:
+        node = waiting.pop()
+        if id(node) in visited:
             continue
-        seen.add(id(at))
-        end = _in_tree(at)
+        visited.add(id(node))
+        end = _in_tree(node)
         first = first or end
         if end is None:
-            above = store.ask(_callers, viewpoint, at.tree)
+            above = store.ask(_callers, viewpoint, node.tree)
             ends = ends or not above
             waiting += above
     return None if ends else first
@@ -69,12 +69,12 @@ def _main_tree(store: Store[Workspace], viewpoint: str) -> str | None:
 
 
 def _in_tree(node: ResolvedNode) -> Swallower | None:
-    below, at = node, node.parent  # without a generator: in a chain of trees this is asked for each of all others
-    while at is not None:
-        reason = _swallows(at, below)
+    below, above = node, node.parent  # without a generator: in a chain of trees this is asked for each of all others
+    while above is not None:
+        reason = _swallows(above, below)
         if reason is not None:
-            return at, reason
-        below, at = at, at.parent
+            return above, reason
+        below, above = above, above.parent
     return None
 
 
@@ -104,7 +104,7 @@ def _failures_needed(parallel: ResolvedNode) -> int:
     """The number of children that must fail for it to fail; 1 if unknown."""
     n = len(parallel.node.children)
     counts = [port_count(parallel, role) for role in ("successes", "failures")]
-    wanted, failures = [n + count + 1 if count is not None and count < 0 else count for count in counts]
+    successes, failures = [n + count + 1 if count is not None and count < 0 else count for count in counts]
     if failures is None or parallel.flow == "parallel-all":
         return failures if failures is not None else 1
-    return min(failures, n - wanted + 1) if wanted is not None else 1
+    return min(failures, n - successes + 1) if successes is not None else 1

@@ -35,11 +35,11 @@ _LAST_WINS = "the engine does not report this: it runs the last one that it read
 
 def unknown_tree(view: View) -> Iterator[Diagnostic]:
     """A SubTree, or a Root, whose tree does not exist."""
-    for seen in view.seen.subtrees:
-        word = seen.node.category
-        is_nameless = seen.id is None or seen.id.text == ""
-        if word is not None and is_nameless and not view.is_torn(seen.node.start, seen.node.end):
-            what, pairs = "missing tree of this SubTree", seen.node.attributes
+    for resolved in view.seen.subtrees:
+        word = resolved.node.category
+        is_nameless = resolved.id is None or resolved.id.text == ""
+        if word is not None and is_nameless and not view.is_torn(resolved.node.start, resolved.node.end):
+            what, pairs = "missing tree of this SubTree", resolved.node.attributes
             yield missing_id(view, "unknown-tree", word.span, what, "SubTree", pairs)
     for use in view.uses(Kind.TREE):
         if use.name == "" or view.ask(lookups.is_defined, Kind.TREE, use.name) or view.is_pooled(Kind.TREE, use.name):
@@ -81,15 +81,15 @@ def nested_too_deep(view: View) -> Iterator[Diagnostic]:
     if len(nodes) <= _DEEPEST_OF_4_6 or DEEP_TREES.holds(view.engines[0]):
         return
     levels: dict[int, int] = {}
-    for seen in nodes:
-        level = levels[id(seen)] = 1 if seen.parent is None else levels[id(seen.parent)] + 1
+    for resolved in nodes:
+        level = levels[id(resolved)] = 1 if resolved.parent is None else levels[id(resolved.parent)] + 1
         if level <= _DEEPEST_OF_4_6:
             continue
         pin = f'if you run a later version, set `engine = "{view.target}"` in btq.toml'
         message = f"BehaviorTree.CPP 4.6 reads at most {_DEEPEST_OF_4_6} levels of nodes"
         notes = (OF_ITS_OWN,) if view.is_pinned else (OF_ITS_OWN, pin)
         severity = None if view.is_pinned else Severity.WARNING
-        yield Diagnostic("nested-too-deep", seen.node.head.span, message, notes=notes, severity=severity)
+        yield Diagnostic("nested-too-deep", resolved.node.head.span, message, notes=notes, severity=severity)
         return
 
 
@@ -114,7 +114,7 @@ def recursive_tree(view: View) -> Iterator[Diagnostic]:
     if circle is None or not view.defines_here(Kind.TREE, name):
         return
     places = [(use.name, use.span) for use in view.uses(Kind.TREE)]
-    places += [(seen.id.text, seen.id.span) for seen in view.seen.subtrees if seen.id is not None]
+    places += [(resolved.id.text, resolved.id.span) for resolved in view.seen.subtrees if resolved.id is not None]
     span = next(span for called, span in places if called == circle[1])
     way = " → ".join(f"`{step}`" for step in circle)
     message = f"the tree `{name}` contains itself" + (f": {way}" if len(circle) > 2 else "")
@@ -132,7 +132,7 @@ def unused_tree(view: View) -> Iterator[Diagnostic]:
     ):
         return
     mains = view.ask(lookups.main_trees)
-    main = f"main tree{'s are' if len(mains) > 1 else ' is'} {', '.join(f'`{each}`' for each in mains)}"
+    main = f"main tree{'s are' if len(mains) > 1 else ' is'} {', '.join(f'`{tree}`' for tree in mains)}"
     if not view.defines_here(Kind.TREE, name.text):
         return  # another tree of that name counts, which is reported
     users = view.ask(calls.callers, name.text)
@@ -256,7 +256,9 @@ def tree_named_like_node(view: View) -> Iterator[Diagnostic]:
         owner = "a built-in node"
     elif model is not None and not _is_subtree_model(model):
         owner, related = "a node", view.declared_at(Kind.MODEL, name.text, "node declared here")
-    elif inside := [seen.id for seen in view.seen.strangers if seen.id is not None and seen.id.text == name.text]:
+    elif inside := [
+        resolved.id for resolved in view.seen.strangers if resolved.id is not None and resolved.id.text == name.text
+    ]:
         owner, related = "a node in it", (Related(Place(inside[0].span), "the node"),)
     else:
         return
@@ -264,19 +266,19 @@ def tree_named_like_node(view: View) -> Iterator[Diagnostic]:
     yield Diagnostic("tree-named-like-node", name.span, message, related)
 
 
-def as_uncreated(view: View, found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+def as_uncreated(view: View, diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """What was found in an item; errors are only warnings if the engine never comes to them."""
     name = view.tree_name.text if view.tree_name is not None else ""
     factory = view.factory
     if factory is None or not view.ask(calls.is_uncreated, name):
-        yield from found
+        yield from diagnostics
         return
     note = f"no main tree of the factory `{factory.name}` reaches `{name}`; the engine would refuse to create it"
-    for each in found:
-        if each.rule in AT_CREATION and each.effective_severity is Severity.ERROR:
-            yield replace(each, severity=Severity.WARNING, notes=(*each.notes, note))
+    for diagnostic in diagnostics:
+        if diagnostic.rule in AT_CREATION and diagnostic.effective_severity is Severity.ERROR:
+            yield replace(diagnostic, severity=Severity.WARNING, notes=(*diagnostic.notes, note))
         else:
-            yield each
+            yield diagnostic
 
 
 def _as_node(use: Use) -> tuple[Fix, ...]:
@@ -290,11 +292,11 @@ def _as_node(use: Use) -> tuple[Fix, ...]:
 
 def _main_tree_fix(view: View, name: str) -> Fix:
     """The fix that names the main tree: in the existing Root, or in a line of its own after the includes."""
-    at, margin = view.ask(lookups.head)
+    offset, margin = view.ask(lookups.head)
     text = f"{margin}Root {written(name)}\n"
     if (root := view.ask(lookups.root)) is not None:
-        at, text = root, f" {written(name)}"
-    return Fix(f"Make `{name}` the main tree", (FixEdit(Place(Span(at, at), view.path), text),))
+        offset, text = root, f" {written(name)}"
+    return Fix(f"Make `{name}` the main tree", (FixEdit(Place(Span(offset, offset), view.path), text),))
 
 
 def _is_subtree_model(meaning: VisibleMeaning) -> bool:

@@ -25,15 +25,17 @@ def not_enforced(demanded: Demanded) -> Iterator[Found]:
             continue
         related = () if place == node.place else (Related(node.place, "node"),)
         if why is not None:
-            yield place, _found(applied, place, why, related)
+            yield place, _diagnostic(applied, place, why, related)
             continue
-        elsewhere = next((each for each in _nodes(claim, node) if not _is_built(demanded, applied, claim, each)), None)
+        elsewhere = next(
+            (wrapped for wrapped in _nodes(claim, node) if not _is_built(demanded, applied, claim, wrapped)), None
+        )
         if elsewhere is not None:
             from btq_lang.btcpp.enforceability import where_else  # few missions demand anything of other files' nodes
 
             path = elsewhere.path
             why = where_else(elsewhere, is_xml=demanded.view.store.ask(lookups.is_xml, path))
-            yield place, _found(applied, place, why, related, is_bundled=True)
+            yield place, _diagnostic(applied, place, why, related, is_bundled=True)
 
 
 def not_enforced_between(view: View, name: str) -> Iterator[Found]:
@@ -44,19 +46,19 @@ def not_enforced_between(view: View, name: str) -> Iterator[Found]:
             place = reported_at(view, applied, claim)
             why = judge.why_not(applied, claim) if place is not None else None
             if place is not None and why is not None:
-                yield place, _found(applied, place, why, ())
+                yield place, _diagnostic(applied, place, why, ())
 
 
-def _found(
+def _diagnostic(
     applied: Applied, place: Place, why: str, related: tuple[Related, ...], *, is_bundled: bool = False
 ) -> Diagnostic:
     requirement = applied.requirement
-    asked = "this" if requirement.classic else f"`on violation {requirement.action}`"  # classic ones are always hard
+    demand = "this" if requirement.classic else f"`on violation {requirement.action}`"  # classic ones are always hard
     note = (
         "nothing stops the robot, and `btq verify` can only check it in the logs afterwards; "
         "remove `on violation`, or write `on violation warn`"
     )
-    message = f"the engine cannot enforce {asked}: {why}"
+    message = f"the engine cannot enforce {demand}: {why}"
     notes = () if is_bundled or requirement.classic else (note,)
     severity = Severity.HINT if is_bundled else None
     return Diagnostic("not-enforced", place.span, message, related=related, notes=notes, severity=severity)
@@ -87,9 +89,9 @@ def _is_built(demanded: Demanded, applied: Applied, claim: ResolvedClaim, node: 
     if node.path == demanded.view.path:
         return True
     view = demanded.view
-    seen = frozenset(view.store.ask(inputs.paths, node.path))
-    asking = view.ask(_asking, applied.requirement.name, node)
-    return not seen.isdisjoint(asking) or (applied.how == "subject" and claim.place.path in seen)
+    paths = frozenset(view.store.ask(inputs.paths, node.path))
+    attaching = view.ask(_asking, applied.requirement.name, node)
+    return not paths.isdisjoint(attaching) or (applied.how == "subject" and claim.place.path in paths)
 
 
 def _asking(store: Store[Workspace], viewpoint: str, name: str, node: ResolvedNode) -> frozenset[str | None]:

@@ -14,7 +14,8 @@ from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import callers, is_missed
-from btq_lang.checks.entries import EntryMention, handling, mentions
+from btq_lang.checks.entries import EntryMention, handling
+from btq_lang.checks.entries import mentions as mentions_in
 from btq_lang.checks.flow import EntryUse, calls_of, of_program, uses, writes_alone
 from btq_lang.checks.meant_entries import meant_entry
 from btq_lang.checks.misspelt import misspelt_entry
@@ -38,37 +39,39 @@ def unset_entry(view: View) -> Iterator[Diagnostic]:
     name = view.tree_name
     if name is None or not view.defines_here(Kind.TREE, name.text):
         return
-    named = view.ask(mentions, view.path, view.facts)
-    found = _found(view, name.text, named, set())
-    if not found or not view.ask(inputs.is_complete):
+    mentions = view.ask(mentions_in, view.path, view.facts)
+    diagnostics = _diagnostics(view, name.text, mentions, set())
+    if not diagnostics or not view.ask(inputs.is_complete):
         return
-    told = _told(view, named)
-    yield from _found(view, name.text, named, told) if told else found
+    reported = _reported_otherwise(view, mentions)
+    yield from _diagnostics(view, name.text, mentions, reported) if reported else diagnostics
 
 
-def _found(view: View, tree: str, named: Sequence[EntryMention], but: set[str]) -> list[Diagnostic]:
+def _diagnostics(view: View, tree: str, mentions: Sequence[EntryMention], excluded: set[str]) -> list[Diagnostic]:
     """What is wrong with entries, except some."""
-    return [*_uncreated(view, tree, named, but), *_unset(view, tree, named, but)]
+    return [*_uncreated(view, tree, mentions, excluded), *_unset(view, tree, mentions, excluded)]
 
 
-def _told(view: View, named: Sequence[EntryMention]) -> set[str]:
+def _reported_otherwise(view: View, mentions: Sequence[EntryMention]) -> set[str]:
     """The entries of which another rule tells what is wrong: they are misspelt, or in a script that is."""
     spans: list[Span] = []
-    for each in chain(misspelt_entry(view), meant_entry(view)):
-        spans += (each.span, *(related.place.span for related in each.related))
-    wrong = [each.span for each in script_error(view)]
+    for diagnostic in chain(misspelt_entry(view), meant_entry(view)):
+        spans += (diagnostic.span, *(related.place.span for related in diagnostic.related))
+    wrong = [problem.span for problem in script_error(view)]
     spans += [pair.span for _, pair, _ in view.seen.values() if any(map(pair.span.contains, wrong))]
-    return {each.name for each in named if any(span.touches(each.span) for span in spans)}
+    return {mention.name for mention in mentions if any(span.touches(mention.span) for span in spans)}
 
 
-def _uncreated(view: View, tree: str, named: Sequence[EntryMention], but: set[str]) -> Iterator[Diagnostic]:
+def _uncreated(view: View, tree: str, mentions: Sequence[EntryMention], excluded: set[str]) -> Iterator[Diagnostic]:
     """The first assignment to each entry that nothing creates."""
-    created = {each.name for each in named if each.creates} | but
-    for name, mention in _first([each for each in named if each.in_script and each.writes], created).items():
+    created = {mention.name for mention in mentions if mention.creates} | excluded
+    for name, mention in _first_mentions(
+        [mention for mention in mentions if mention.in_script and mention.writes], created
+    ).items():
         use = view.ask(uses, tree, name)
         if use & (EntryUse.CREATED | EntryUse.GIVEN | EntryUse.OPEN):
             continue
-        if use & EntryUse.OUTSIDE and next(each for each in named if each.name == name) is not mention:
+        if use & EntryUse.OUTSIDE and next(other for other in mentions if other.name == name) is not mention:
             continue  # programs set what scripts read first
         is_certain = not use & EntryUse.STRANGE and (not use & EntryUse.OUTSIDE or _is_known_root(view, tree))
         message = f"a script assigns to `{name}`, which nothing creates"
@@ -91,16 +94,16 @@ def _creating(view: View, mention: EntryMention) -> tuple[str, tuple[Fix, ...]]:
             target, assigned = statement.target, script.text[statement.value.start : statement.value.end]
             if in_source(value, Span(target.start, target.end)) != mention.span:
                 continue
-            at = script.text.index("=", target.end)
-            fix = replace_fix("Write `:=`", in_source(value, Span(at, at + 1)), ":=")
+            offset = script.text.index("=", target.end)
+            fix = replace_fix("Write `:=`", in_source(value, Span(offset, offset + 1)), ":=")
             return f"write `{mention.name} := {assigned}`", (fix,)
     return f"create the entry before: `{mention.name} := …`", ()
 
 
-def _unset(view: View, tree: str, named: Sequence[EntryMention], but: set[str]) -> Iterator[Diagnostic]:
+def _unset(view: View, tree: str, mentions: Sequence[EntryMention], excluded: set[str]) -> Iterator[Diagnostic]:
     """The first reading of each entry that nothing writes."""
     outside: list[EntryMention] = []
-    for name, mention in _first([each for each in named if _reads(each)], but).items():
+    for name, mention in _first_mentions([mention for mention in mentions if _reads(mention)], excluded).items():
         use = view.ask(uses, tree, name) if name.isidentifier() else EntryUse.OPEN
         if use & (EntryUse.GIVEN | EntryUse.OPEN):
             continue
@@ -110,7 +113,11 @@ def _unset(view: View, tree: str, named: Sequence[EntryMention], but: set[str]) 
             continue
         if not use & EntryUse.READ:
             continue  # trees get it that do not read it
-        writers = [seen for seen in view.seen.subtrees if seen.id and view.ask(writes_alone, tree, seen.id.text, name)]
+        writers = [
+            resolved
+            for resolved in view.seen.subtrees
+            if resolved.id and view.ask(writes_alone, tree, resolved.id.text, name)
+        ]
         if writers:
             yield _lost(view, mention, writers, use)
         elif use & EntryUse.OUTSIDE:
@@ -120,18 +127,20 @@ def _unset(view: View, tree: str, named: Sequence[EntryMention], but: set[str]) 
         elif not use & EntryUse.STRANGE and view.ask(_needs, tree, name):
             yield _not_given(view, tree, mention)
     of_program = view.ask(lookups.set_in_cpp)
-    outside = [each for each in outside if each.name not in of_program and view.ask(_needs, tree, each.name)]
+    outside = [
+        mention for mention in outside if mention.name not in of_program and view.ask(_needs, tree, mention.name)
+    ]
     if outside and _is_known_root(view, tree):
         yield from _never_set(view, outside)
 
 
 def _lost(view: View, mention: EntryMention, writers: Sequence[ResolvedNode], use: EntryUse) -> Diagnostic:
     """An entry that SubTrees write for themselves."""
-    name, seen = mention.name, writers[0]
-    assert seen.id is not None, "its tree is known"
-    message = f"nothing writes `{name}`, which is read here: `{seen.id.text}` writes an entry of its own"
-    related = (Related(Place(seen.node.head.span), f"does not pass on `{name}`"),)
-    fixes = adding_fix(view, seen.node, f"Pass on `{name}`", f"{written(name)} = {{{name}}}")
+    name, resolved = mention.name, writers[0]
+    assert resolved.id is not None, "its tree is known"
+    message = f"nothing writes `{name}`, which is read here: `{resolved.id.text}` writes an entry of its own"
+    related = (Related(Place(resolved.node.head.span), f"does not pass on `{name}`"),)
+    fixes = adding_fix(view, resolved.node, f"Pass on `{name}`", f"{written(name)} = {{{name}}}")
     severity = Severity.HINT if use & EntryUse.STRANGE else None
     return Diagnostic("unset-entry", mention.span, message, related, fixes=fixes, severity=severity)
 
@@ -150,39 +159,42 @@ def _runs_without(store: Store[Workspace], viewpoint: str, tree: str, name: str)
     return view.declared_at(Kind.TREE, caller, f"runs `{tree}`") if caller is not None else ()
 
 
-def _never_set(view: View, named: Sequence[EntryMention]) -> Iterator[Diagnostic]:
+def _never_set(view: View, mentions: Sequence[EntryMention]) -> Iterator[Diagnostic]:
     """Entries of the root blackboard: a warning each if it is known what the program sets; else a hint for all."""
     if view.ask(lookups.outside_entries):
-        for each in named:
-            message = f"nothing writes `{each.name}` before it is read here, and bt_navigator does not set it"
-            yield Diagnostic("unset-entry", each.span, message)
+        for mention in mentions:
+            message = f"nothing writes `{mention.name}` before it is read here, and bt_navigator does not set it"
+            yield Diagnostic("unset-entry", mention.span, message)
         return
-    names = ", ".join(f"`{each.name}`" for each in named[:_MOST]) + (" …" if len(named) > _MOST else "")
-    them = "it is" if len(named) == 1 else "they are"
-    message = f"nothing here writes {names} before {them} read"
+    names = ", ".join(f"`{mention.name}`" for mention in mentions[:_MOST]) + (" …" if len(mentions) > _MOST else "")
+    they_are = "it is" if len(mentions) == 1 else "they are"
+    message = f"nothing here writes {names} before {they_are} read"
     notes = (
         "ignore this where the robot's program sets the entry"
-        if len(named) == 1
+        if len(mentions) == 1
         else "ignore this for those that the robot's program sets",
-        *_not_written(view, named),
+        *_not_written(view, mentions),
     )
-    related = tuple([Related(Place(each.span), f"`{each.name}`") for each in named[1:_MOST]])
-    yield Diagnostic("unset-entry", named[0].span, message, related, notes, severity=Severity.HINT)
+    related = tuple([Related(Place(mention.span), f"`{mention.name}`") for mention in mentions[1:_MOST]])
+    yield Diagnostic("unset-entry", mentions[0].span, message, related, notes, severity=Severity.HINT)
 
 
-def _not_written(view: View, named: Sequence[EntryMention]) -> Iterator[str]:
+def _not_written(view: View, mentions: Sequence[EntryMention]) -> Iterator[str]:
     """What in the tree was probably meant to write the entries: one with a similar name, or an input."""
-    of_tree = view.ask(mentions, view.path, view.facts)
-    read = {each.name for each in of_tree if each.reads or each.node.is_subtree}
-    written_only = [each.name for each in of_tree if each.writes and each.name not in read]
-    for each in named:
-        if likely := near(each.name, written_only, 1):
+    of_tree = view.ask(mentions_in, view.path, view.facts)
+    read = {mention.name for mention in of_tree if mention.reads or mention.node.is_subtree}
+    written_only = [mention.name for mention in of_tree if mention.writes and mention.name not in read]
+    for mention in mentions:
+        if likely := near(mention.name, written_only, 1):
             yield f"did you mean `{likely[0]}`, which a node writes?"
         elif (
-            not each.in_script and each.node.of_model is not None and sum(each.name == one.name for one in of_tree) > 1
+            not mention.in_script
+            and mention.node.of_model is not None
+            and sum(mention.name == other.name for other in of_tree) > 1
         ):
-            port = next(pair.key.text for pair in each.node.node.attributes if pair.span.contains(each.span))
-            yield f"if `{each.node.node.head.text}` writes `{each.name}`, its model declares `{port}` as an output"
+            node = mention.node.node
+            port = next(pair.key.text for pair in node.attributes if pair.span.contains(mention.span))
+            yield f"if `{node.head.text}` writes `{mention.name}`, its model declares `{port}` as an output"
 
 
 def _reads(mention: EntryMention) -> bool:
@@ -194,14 +206,14 @@ def _reads(mention: EntryMention) -> bool:
 def _needs(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
     """Whether a node in a tree, or in those that get the entry from it, cannot do without its value."""
     view = View(store, viewpoint)
-    found = view.ask(inputs.definition, Kind.TREE, tree)
-    named = view.ask(mentions, *found) if found is not None else ()
-    if any(each.name == name and not each.node.is_subtree and _is_needed(view, each) for each in named):
+    definition = view.ask(inputs.definition, Kind.TREE, tree)
+    mentions = view.ask(mentions_in, *definition) if definition is not None else ()
+    if any(mention.name == name and not mention.node.is_subtree and _is_needed(view, mention) for mention in mentions):
         return True
     calls = view.ask(handling, tree).calls
     below = {(call.tree, port) for call in calls for port, passed in call.given.items() if passed == name}
     below |= {(call.tree, name) for call in calls if call.passed(name) == name}
-    return any(view.ask(_needs, *each) for each in sorted(below))
+    return any(view.ask(_needs, *entry) for entry in sorted(below))
 
 
 def _is_needed(view: View, mention: EntryMention) -> bool:
@@ -217,48 +229,45 @@ def _is_needed(view: View, mention: EntryMention) -> bool:
     return any(port is not None and port.required for port in ports)
 
 
-def _first(named: Sequence[EntryMention], but: set[str]) -> dict[str, EntryMention]:
+def _first_mentions(mentions: Sequence[EntryMention], excluded: set[str]) -> dict[str, EntryMention]:
     """The first mention of each name."""
-    found: dict[str, EntryMention] = {}
-    for each in named:
-        if each.name not in but:
-            found.setdefault(each.name, each)
-    return found
+    by_name: dict[str, EntryMention] = {}
+    for mention in mentions:
+        if mention.name not in excluded:
+            by_name.setdefault(mention.name, mention)
+    return by_name
 
 
 def _is_before_all(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
     """Whether a tree reads an entry of the root blackboard before it writes it: at an earlier child of one Sequence."""
     view = View(store, viewpoint)
-    found = view.ask(inputs.definition, Kind.TREE, tree)
-    if found is None or view.ask(of_program, name) & EntryUse.WRITTEN:
+    definition = view.ask(inputs.definition, Kind.TREE, tree)
+    if definition is None or view.ask(of_program, name) & EntryUse.WRITTEN:
         return False
-    named = [each for each in view.ask(mentions, *found) if each.name == name]
-    own = view.ask(handling, tree)
-    if any(call.passed(name) is not None or name in call.given.values() for call in own.calls) or name in own.named:
+    mentions = [mention for mention in view.ask(mentions_in, *definition) if mention.name == name]
+    handled = view.ask(handling, tree)
+    if (
+        any(call.passed(name) is not None or name in call.given.values() for call in handled.calls)
+        or name in handled.named
+    ):
         return False
-    first, others = named[0], [each for each in named if each.writes]
-    is_read_first = first.reads and not first.writes and bool(others)
-    return is_read_first and all(_is_earlier(first.node, each.node) for each in others)
+    first, writers = mentions[0], [mention for mention in mentions if mention.writes]
+    is_read_first = first.reads and not first.writes and bool(writers)
+    return is_read_first and all(_is_earlier(first.node, mention.node) for mention in writers)
 
 
-def _is_earlier(seen: ResolvedNode, other: ResolvedNode) -> bool:
+def _is_earlier(resolved: ResolvedNode, other: ResolvedNode) -> bool:
     """Whether one node ends before another begins, whenever both run: no node above them begins again."""
-    above = [*_above(other)]
-    shared = [each for each in _above(seen) if each in above]
+    above = [*other.ancestors()]
+    shared = [ancestor for ancestor in resolved.ancestors() if ancestor in above]
     return (
-        seen is not other
+        resolved is not other
         and bool(shared)
         and shared[0].flow == "sequence"
-        and all(each.flow in ("sequence", "fallback") for each in shared)
-        and seen not in above
-        and other not in _above(seen)
+        and all(ancestor.flow in ("sequence", "fallback") for ancestor in shared)
+        and resolved not in above
+        and other not in resolved.ancestors()
     )
-
-
-def _above(seen: ResolvedNode) -> Iterator[ResolvedNode]:
-    while seen.parent is not None:
-        seen = seen.parent
-        yield seen
 
 
 def _is_known_root(view: View, tree: str) -> bool:
@@ -268,7 +277,7 @@ def _is_known_root(view: View, tree: str) -> bool:
     if not mains or view.ask(is_missed, tree):
         return False
     is_alone = not view.ask(inputs.is_included) and not any(
-        view.ask(lookups.is_run_elsewhere, each) for each in (*mains, tree)
+        view.ask(lookups.is_run_elsewhere, other) for other in (*mains, tree)
     )
     return view.factory is not None or is_alone
 
@@ -279,7 +288,7 @@ def _is_passed(store: Store[Workspace], viewpoint: str, tree: str, name: str) ->
     for caller, call in calls_of(View(store, viewpoint), tree):
         if name in call.given or store.ask(_is_passed, viewpoint, caller, name):
             return True
-        if any(each.name == name for each in store.ask(handling, viewpoint, caller).touches):
+        if any(touch.name == name for touch in store.ask(handling, viewpoint, caller).touches):
             return True
     return False
 

@@ -43,11 +43,15 @@ def version_3_file(view: View) -> Iterator[Diagnostic]:
     yield Diagnostic("version-3-file", _root(view), message, notes=notes, severity=severity)
 
 
-def refuses(found: Iterable[Diagnostic], signs: Signs | None) -> bool:
+def refuses(diagnostics: Iterable[Diagnostic], signs: Signs | None) -> bool:
     """Whether version 3 refuses several things in a file that version 4 takes, or one if nothing but the file's own
     declaration says that it is for version 3; its own words say that it is for it."""
     is_declared = signs is not None and signs.is_new and signs.format == VERSION_3[:1]
-    rules = [each.rule for each in found if each.effective_severity is Severity.ERROR or each.rule == _OLD_WORD]
+    rules = [
+        diagnostic.rule
+        for diagnostic in diagnostics
+        if diagnostic.effective_severity is Severity.ERROR or diagnostic.rule == _OLD_WORD
+    ]
     return _OLD_WORD not in rules and sum(rule in _OF_VERSION_4 for rule in rules) > (not is_declared)
 
 

@@ -133,13 +133,13 @@ class View:
     def is_torn(self, start: int, end: int) -> bool:
         """Whether something could not be read that begins between two offsets of the item, both included."""
         starts = self.ask(_torn_places, self.facts)
-        at = bisect_left(starts, start)
-        return at < len(starts) and starts[at] <= end
+        index = bisect_left(starts, start)
+        return index < len(starts) and starts[index] <= end
 
     def node_before(self, offset: int) -> ResolvedNode | None:
         """The last node that begins before an offset of the item."""
-        at = bisect_left(self.nodes, offset, key=lambda seen: seen.node.start)
-        return self.nodes[at - 1] if at else None
+        index = bisect_left(self.nodes, offset, key=lambda resolved: resolved.node.start)
+        return self.nodes[index - 1] if index else None
 
     @property
     def is_main(self) -> bool:
@@ -168,8 +168,8 @@ class View:
 
     def defines_here(self, kind: Kind, name: str) -> bool:
         """Whether the item has the definition of a name that counts."""
-        found = self.ask(inputs.definition, kind, name)
-        return found is not None and found[1] is self.facts
+        definition = self.ask(inputs.definition, kind, name)
+        return definition is not None and definition[1] is self.facts
 
     def repeated(self, *kinds: Kind) -> Iterator[tuple[Symbol, Declaration, bool]]:
         """The names that the item and another one define, with that definition, and whether it is the one that takes
@@ -187,8 +187,12 @@ class View:
         counts and the other one."""
         if not isinstance(self.item, Include):
             return []
-        found = self.ask(lookups.clashes)
-        return [(first, second) for at, first, second in found if at is self.facts and second.symbol.kind in kinds]
+        collisions = self.ask(lookups.clashes)
+        return [
+            (first, second)
+            for include, first, second in collisions
+            if include is self.facts and second.symbol.kind in kinds
+        ]
 
     def seen_in(self, path: str, tree: Facts) -> SortedNodes:
         """The nodes of a tree of any file in scope, sorted; empty for any other item."""
@@ -274,14 +278,20 @@ class View:
         def is_name(word: str) -> bool:
             return self.ask(lookups.is_node_name, word)
 
-        return tuple([(each, can_be_checked(each.text, is_name)) for each in constraints(requirement.text)])
+        return tuple(
+            [(constraint, can_be_checked(constraint.text, is_name)) for constraint in constraints(requirement.text)]
+        )
 
 
-def ports_beside(view: View, seen: ResolvedNode) -> tuple[Port, ...]:
+def ports_beside(view: View, resolved: ResolvedNode) -> tuple[Port, ...]:
     """The ports that the model of a node declares, or the tree of a SubTree; not those of a built-in."""
-    if seen.is_subtree:
-        return declared_ports(view, seen.node.id.text) if seen.node.id is not None else ()
-    model = view.ask(lookups.meaning, Kind.MODEL, seen.id.text) if seen.is_defined and seen.id is not None else None
+    if resolved.is_subtree:
+        return declared_ports(view, resolved.node.id.text) if resolved.node.id is not None else ()
+    model = (
+        view.ask(lookups.meaning, Kind.MODEL, resolved.id.text)
+        if resolved.is_defined and resolved.id is not None
+        else None
+    )
     return model.ports if model is not None else ()
 
 
@@ -294,12 +304,12 @@ def declared_ports(view: View, name: str) -> tuple[Port, ...]:
     return ()
 
 
-def port_of(view: View, seen: ResolvedNode, name: str) -> PortKind | None:
+def port_of(view: View, resolved: ResolvedNode, name: str) -> PortKind | None:
     """A node's port of a name; None if nothing declares it."""
-    if seen.kind is not None:
-        builtin = seen.kind.port(name)
+    if resolved.kind is not None:
+        builtin = resolved.kind.port(name)
         return of_version(builtin, view.target) if builtin is not None else None
-    port = port_named(ports_beside(view, seen), name)
+    port = port_named(ports_beside(view, resolved), name)
     return as_kind(port) if port is not None else None
 
 

@@ -49,7 +49,7 @@ class Entries(Record):
 def written_keys(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
     """The entries that something in scope or its program may write, without their `@`."""
     outside = [name for name, direction in store.ask(lookups.outside_entries, viewpoint) if direction != "input"]
-    return frozenset(outside).union(*[each.written for each in store.ask(all_entries, viewpoint)])
+    return frozenset(outside).union(*[of_tree.written for of_tree in store.ask(all_entries, viewpoint)])
 
 
 @inputs.of_scope
@@ -144,9 +144,9 @@ def _writes(view: View, node: ResolvedNode, port: str) -> bool | None:
 
 def _passed_on(node: ResolvedNode, name: str) -> Iterator[str]:
     """The names under which a tree that runs another one passes an entry to that."""
-    given = {pair.key.text: pair.value.text for pair in node.node.attributes if pair.value is not None}
-    yield from (port for port, text in given.items() if is_pointer(text) and key_of(text, port) == name)
-    if remaps_all(node) and name not in given and name[:1] != "_":
+    values = {pair.key.text: pair.value.text for pair in node.node.attributes if pair.value is not None}
+    yield from (port for port, text in values.items() if is_pointer(text) and key_of(text, port) == name)
+    if remaps_all(node) and name not in values and name[:1] != "_":
         yield name
 
 

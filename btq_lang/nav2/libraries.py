@@ -33,11 +33,11 @@ class Libraries:
         self._named = parameters.texts(NAMES)
         usual = {name for name, (_, _, loaded) in LIBRARIES.items() if self._letter in loaded}
         self._built_in = usual if self._named is None or self._letter not in _REPLACING else set()
-        loaded = self._built_in | {each.text for each in self._named or ()}
+        loaded = self._built_in | {library.text for library in self._named or ()}
         of_nav2 = {node for name in loaded if self._exists(name) for node in LIBRARIES[name][0]}
         self._own = own.of_node
         self.nodes = of_nav2 | {node for node, libraries in own.of_node.items() if libraries & loaded}
-        others = [each.text for each in self._named or () if not self._exists(each.text)]
+        others = [library.text for library in self._named or () if not self._exists(library.text)]
         self.are_of_nav2 = not others
         self.are_all_known = own.whole.issuperset(others)
 
@@ -49,17 +49,17 @@ class Libraries:
     def findings(self) -> Iterator[Diagnostic]:
         """What is wrong with the libraries that the parameters name."""
         named = self._named or ()
-        yield from self._loaded_by_nav2([each for each in named if each.text in self._built_in])
+        yield from self._loaded_by_nav2([library for library in named if library.text in self._built_in])
         first: dict[str, Span] = {}
-        for each in named:
-            if each.text in first and each.text not in self._built_in:
-                related = (Related(Place(first[each.text]), "first one"),)
-                message = f"`{each.text}` is named twice, so its nodes are registered twice"
-                yield Diagnostic("library-loaded-twice", each.span, message, related, (_REFUSED,))
-            elif not self._exists(each.text) and (meant := self._meant(each.text)) is not None:
-                message = f"Nav2 has no library `{each.text}` in {self._shown}{meant}"
-                yield Diagnostic("unknown-library", each.span, message, notes=(_REFUSED,))
-            first.setdefault(each.text, each.span)
+        for library in named:
+            if library.text in first and library.text not in self._built_in:
+                related = (Related(Place(first[library.text]), "first one"),)
+                message = f"`{library.text}` is named twice, so its nodes are registered twice"
+                yield Diagnostic("library-loaded-twice", library.span, message, related, (_REFUSED,))
+            elif not self._exists(library.text) and (meant := self._suggestion(library.text)) is not None:
+                message = f"Nav2 has no library `{library.text}` in {self._shown}{meant}"
+                yield Diagnostic("unknown-library", library.span, message, notes=(_REFUSED,))
+            first.setdefault(library.text, library.span)
 
     def _loaded_by_nav2(self, named: list[ParameterText]) -> Iterator[Diagnostic]:
         """The libraries that Nav2 loads without a name: one finding, as a file of another distribution names all."""
@@ -68,19 +68,21 @@ class Libraries:
         first, *others = named
         more = f" and {len(others)} more of the named libraries" if others else ""
         message = f"Nav2 loads `{first.text}`{more} by itself in {self._shown}, so nodes are registered twice"
-        related = tuple(Related(Place(each.span), "this one too") for each in others[:_SHOWN])
+        related = tuple(Related(Place(library.span), "this one too") for library in others[:_SHOWN])
         yield Diagnostic("library-loaded-twice", first.span, message, related, (_REFUSED,))
 
-    def _meant(self, name: str) -> str | None:
+    def _suggestion(self, name: str) -> str | None:
         """What a library that is not Nav2's in this distribution may mean, for a message; None: it is a team's own."""
-        here = [each for each in LIBRARIES if self._exists(each)]
+        existing = [library for library in LIBRARIES if self._exists(library)]
         if name in LIBRARIES and name.startswith(_BESIDE):
             return None
         if name not in LIBRARIES:
-            likely = [each for each in here if distance(name, each, 1) <= 1]  # own ones are often named alike
+            likely = [
+                library for library in existing if distance(name, library, 1) <= 1
+            ]  # own ones are often named alike
             return did_you_mean(likely) if likely else None
-        now = [library for node in LIBRARIES[name][0] if (library := self.library_of(node)) is not None]
-        return did_you_mean(now[:1] or near(name, here, 1))
+        successors = [library for node in LIBRARIES[name][0] if (library := self.library_of(node)) is not None]
+        return did_you_mean(successors[:1] or near(name, existing, 1))
 
     def _exists(self, name: str) -> bool:
         return name in LIBRARIES and self._letter in LIBRARIES[name][1]

@@ -93,7 +93,7 @@ class Load(Record):
     def is_whole(self) -> bool:
         """Whether all that it reads is known."""
         places = (*self.folders, *([self.tree] if self.tree is not None else ()))
-        return all(each.path is not None for each in places)
+        return all(place.path is not None for place in places)
 
 
 class Loads:
@@ -157,21 +157,28 @@ class Loads:
             text = self._read(path) or ""
             listed = listed_trees(text)
             ids, main = listed or ((), None)
-            clash = next((each for each in ids if each in owners), None)
+            clash = next((tree_id for tree_id in ids if tree_id in owners), None)
             places = [Place(Span(*match.span()), path) for match in _TREE.finditer(text)] or [Place(Span(0, 0), path)]
             if listed is not None and not main and (len(ids) > 1 or (path == first and not ids)):
                 refused.append(places[min(1, len(places) - 1)])
             elif not ids:
                 skipped.append(SkippedFile(places[0], None, None, text.find("<BehaviorTree") >= 0))
             elif clash is not None:
-                at = next((each for each in places if f'"{clash}"' in text[each.span.start : each.span.end]), places[0])
+                place = next(
+                    (
+                        candidate
+                        for candidate in places
+                        if f'"{clash}"' in text[candidate.span.start : candidate.span.end]
+                    ),
+                    places[0],
+                )
                 is_certain = owners[clash].path == first  # else the other file may be the one that is skipped
                 skipped.append(
-                    SkippedFile(at, clash, owners[clash], not is_certain or not owners.keys() >= {*ids}, ids)
+                    SkippedFile(place, clash, owners[clash], not is_certain or not owners.keys() >= {*ids}, ids)
                 )
             else:
                 owners.update(zip(ids, [*places, *[places[-1]] * len(ids)], strict=False))
-        files = tuple(dict.fromkeys(each.path for each in owners.values() if each.path is not None))
+        files = tuple(dict.fromkeys(place.path for place in owners.values() if place.path is not None))
         return Load(label, tree, named, files, tuple(skipped), tuple(refused), self._folders)
 
 
@@ -209,22 +216,22 @@ def _located(named: ParameterText, find: FindPackage, root: str, is_folder: bool
         lacks = f"the package in {package} has no such {_KINDS[is_folder]}"
         if os.path.basename(os.path.dirname(package)) == "share":  # it is installed
             return Located(named, None, lacks, Severity.ERROR)
-        found = _inside(package, is_folder)
-        elsewhere = [each for each in found if os.path.basename(each) == os.path.basename(path)]
+        candidates = _inside(package, is_folder)
+        elsewhere = [candidate for candidate in candidates if os.path.basename(candidate) == os.path.basename(path)]
         if len(elsewhere) == 1:  # a build may install it elsewhere
             return Located(named, elsewhere[0])
-        if _stem(path) not in map(_stem, found):
-            likely = near(os.path.basename(path), map(os.path.basename, found), 1)
+        if _stem(path) not in map(_stem, candidates):
+            likely = near(os.path.basename(path), map(os.path.basename, candidates), 1)
             return Located(named, None, lacks + did_you_mean(likely), Severity.WARNING)
     return Located(named, None, f"this machine has no such {_KINDS[is_folder]}")
 
 
 def _folders(parameters: Parameters, find: FindPackage, root: str) -> Iterator[Located]:
-    given = parameters.texts("bt_search_directories")
-    if given is None:
+    directories = parameters.texts("bt_search_directories")
+    if directories is None:
         yield _of_nav2("behavior_trees", find)
-    for each in given or ():
-        yield _located(each, find, root, is_folder=True)
+    for directory in directories or ():
+        yield _located(directory, find, root, is_folder=True)
 
 
 def _of_nav2(inside: str, find: FindPackage) -> Located:
@@ -246,7 +253,7 @@ def file_with(tree: str, root: str) -> Place | None:
 def _inside(package: str, is_folder: bool) -> list[str]:
     """The files of a package that is not built, or the folders of its XML; XML may be built of a mission."""
     files, _ = collect((package,), Project(), (".xml",) if is_folder else (".xml", *SUFFIXES))
-    return sorted({os.path.dirname(each) if is_folder else each for each in files})
+    return sorted({os.path.dirname(path) if is_folder else path for path in files})
 
 
 def _stem(path: str) -> str:

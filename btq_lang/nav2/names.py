@@ -32,7 +32,7 @@ def file_findings(parameters: Parameters) -> Iterator[Diagnostic]:
 
 def distribution_unknown(parameters: Parameters) -> Diagnostic:
     """Says that nothing tells for which distribution a file is."""
-    choices = ", ".join(f'"nav2-{each}"' for each in DISTRIBUTIONS)
+    choices = ", ".join(f'"nav2-{distribution}"' for distribution in DISTRIBUTIONS)
     message = "the parameters of bt_navigator do not tell for which distribution of ROS 2 they are"
     notes = (f"write `nodes = [...]` with one of {choices} into btq.toml",)
     return Diagnostic("nav2-distribution", parameters.place or Span(0, 0), message, notes=notes)
@@ -62,20 +62,20 @@ def _unread(parameters: Parameters, distribution: str) -> Iterator[Diagnostic]:
 def _mistyped(parameters: Parameters, distribution: str) -> Iterator[Diagnostic]:
     for name, (_, value) in parameters.values.items():
         row = parameters.row(name)
-        wanted = PARAMETERS[row].type if row is not None and distribution[0] in PARAMETERS[row].of else ""
-        if wanted and not _may_be(wanted, value):
-            message = f"`{name}` must be a{'n' * (wanted == INTEGER)} {wanted}"
+        expected = PARAMETERS[row].type if row is not None and distribution[0] in PARAMETERS[row].of else ""
+        if expected and not _may_be(expected, value):
+            message = f"`{name}` must be a{'n' * (expected == INTEGER)} {expected}"
             notes = ("bt_navigator refuses to configure",)
             yield Diagnostic("nav2-parameter", value.span, message, notes=notes, severity=Severity.ERROR)
 
 
-def _may_be(wanted: str, value: YamlValue) -> bool:
+def _may_be(expected: str, value: YamlValue) -> bool:
     """Whether ROS 2 reads a value as this type; or nothing, or what a launch file puts in its place."""
     if value.text is None:
-        return wanted == STRINGS
+        return expected == STRINGS
     if "$(" in value.text or (value.is_plain and value.text in ("", "~", "null")):
         return True
-    return wanted != STRINGS and value.is_plain and _FORMS[wanted].fullmatch(value.text) is not None
+    return expected != STRINGS and value.is_plain and _FORMS[expected].fullmatch(value.text) is not None
 
 
 def _classes(parameters: Parameters, distribution: str) -> Iterator[Diagnostic]:
@@ -87,12 +87,12 @@ def _classes(parameters: Parameters, distribution: str) -> Iterator[Diagnostic]:
             f"{OWN_PACKAGE}{sign}{class_}" for sign in (("/", "::") if distribution[0] == "i" else ("::", "/"))
         )
         prefix = right.removesuffix(class_)
-        own = [f"{prefix}{each}" for _, _, each in NAVIGATORS.values()]
+        classes = [f"{prefix}{name}" for _, _, name in NAVIGATORS.values()]
         message = ""
         if plugin.text == wrong:
             message = f"the class of this navigator is called `{right}` in {shown}"
-        elif class_ and plugin.text.startswith(prefix) and plugin.text not in own:
-            message = f"Nav2 has no navigator `{plugin.text}`{did_you_mean(near(plugin.text, own, 1))}"
+        elif class_ and plugin.text.startswith(prefix) and plugin.text not in classes:
+            message = f"Nav2 has no navigator `{plugin.text}`{did_you_mean(near(plugin.text, classes, 1))}"
         if message:
             yield Diagnostic("nav2-parameter", plugin.span, message, severity=Severity.ERROR)
 

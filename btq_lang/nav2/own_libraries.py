@@ -64,8 +64,8 @@ def _targets(folder: str) -> dict[str, frozenset[str]]:
         return [_VARIABLE.sub(lambda match: " ".join(values.get(match[1], [match[0]])), word)]
 
     values["CMAKE_CURRENT_SOURCE_DIR"] = values["PROJECT_SOURCE_DIR"] = [folder]
-    for command, given in _COMMAND.findall(text):
-        words = [each for word in _WORD.findall(given) for each in expanded(word.strip('"'))]
+    for command, arguments in _COMMAND.findall(text):
+        words = [part for word in _WORD.findall(arguments) for part in expanded(word.strip('"'))]
         match command.lower(), words:
             case "project", [name, *_]:
                 values["PROJECT_NAME"] = [name]
@@ -73,15 +73,15 @@ def _targets(folder: str) -> dict[str, frozenset[str]]:
                 values[name] = value
             case "list", ["APPEND", name, *value]:
                 values[name] = [*values.get(name, []), *value]
-            case "file", ["GLOB" | "GLOB_RECURSE" as kind, name, *found]:
+            case "file", ["GLOB" | "GLOB_RECURSE" as kind, name, *patterns]:
                 below = "**/" if kind == "GLOB_RECURSE" else ""
-                values[name] = [path for each in found for path in _matching(folder, each, below)]
+                values[name] = [path for pattern in patterns for path in _matching(folder, pattern, below)]
             case "add_library", [_, "STATIC" | "OBJECT" | "INTERFACE" | "IMPORTED" | "ALIAS", *_]:
                 continue  # no program loads these
             case "target_sources", [name, *_] if name not in targets:
                 continue
             case (("add_library" | "ament_auto_add_library" | "target_sources"), [name, *sources]):
-                paths = (os.path.normpath(os.path.join(folder, each)) for each in sources if _is_source(each))
+                paths = (os.path.normpath(os.path.join(folder, source)) for source in sources if _is_source(source))
                 targets.setdefault(name, set()).update(path.replace(os.sep, "/") for path in paths)
     return {name: frozenset(sources) for name, sources in targets.items()}
 

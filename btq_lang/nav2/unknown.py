@@ -31,13 +31,13 @@ class OwnCode(Record):
 
     def has(self, name: str) -> bool:
         """Whether the C++ has a string with a name."""
-        return any(f'"{name}"' in each or f'.{name}"' in each for each in self.texts)
+        return any(f'"{name}"' in text or f'.{name}"' in text for text in self.texts)
 
 
 def unknown_parameters(parameters: Parameters, distribution: str, own: OwnCode) -> Iterator[Diagnostic]:
     """The parameters that nothing reads, each with what may be meant; of a section that is unknown, only its name."""
     names = {name.removeprefix("*") for name, row in PARAMETERS.items() if distribution[0] in row.of}
-    names |= {name for name, of in OTHER_PARAMETERS.items() if distribution[0] in of}
+    names |= {name for name, letters in OTHER_PARAMETERS.items() if distribution[0] in letters}
     navigators = {*NAVIGATORS, *parameters.navigators}
     others = {name for name, plugin in parameters.plugins if not plugin.text.startswith(OWN_PACKAGE)}
     for name, (key, _) in parameters.values.items():
@@ -48,7 +48,11 @@ def unknown_parameters(parameters: Parameters, distribution: str, own: OwnCode) 
         if point and not is_below and section in parameters.values:
             continue  # which is what is unknown
         wrong, candidates = (f".{rest}", names) if is_below else (section, names | navigators)
-        likely = [each for each in near(wrong, candidates, 1) if distance(wrong, each) * _LETTERS_AN_EDIT <= len(wrong)]
+        likely = [
+            candidate
+            for candidate in near(wrong, candidates, 1)
+            if distance(wrong, candidate) * _LETTERS_AN_EDIT <= len(wrong)
+        ]
         severity: Severity | None = None
         notes: tuple[str, ...] = ()
         readers = _readers(section, distribution) if not is_below else []
@@ -72,7 +76,7 @@ def _readers(name: str, distribution: str) -> list[str]:
     return [
         node
         for node, rows in SERVERS.items()
-        if any(distribution[0] in of and name in text.split() for of, text in rows.items())
+        if any(distribution[0] in letters and name in text.split() for letters, text in rows.items())
     ]
 
 
@@ -85,9 +89,9 @@ def _listed(nodes: list[str]) -> str:
 def _with_words_of(name: str, names: Iterable[str], navigators: Iterable[str]) -> Iterator[str]:
     """The parameters that have all the words of a name: `default_bt_xml` lacks some of theirs."""
     words = name.split("_")
-    for each in names if len(words) > 1 else ():
-        if {*words} <= {*each.removeprefix(".").split("_")}:
-            yield from (f"{navigator}{each}" for navigator in navigators) if each[0] == "." else (each,)
+    for parameter in names if len(words) > 1 else ():
+        if {*words} <= {*parameter.removeprefix(".").split("_")}:
+            yield from (f"{navigator}{parameter}" for navigator in navigators) if parameter[0] == "." else (parameter,)
 
 
 _LETTERS_AN_EDIT: Final = 6  # fewer would take the names of a team's own parameters for misspelt ones
