@@ -7,19 +7,18 @@ which caches results from one edit to the next.  Not known here: what an edit ch
 
     view.py, sorted_nodes.py   what a check sees: its item, and the nodes of a tree, sorted by what checks look for
     lookups.py   what only checks look up in the files, beside workspace/inputs.py
-    kinds.py, names.py, ports.py, children.py, one_parent.py, own_lines.py   what the engine would refuse
+    kinds.py, names.py, ports.py, own_nodes.py, children.py, misplaced_children.py   what the engine would refuse
     trees.py, includes.py, elements.py, missing_ids.py, stale_models.py   likewise, of whole trees, models and files
-    positional.py, literals.py, outputs.py, scripts.py, counts.py, empty.py   values, of ports too
-    entries.py, pointers.py, writers.py, keys.py, misspelt.py, meant_entries.py, mixed_types.py   blackboard entries
-    flow.py, unset.py, arguments.py   entries across trees: what is read that nothing sets, given that nothing reads
+    positional.py, literals.py, port_values.py, scripts.py, strings.py   values, of ports too
+    entries.py, pointers.py, writers.py, misspelt.py, meant_entries.py, mixed_types.py   blackboard entries
+    calls.py, flow.py, unset.py, arguments.py   entries across trees: read and never set, given and never read
     engines.py, version3.py   which versions of the engine a file is for
-    moving.py, moved_engine.py, moved_nodes.py   what another version of the engine or distribution of Nav2 changes
-    statuses.py, results.py, unreachable.py, reactive.py, preconditions.py, swallowing.py   what nodes return, and traps
-    nav2_nodes.py, isolated.py, shared_servers.py, resets.py, unread.py   nodes of Nav2: trees for goals, and traps
-    measures.py, clauses.py, bounds.py, limits.py   requirements by themselves
-    requirements.py, qualities.py, repeated.py, prose.py   names of requirements and qualities
-    demanded.py, demands.py, budgets.py, signals.py, renewals.py, unenforced.py   requirements at their nodes
-    calls.py, origins.py, strings.py, wording.py, placeholders.py   shared; XML
+    moving.py, target_changes.py   what another version of the engine or distribution of Nav2 changes
+    statuses.py, results.py, unreachable.py, reactive.py, preconditions.py, resets.py   what nodes return, and traps
+    nav2_nodes.py, unread.py   nodes of Nav2: what they need and share, trees for goals, error codes
+    requirements.py, clauses.py, bounds.py, qualities.py, prose.py, wording.py   requirements by themselves
+    demanded.py, demands.py, budgets.py, limits.py, signals.py, renewals.py, enforcement.py   at their nodes
+    origins.py, placeholders.py   diagnostics shown on XML; classic placeholders
     suppressions.py, silencing.py   silenced rules
 """
 
@@ -33,34 +32,28 @@ from btq_lang.checks import (
     bounds,
     children,
     clauses,
-    counts,
     demands,
     elements,
-    empty,
     includes,
-    isolated,
-    keys,
     kinds,
     literals,
     lookups,
     meant_entries,
-    measures,
     misspelt,
     mixed_types,
     moving,
     names,
-    outputs,
+    nav2_nodes,
     placeholders,
+    port_values,
     ports,
     preconditions,
     prose,
     qualities,
     reactive,
-    repeated,
     requirements,
     resets,
     scripts,
-    shared_servers,
     stale_models,
     trees,
     unreachable,
@@ -98,7 +91,7 @@ _OF_MODELS: tuple[Check, ...] = (
     *_OF_PORTS,
     literals.number_for_text,
     names.forbidden_name,
-    empty.empty_text,
+    names.empty_text,
 )
 _OF_CLAUSES: tuple[Check, ...] = (
     requirements.requirement_without_text,
@@ -123,7 +116,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
     syntax.Verbatim: (elements.refused_element, elements.ignored_element),
     syntax.Root: (
         trees.unknown_tree,
-        empty.empty_text,
+        names.empty_text,
         ports.duplicate_attribute,
         version3.version_3_file,
         elements.ignored_element,
@@ -152,11 +145,11 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         *_OF_PORTS,
         literals.old_entry,
         literals.json_in_braces,
-        keys.key_in_braces,
+        port_values.key_in_braces,
         literals.number_for_text,
         mixed_types.entry_with_two_types,
-        outputs.literal_for_output,
-        counts.count_of_nothing,
+        port_values.literal_for_output,
+        port_values.count_of_nothing,
         children.child_count,
         children.switch_cases,
         children.parallel_threshold,
@@ -173,8 +166,8 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         requirements.unknown_requirement,
         requirements.conflicting_requirement,
         *_OF_CLAUSES,
-        repeated.named_twice,
-        empty.empty_text,
+        clauses.named_twice,
+        names.empty_text,
         qualities.quality_name,
         prose.prose_constraint,
         reactive.reactive_multiple_async,
@@ -185,42 +178,42 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         preconditions.skipped_condition,
         unreachable.unreachable_child,
         unread.tree_of_goal,
-        isolated.isolated_node,
-        shared_servers.shared_server,
+        nav2_nodes.isolated_node,
+        nav2_nodes.shared_server,
         resets.memory_lost,
         resets.last_success_lost,
         unread.default_instead,
         unread.error_code_not_collected,
         unread.foreign_error_code,
         moving.moving_on,
-        measures.unresolved,
+        requirements.unresolved,
     ),
     syntax.Model: _OF_MODELS,
     syntax.Models: _OF_MODELS,
     syntax.Signal: (
         kinds.duplicate_definition,
-        empty.empty_text,
+        names.empty_text,
         requirements.unused_word,
-        measures.unresolved,
+        requirements.unresolved,
     ),
     syntax.Context: (
         kinds.duplicate_definition,
         requirements.unused_word,
-        measures.unresolved,
+        requirements.unresolved,
     ),
     syntax.Requirement: (
         requirements.conflicting_requirement,
         requirements.unused_requirement,
         *_OF_CLAUSES,
-        empty.empty_text,
+        names.empty_text,
         qualities.quality_name,
         prose.prose_constraint,
-        measures.unresolved,
-        measures.requirement_without_subject,
+        requirements.unresolved,
+        requirements.requirement_without_subject,
     ),
-    syntax.Apply: (requirements.unknown_requirement, repeated.named_twice, measures.unresolved),
+    syntax.Apply: (requirements.unknown_requirement, clauses.named_twice, requirements.unresolved),
     syntax.Qualities: (qualities.quality_name,),
-    syntax.QualityDecl: (kinds.duplicate_definition, empty.empty_text, qualities.quality_name),
+    syntax.QualityDecl: (kinds.duplicate_definition, names.empty_text, qualities.quality_name),
 }
 
 
@@ -373,13 +366,13 @@ def _reported(
     checks = (*checks_of(entry), demands.demands) if is_demanded else checks_of(entry)
     diagnostics: Iterable[Diagnostic] = [diagnostic for rule in checks for diagnostic in rule(view)]
     if view.project.moves_to is not None:
-        from btq_lang.checks.moved_engine import new_in_target  # few checks have a target
+        from btq_lang.checks.target_changes import new_in_target  # few checks have a target
 
         diagnostics = [*diagnostics, *new_in_target(view, checks, [*diagnostics])]
     if type(facts.item) is syntax.Include and not is_alone:
         diagnostics = [*diagnostics, *includes.include_with_errors(view, _errors_in)]
     if entry.diagnostics:
-        from btq_lang.checks.own_lines import on_own_lines  # few items have mistakes in their syntax
+        from btq_lang.checks.misplaced_children import on_own_lines  # few items have mistakes in their syntax
         from btq_lang.checks.positional import with_ports
 
         reported = meant_entries.with_entries(view, with_ports(view, on_own_lines(view, entry.diagnostics)))

@@ -10,8 +10,7 @@ from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.nodes import is_by_children
 from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks.kinds import OF_SUBTREE, declared_category, model_related
-from btq_lang.checks.one_parent import TOO_FAR, below, dedented, sequence_above
-from btq_lang.checks.own_lines import label_as_child
+from btq_lang.checks.misplaced_children import TOO_FAR, below, dedented, label_as_child, sequence_above
 from btq_lang.checks.ports import is_case
 from btq_lang.checks.view import View, misspelt_clause
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix

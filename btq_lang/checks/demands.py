@@ -11,7 +11,7 @@ from itertools import chain
 from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.checks.measures import is_measured
+from btq_lang.checks.requirements import is_measured
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.util.text import Span
@@ -64,7 +64,7 @@ def _of_tree(
     store: Store[Workspace], viewpoint: str, path: str, facts: Facts
 ) -> tuple[tuple[Found, ...], tuple[Guard, ...]]:
     """The findings about the nodes of a tree, and the claims about them for which the engine reads signals."""
-    from btq_lang.checks import budgets, limits, renewals, signals, swallowing, unenforced  # few files need them
+    from btq_lang.checks import budgets, enforcement, limits, renewals, signals  # few files need them
     from btq_lang.checks.demanded import Demanded
 
     demanded = Demanded(View(store, viewpoint), path, facts)
@@ -78,8 +78,8 @@ def _of_tree(
         budgets.budget_exceeded,
         budgets.timeout_never_succeeds,
         budgets.odds_beyond_children,
-        swallowing.swallowed_failure,
-        unenforced.not_enforced,
+        enforcement.swallowed_failure,
+        enforcement.not_enforced,
         renewals.guard_never_renewed,
     )
     findings = (finding for rule in rules for finding in rule(demanded))
@@ -94,7 +94,7 @@ def _of_requirements(store: Store[Workspace], viewpoint: str) -> tuple[Found, ..
 
 def _of_requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Found, ...]:
     """What is wrong with a requirement, whatever it applies to."""
-    from btq_lang.checks import budgets, limits, unenforced  # as above
+    from btq_lang.checks import budgets, enforcement, limits  # as above
     from btq_lang.requirements.definitions import requirement
 
     view = View(store, viewpoint)
@@ -103,7 +103,7 @@ def _of_requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple
         return ()
     findings = [*limits.goal_beyond_bound(view, resolved), *budgets.window_too_small(resolved)]
     if resolved.demands_enforcement:
-        findings += unenforced.not_enforced_between(view, name)
+        findings += enforcement.not_enforced_between(view, name)
     return _in_file(viewpoint, findings)
 
 

@@ -17,9 +17,8 @@ from btq_lang.catalog.versions import VERSIONS, at_least, is_before_4, last_of
 from btq_lang.checks import calls, lookups
 from btq_lang.checks.engines import is_for_version_3, old_words
 from btq_lang.checks.lookups import Declaration
+from btq_lang.checks.misplaced_children import TOO_FAR, dedented, has_bare_label, label_as_child
 from btq_lang.checks.missing_ids import missing_id
-from btq_lang.checks.one_parent import TOO_FAR, dedented
-from btq_lang.checks.own_lines import has_bare_label, label_as_child
 from btq_lang.checks.view import COUNTS, SECOND, View, has_names, is_first_tree, misspelt_clause, near_names
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity

@@ -21,13 +21,13 @@ def moving_on(view: View) -> Iterator[Diagnostic]:
     target = view.project.moves_to
     if target is None:
         return
-    from btq_lang.checks.moved_engine import engine_changes  # few checks have a target
+    from btq_lang.checks.target_changes import engine_changes  # few checks have a target
 
     yield from engine_changes(view, _engine(view), ENGINES.get(target, target))
     steps = _steps(view)
     if not steps:
         return
-    from btq_lang.checks.moved_nodes import changes_of, ports_in  # as above
+    from btq_lang.checks.target_changes import changes_of, ports_in  # as above
 
     for resolved in view.nodes:
         if (

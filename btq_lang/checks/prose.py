@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import Dimension, dimension_name, parse_unit
 from btq_lang.checks import lookups
-from btq_lang.checks.measures import is_measured
+from btq_lang.checks.requirements import is_measured
 from btq_lang.checks.strings import in_source
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix

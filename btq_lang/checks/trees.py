@@ -12,8 +12,8 @@ from btq_lang.catalog.versions import DEEP_TREES
 from btq_lang.checks import calls, lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.lookups import VisibleMeaning
+from btq_lang.checks.misplaced_children import below, sequence_above
 from btq_lang.checks.missing_ids import missing_id
-from btq_lang.checks.one_parent import below, sequence_above
 from btq_lang.checks.view import View, is_first_tree, near_names
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related, Tag, replace_fix
 from btq_lang.diagnostics.rules import Severity

@@ -13,12 +13,10 @@ from btq_lang.catalog.nav2.navigator import OWN_PACKAGE
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.nav2.libraries import NAMES, Libraries
+from btq_lang.nav2.libraries import NAMES, Libraries, own_libraries
 from btq_lang.nav2.loaded import Load, SkippedFile, file_with
-from btq_lang.nav2.names import parameter_findings
-from btq_lang.nav2.own_libraries import own_libraries
+from btq_lang.nav2.names import OwnCode, parameter_findings, unknown_parameters
 from btq_lang.nav2.parameters import Parameters
-from btq_lang.nav2.unknown import OwnCode, unknown_parameters
 from btq_lang.syntax.tree import Tree
 from btq_lang.util.record import Record, replace
 from btq_lang.util.spelling import did_you_mean, near

@@ -1,4 +1,5 @@
-"""Children on the line of their parent: `Inverter Dark`, where the language reads a label, and `Sequence Go, Turn`.
+"""Children in the wrong place: on the line of their parent (`Inverter Dark`, where the language reads a label, and
+`Sequence Go, Turn`), too deep, or several where one must be; and the fixes that move them.
 
 One invariant: only a node that must have children and has none below it is said to have one on its line.
 """
@@ -9,6 +10,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Final
 
+from btq_lang.catalog.kinds import CHILDREN
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import lookup
 from btq_lang.checks import lookups
@@ -16,12 +18,13 @@ from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place
 from btq_lang.grammar.cursor import QUOTES
 from btq_lang.grammar.nodes import CHILD
+from btq_lang.lexer import tokens
 from btq_lang.syntax.scan import line_end, line_start
-from btq_lang.syntax.suggestions import CHILDREN
+from btq_lang.syntax.suggestions import CHILDREN as ON_LINES
 from btq_lang.syntax.tokens import NAME, NODE_CLAUSES
-from btq_lang.syntax.tree import Node, Tree, is_name
+from btq_lang.syntax.tree import Node, Tree, Verbatim, is_name
 from btq_lang.util.record import replace
-from btq_lang.util.text import Span
+from btq_lang.util.text import LINE_END, Span
 from btq_lang.workspace.resolved import ResolvedNode
 
 
@@ -77,7 +80,7 @@ def _on_own_line(view: View, reported: Diagnostic) -> Diagnostic:
     words = [*_NAME.finditer(text, node.head.end, names.end(1))] if names is not None else []
     if node.children or not words or not NODE_CLAUSES.isdisjoint(word[0] for word in words):
         return reported
-    return replace(reported, message=CHILDREN, notes=(), fixes=_on_lines(view, node, [word.start() for word in words]))
+    return replace(reported, message=ON_LINES, notes=(), fixes=_on_lines(view, node, [word.start() for word in words]))
 
 
 def _is_node(view: View, word: str) -> bool:
@@ -100,6 +103,64 @@ def _on_lines(view: View, node: Node, starts: Sequence[int]) -> tuple[Fix, ...]:
     return () if margin.strip() else (Fix(title, tuple(changes)),)
 
 
-_REPORTED: Final = ((CHILD,), (CHILDREN,), (QUOTES,))
+def sequence_above(view: View, children: Sequence[Node | Verbatim]) -> tuple[Fix, ...]:
+    """The fix that writes `->` above children of one parent; none where their lines cannot be indented as they are."""
+    margin, step, starts = _movable_lines(view, children)
+    if not starts:
+        return ()
+    above = FixEdit(Place(Span(starts[0], starts[0])), f"{margin}->\n{step}")
+    return (Fix("Put them below a Sequence `->`", (above, *_indented(starts[1:], step))),)
+
+
+def below(view: View, parent: Node, siblings: Sequence[Node | Verbatim]) -> tuple[Fix, ...]:
+    """The fix that indents the nodes after a parent without children, so that they are its children."""
+    _, step, starts = _movable_lines(view, siblings)
+    title = f"Indent {'it' if len(siblings) == 1 else 'them'} below `{parent.head.text}`"
+    return (Fix(title, tuple(_indented(starts, step))),) if starts else ()
+
+
+def dedented(view: View, resolved: ResolvedNode, children: Sequence[Node | Verbatim]) -> tuple[Fix, ...]:
+    """The fix that dedents some children of a node to its level; none if its parent takes no more."""
+    parent = resolved.parent
+    category = parent.stated_category if parent is not None else None
+    if parent is None or (
+        category and (parent.behavior.children if parent.behavior else CHILDREN[category])[1] is not None
+    ):
+        return ()
+    margin, _, starts = _movable_lines(view, children)
+    outer = view.text[line_start(view.text, 0, resolved.node.start) : resolved.node.start]
+    if not margin.startswith(outer) or not all(view.text.startswith(margin, start) for start in starts):
+        return ()
+    changes = [FixEdit(Place(Span(start + len(outer), start + len(margin))), "") for start in starts]
+    title = f"Dedent {'it' if len(children) == 1 else 'them'} to the level of `{resolved.node.head.text}`"
+    return (Fix(title, tuple(changes)),) if changes else ()
+
+
+def _indented(starts: Sequence[int], step: str) -> list[FixEdit]:
+    return [FixEdit(Place(Span(start, start)), step) for start in starts]
+
+
+def _movable_lines(view: View, children: Sequence[Node | Verbatim]) -> tuple[str, str, list[int]]:
+    """The margin of some children and a step more, and where their lines begin; no lines if those cannot be moved."""
+    if view.is_xml or view.entry.diagnostics or not children:
+        return "", "", []
+    text = view.text
+    first, end = line_start(text, 0, children[0].start), max(map(_end, children))
+    margin = text[first : children[0].start]
+    if margin.strip() or any(LINE_END.search(token.text.strip()) for token in tokens(text[first:end])):
+        return "", "", []  # a string or a comment over several lines
+    starts = [first, *[match.end() for match in LINE_END.finditer(text, first, end)]]
+    filled = [start for start in starts if text[start:end].partition("\n")[0].strip()]
+    return margin, "\t" if margin.startswith("\t") else "    ", filled
+
+
+def _end(child: Node | Verbatim) -> int:
+    """Where a node and all that is below it ends."""
+    below = [part for node in child.walk() for part in (node, *node.children)] if isinstance(child, Node) else []
+    return max(part.end for part in (child, *below))
+
+
+_REPORTED: Final = ((CHILD,), (ON_LINES,), (QUOTES,))
 _NAME: Final = re.compile(r"[^\W\d]\w*")
 _NAMES: Final = re.compile(r"((?:[ \t,]+[^\W\d]\w*)+)[ \t]*(?=#|\r?\n|\Z|\r)")
+TOO_FAR: Final = "what is below it may be indented too far"

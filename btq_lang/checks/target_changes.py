@@ -1,36 +1,39 @@
-"""What changes for a tree when its robot moves on to another version of the engine.
+"""What changes for a tree when its robot moves on to another version of the engine, or distribution of Nav2.
 
-One invariant: a fact is in the catalog; here is only where in a tree it holds.
+One invariant: a fact is in the catalog; this module knows only where in a tree it holds.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from typing import Final
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import Final, TypeVar
 
+from btq_lang.catalog.changes import BehaviorChange
 from btq_lang.catalog.engine_changes import ENGINE_CHANGES
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name
-from btq_lang.catalog.nav2 import FILES
+from btq_lang.catalog.nav2 import DISTRIBUTIONS, FILES
+from btq_lang.catalog.nav2.changes import CHANGES, INSTEAD, RENAMED, RENAMED_PORTS
 from btq_lang.catalog.versions import ENTRIES_OF_SUBTREE, LAST_TREE_COUNTS, at_least, last_of
 from btq_lang.checks import lookups
 from btq_lang.checks.entries import mentions
-from btq_lang.checks.isolated import isolated_node
 from btq_lang.checks.mixed_types import entry_with_two_types
-from btq_lang.checks.moved_nodes import changed
+from btq_lang.checks.nav2_nodes import isolated_node
 from btq_lang.checks.pointers import pointed_at
+from btq_lang.checks.ports import adding_fix
 from btq_lang.checks.results import result
 from btq_lang.checks.statuses import RUNNING, SKIPPED
 from btq_lang.checks.view import View
-from btq_lang.diagnostics.model import Diagnostic, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import is_name
+from btq_lang.syntax.tree import Word, is_name, written
 from btq_lang.util.record import replace
 from btq_lang.workspace import inputs
 from btq_lang.workspace.resolved import ResolvedNode
 
 Check = Callable[[View], Iterator[Diagnostic]]
+Key = TypeVar("Key", bound=tuple[str, ...])
 
 
 def engine_changes(view: View, origin: str, target: str) -> Iterator[Diagnostic]:
@@ -131,6 +134,92 @@ def _queue_of_script(view: View, resolved: ResolvedNode) -> bool:
         mention.name for mention in view.ask(mentions, view.path, view.facts) if mention.in_script and mention.writes
     ]
     return name in names
+
+
+def ports_in(view: View, distribution: str, node: str) -> frozenset[str] | None:
+    """The names of the ports of a node in a distribution; None if it does not have the node."""
+    return view.store.ask(lookups.ports_in_file, FILES[distribution], Kind.MODEL, node)
+
+
+def changes_of(view: View, resolved: ResolvedNode, name: Word, steps: tuple[str, ...]) -> Iterator[Diagnostic]:
+    """What changes for a node of Nav2 on some steps."""
+    renamed = _first_in(RENAMED, ((step, name.text) for step in steps))
+    ports_before, ports = ports_in(view, steps[0], name.text), ports_in(view, steps[-1], renamed or name.text)
+    if ports_before is not None and ports is not None:
+        yield from _without_ports(resolved, name.text, ports_before - ports, steps)
+    is_forward = DISTRIBUTIONS.index(steps[-1]) > DISTRIBUTIONS.index(steps[0])
+    differing = [
+        diagnostic
+        for change in (CHANGES if is_forward else ())
+        if change.since in steps[1:] and change.concerns(name.text) and (not change.when or _collects(view, resolved))
+        for diagnostic in changed(view, resolved, name, change)
+    ]
+    if ports_in(view, steps[-1], name.text) is None:
+        yield _without_node(view, name, renamed, steps, [diagnostic.message for diagnostic in differing])
+    else:
+        yield from differing
+
+
+def _collects(view: View, resolved: ResolvedNode) -> bool:
+    """Whether bt_navigator may collect the error code of a node in the distribution that the tree is for."""
+    value = resolved.node.attribute("error_code_id")
+    name = pointed_at("error_code_id", value.text) if value is not None else None
+    if view.factory is None or not view.factory.entries:
+        return True
+    return any(entry == name for entry, _ in view.ask(lookups.outside_entries))
+
+
+def changed(view: View, resolved: ResolvedNode, name: Word, change: BehaviorChange) -> Iterator[Diagnostic]:
+    """A row about a node, if the value of its port is one that the row concerns."""
+    value = resolved.node.attribute(change.port) if change.port else None
+    if not change.matches(value.text if value is not None else None):
+        return
+    fixes: tuple[Fix, ...] = ()
+    notes = [change.instead] if change.instead else []
+    if change.keeps is not None:
+        keeping = (
+            f'{change.port}="{change.keeps}"' if view.is_xml else f"{written(change.port)} = {written(change.keeps)}"
+        )
+        notes.append(f"write `{keeping}` to keep its meaning")
+        fixes = adding_fix(view, resolved.node, "Keep its meaning", f"{written(change.port)} = {written(change.keeps)}")
+    rule = "target-breaks" if change.breaks else "target-differs"
+    message = f"from {change.since.title()} on `{name.text}` {change.what}"
+    yield Diagnostic(rule, (value or name).span, message, notes=tuple(notes), fixes=fixes)
+
+
+def _without_node(
+    view: View, name: Word, renamed: str | None, steps: tuple[str, ...], differing: Iterable[str]
+) -> Diagnostic:
+    """The finding for a node that is gone, with what else changes on the way: it is to be replaced in any case."""
+    gone = next(step for step in steps if ports_in(view, step, name.text) is None)
+    instead = INSTEAD.get((gone, name.text))
+    message = f"Nav2 has no `{name.text}` in {gone.title()}" + _called(renamed)
+    fixes = (replace_fix(f"Replace `{name.text}` with `{renamed}`", name.span, renamed),) if renamed else ()
+    wanted = instead or ("a node of your own, or remove it" if renamed is None else "")
+    notes = (*([f"write {wanted}"] if wanted else ()), *differing)
+    return Diagnostic("target-breaks", name.span, message, notes=notes, fixes=fixes)
+
+
+def _without_ports(
+    resolved: ResolvedNode, node: str, gone: frozenset[str], steps: tuple[str, ...]
+) -> Iterator[Diagnostic]:
+    for pair in resolved.node.attributes:
+        port = pair.key.text
+        if port not in gone:
+            continue
+        renamed = _first_in(RENAMED_PORTS, ((step, node, port) for step in steps))
+        message = f"`{node}` has no port `{port}` in {steps[-1].title()}" + _called(renamed)
+        fixes = (replace_fix(f"Replace `{port}` with `{renamed}`", pair.key.span, renamed),) if renamed else ()
+        notes = () if renamed else ("remove it",)
+        yield Diagnostic("target-breaks", pair.key.span, message, notes=notes, fixes=fixes)
+
+
+def _called(renamed: str | None) -> str:
+    return f": it is called `{renamed}`" if renamed else ""
+
+
+def _first_in(table: Mapping[Key, str], keys: Iterable[Key]) -> str | None:
+    return next((table[key] for key in keys if key in table), None)
 
 
 _WHEN: Final[Mapping[str, Callable[[View, ResolvedNode], bool]]] = {

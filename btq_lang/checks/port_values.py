@@ -1,20 +1,29 @@
-"""Values for outputs of nodes."""
+"""Values of ports with which a node has no effect or fails when it is ticked: literals for outputs, names of entries in
+braces, counts and times.
+
+Sources: SetBlackboardNode::tick and UnsetBlackboardNode::tick, which get the name by getInput (4.6.2, 4.10.0); the tick
+functions of RepeatNode, RetryNode, TimeoutNode and DelayNode in 4.6.2, 4.8.4 and 4.10.0.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from functools import cache
 
+from btq_lang.catalog.kinds import NodeKind
 from btq_lang.catalog.literals import OLD_ENTRY, check_literal, is_pointer
 from btq_lang.catalog.nodes import BUILTINS
-from btq_lang.catalog.versions import OUTPUT_IN_BRACES
+from btq_lang.catalog.versions import OUTPUT_IN_BRACES, at_least, last_of
 from btq_lang.checks import lookups
 from btq_lang.checks.engines import is_for_version_3
 from btq_lang.checks.meant_entries import entry_in
 from btq_lang.checks.view import View, ports_beside
 from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Pair, Port, Word, is_name
+from btq_lang.syntax.quantities import parse_quantity
+from btq_lang.syntax.tokens import QUANTITY
+from btq_lang.syntax.tree import Pair, Port, Tree, Word, is_name
+from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode
@@ -120,3 +129,100 @@ def _declared(ports: tuple[Port, ...]) -> dict[str, str]:
         for port in ports
         if port.direction.raw == "output" and port.name is not None
     }
+
+
+def key_in_braces(view: View) -> Iterator[Diagnostic]:
+    """`SetBlackboard (output_key = {speed})`, unless something gives `speed` the name of an entry."""
+    for tag, port in _INDIRECT:
+        for resolved in view.seen.by_tag.get(tag, ()):
+            value = resolved.node.attribute(port)
+            if value is None or not is_pointer(value.text):
+                continue
+            from btq_lang.checks.writers import key_of  # few files have such a name
+
+            entry = key_of(value.text, port)
+            if entry.removeprefix("@") in view.ask(_entries_with_value):
+                continue
+            message = f"`{value.text}` is the entry whose name `{entry}` holds; write `{port}` without braces"
+            notes = (f"the engine throws when the node is ticked, unless `{entry}` holds the name of an entry",)
+            fixes = (replace_fix(f"Replace `{value.raw}` with `{entry}`", value.span, entry),) if is_name(entry) else ()
+            yield Diagnostic("key-in-braces", value.span, message, notes=notes, fixes=fixes)
+
+
+def _entries_with_value(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
+    """The entries that something in scope certainly gives a value, which may be a name, and the ports of trees."""
+    from btq_lang.checks.writers import all_entries
+
+    view = View(store, viewpoint)
+    written = {
+        key.removeprefix("@")
+        for entries in view.ask(all_entries)
+        for resolved, key in entries.sure
+        if not any(is_pointer(value.text) for value in map(resolved.node.attribute, _PORTS) if value is not None)
+    }
+    return frozenset(written).union(*(view.ask(_passed, *tree) for tree in store.ask(inputs.trees, viewpoint)))
+
+
+def _passed(store: Store[Workspace], viewpoint: str, path: str, tree: Facts) -> frozenset[str]:
+    """The ports of a tree, and those to which it passes something in other trees."""
+    view = View(store, viewpoint)
+    nodes = view.seen_in(path, tree)
+    ports = tree.item.ports if isinstance(tree.item, Tree) else ()
+    own = (port.name.text for port in ports if port.name is not None)
+    return frozenset([*own, *(pair.key.text for resolved in nodes.subtrees for pair in resolved.node.attributes)])
+
+
+def count_of_nothing(view: View) -> Iterator[Diagnostic]:
+    """A Repeat or a Retry that never runs its child, a Timeout that never ends, a Delay that does not wait."""
+    if view.is_pinned and not view.project.written_for:  # what moves on meets the change itself
+        yield from _delays(view)
+    for resolved in view.seen.of_flow("repeat", "retry", "timeout"):
+        if resolved.kind is None:
+            continue
+        port = resolved.kind.port_for("time" if resolved.flow == "timeout" else "count")
+        value = resolved.node.attribute(port.name) if port is not None else None
+        number = _number(value) if value is not None else None
+        if value is None or number is None:
+            continue
+        if resolved.flow == "timeout":
+            if number == 0:
+                yield _timeout(resolved.kind, value)
+        elif number < 1 and number != -1:
+            yield _loop(resolved, value, number)
+
+
+def _delays(view: View) -> Iterator[Diagnostic]:
+    """Each Delay, if a release of a line that the project names does not wait in it."""
+    delays = view.seen.of_flow("delay")
+    if not delays:
+        return
+    from btq_lang.catalog.engine_changes import NO_DELAY  # few files have a Delay and are for one line
+
+    if any(at_least(last_of(line), NO_DELAY.since) and not at_least(line, NO_DELAY.until) for line in view.engines):
+        for resolved in delays:
+            message = f"{resolved.shown_kind} {NO_DELAY.what}"
+            yield Diagnostic("count-of-nothing", resolved.node.head.span, message, notes=(NO_DELAY.instead,))
+
+
+def _loop(resolved: ResolvedNode, value: Word, number: float) -> Diagnostic:
+    fixes = (replace_fix("Write `-1` for endless", value.span, "-1"),) if number < 0 else ()
+    message = f"{resolved.shown_kind} never runs its child with `{value.raw}`"
+    notes = ("-1 means endless, other numbers below 1 mean never",)
+    return Diagnostic("count-of-nothing", value.span, message, notes=notes, fixes=fixes)
+
+
+def _timeout(kind: NodeKind, value: Word) -> Diagnostic:
+    message = f"a {kind.tag} of `{value.raw}` is disabled: it never halts its child"
+    return Diagnostic("count-of-nothing", value.span, message)
+
+
+def _number(value: Word) -> float | None:
+    if value.kind == QUANTITY:
+        quantity = parse_quantity(value.raw)
+        return quantity[0] if quantity is not None else None
+    text = value.text
+    return int(text) if text.removeprefix("-").isdecimal() and len(text) < 12 else None
+
+
+_INDIRECT = tuple((kind.tag, port.name) for kind in BUILTINS.values() for port in kind.ports if port.indirect)
+_PORTS = tuple(port for _, port in _INDIRECT)
