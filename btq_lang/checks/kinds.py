@@ -11,7 +11,7 @@ from btq_lang.catalog.kinds import CHILDREN
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name, model_name_problem
-from btq_lang.catalog.nav2 import FILES, ports_of
+from btq_lang.catalog.nav2 import ports_of
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, available, lookup
 from btq_lang.catalog.versions import VERSIONS, at_least, is_before_4, last_of
 from btq_lang.checks import calls, lookups
@@ -246,7 +246,7 @@ def duplicate_definition(view: View) -> Iterator[Diagnostic]:
         only_one = f"Nav2 registers a node `{symbol.name}`, and a program can register only one"
         differing = ", ".join(differences(other.symbol, symbol))
         unlike = (f"they differ in {differing}",) if differing else ()
-        notes = (*unlike, *((only_one,) if other.path in FILES.values() else ()))
+        notes = (*unlike, *((only_one,) if other.is_of_nav2 else ()))
         related = (Related(other.place, COUNTS if counts else SECOND),)
         yield _second(symbol, symbol.span, related, "duplicate definition of", notes)
 

@@ -17,7 +17,7 @@ from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.syntax.tree import Apply, Include, Item, Model, Models, Port, Root, Tree, Verbatim, models_in
 from btq_lang.util.record import Record
-from btq_lang.workspace.file import Definition, Origin, Signs
+from btq_lang.workspace.file import Definition, Signs
 from btq_lang.workspace.inputs import of_name, of_viewpoint
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.port_types import is_text, meetings
@@ -55,6 +55,11 @@ class Declaration(Record):
         """The place of the name."""
         return Place(self.symbol.span, self.path, self.owner.item)
 
+    @property
+    def is_of_nav2(self) -> bool:
+        """Whether it is in a file with the nodes of Nav2."""
+        return self.path in FILES.values()
+
 
 # ---- a name: these depend only on the items that define it ----
 
@@ -84,8 +89,8 @@ def is_pooled(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bo
 @of_name
 def ends_at_once(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
     """Whether the C++ of a node shows that it never returns RUNNING."""
-    origins = [workspace.files[definition.path].origin for definition in workspace.scope(viewpoint).all(kind, name)]
-    nodes = (source.nodes.get(name) for source in origins if source is not None and source.nodes is not None)
+    definitions = workspace.scope(viewpoint).all(kind, name)
+    nodes = (workspace.files[definition.path].cpp_nodes.get(name) for definition in definitions)
     return any(node.at_once for node in nodes if node is not None)
 
 
@@ -108,8 +113,8 @@ def ports_of_models(workspace: Workspace, viewpoint: str, kind: Kind, name: str)
     """The ports of each model of a node in scope, of the first alone if it is C++ whose ports are all seen, else of the
     one that it has in the pool."""
     definitions = workspace.scope(viewpoint).all(kind, name) or (workspace.find(viewpoint, kind, name),)
-    first = workspace.files[definitions[0].path].origin if definitions[0] is not None else None
-    if first is not None and first.nodes is not None and first.nodes[name].complete:
+    first = workspace.files[definitions[0].path].cpp_nodes.get(name) if definitions[0] is not None else None
+    if first is not None and first.complete:
         definitions = definitions[:1]
     targets = [definition.symbol.target for definition in definitions if definition is not None]
     return tuple([target.ports for target in targets if isinstance(target, Model)])
@@ -126,8 +131,8 @@ def declaration(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> 
 def is_torn(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
     """Whether something could not be read in the tree or model of a name, or in its C++, which may be a port."""
     definition = workspace.find(viewpoint, kind, name)
-    if definition is not None and (origin := workspace.files[definition.path].origin) and origin.nodes:
-        return not origin.nodes[name].complete
+    if definition is not None and (node := workspace.files[definition.path].cpp_nodes.get(name)) is not None:
+        return not node.complete
     if definition is None or not definition.entry.diagnostics:
         return False
     target, item = definition.symbol.target, definition.entry.item
@@ -489,12 +494,6 @@ def has_torn_tree(workspace: Workspace, viewpoint: str) -> bool:
         if entry.diagnostics and isinstance(entry.item, Tree)
         for problem in entry.diagnostics
     )
-
-
-@of_viewpoint
-def origin(workspace: Workspace, viewpoint: str) -> Origin | None:
-    """The file on the disk, if it is written in another language."""
-    return workspace.files[viewpoint].origin
 
 
 @of_viewpoint

@@ -41,7 +41,7 @@ def may_be_own(view: View, resolved: ResolvedNode, ports: Collection[str], is_ne
     if keys != strange and (is_near or not strange):
         return False
     model = view.ask(lookups.declaration, Kind.MODEL, resolved.id.text)
-    return model is not None and model.path in FILES.values() and view.ask(_has_other_nodes)
+    return model is not None and model.is_of_nav2 and view.ask(_has_other_nodes)
 
 
 def _has_other_nodes(store: Store[Workspace], viewpoint: str) -> bool:

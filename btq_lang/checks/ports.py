@@ -332,12 +332,16 @@ def _of_model_in_xml(view: View, resolved: ResolvedNode) -> str:
     """The rest of a sentence about a port, if only a model in XML says which ones a node has: it may be an old one."""
     name = resolved.id if resolved.is_defined and not (resolved.kind or resolved.is_subtree) else None
     declaration = view.ask(lookups.declaration, Kind.MODEL, name.text) if name is not None else None
-    origin = view.store.ask(lookups.origin, declaration.path) if declaration is not None else None
-    if name is None or declaration is None or origin is None or origin.nodes is not None:
+    if name is None or declaration is None or not _is_xml(view, declaration.path):
         return ""
     if view.ask(lookups.is_repeated, Kind.MODEL, name.text):
         return ""
     return f": its model in {view.project.shown(declaration.path)} lacks it"
+
+
+def _is_xml(view: View, path: str) -> bool:
+    """Whether a file is XML, and not C++ that registers nodes."""
+    return view.store.ask(lookups.is_xml, path) and not view.store.ask(lookups.is_cpp, path)
 
 
 def _is_of_pool(view: View, resolved: ResolvedNode) -> bool:
@@ -362,8 +366,7 @@ def _needed(view: View, resolved: ResolvedNode, missing: list[PortKind]) -> list
     definition = view.ask(inputs.definition, Kind.MODEL, name)
     if definition is None:
         return []
-    origin = view.store.ask(lookups.origin, definition[0])
-    if origin is None or origin.nodes is not None:
+    if not _is_xml(view, definition[0]):
         return missing
     _, used, uses = view.ask(lookups.custom_node, name)
     used_names = {port.name for port in used}
