@@ -1,9 +1,9 @@
 """The checks: what is wrong with a file beyond its syntax.
 
-One invariant: a check is a function of the view of an item, and yields diagnostics whose spans count from that item; it
-never raises, whatever the file.  A module holds the rules of one subject, and `CHECKS` below maps types
-of items to functions.  A check gets all it needs from its view, and so from the query store (workspace/queries.py),
-which caches results from one edit to the next.  Not known here: what an edit changed, and how findings are printed.
+One invariant: a check is a function of the view of an item.  It yields diagnostics whose spans count from that item,
+and never raises.  A module holds the rules of one subject, and `CHECKS` maps types of items to functions.  A check gets
+all it needs from its view, and so from the query store (workspace/queries.py), which caches results from one edit to
+the next.  Checks do not know what an edit changed, nor how findings are printed.
 
     view.py, sorted_nodes.py   what a check sees: its item, and the nodes of a tree, sorted by what checks look for
     lookups.py   what only checks look up in the files, beside workspace/inputs.py
@@ -233,7 +233,7 @@ _OF_STRUCTURE: frozenset[Check] = frozenset(
         resets.last_success_lost,
     )
 )
-# Of models, of which a file has many, `_OF_PORTS` need only the ports, and these only the ports of trees' models.
+# A file has many models: `_OF_PORTS` concern those with ports, and these checks those of trees with ports.
 _OF_PORTS_OF_TREES: frozenset[Check] = frozenset((literals.number_for_text, names.forbidden_name))
 _OF_NODES = tuple(rule for rule in CHECKS[syntax.Model] if rule not in _OF_PORTS_OF_TREES)
 _WITHOUT_PORTS = tuple(rule for rule in _OF_NODES if rule not in _OF_PORTS)
@@ -278,8 +278,8 @@ def findings(store: Store[Workspace], path: str, of_logs: Iterable[Reported] = (
     Args:
         of_logs: what logs show, which no check reads, as the project configures it.
     """
-    # Without a text, as XML that cannot be read, it has no items: what was found in them is kept until it can be read.
-    # Of C++, the text has the models, of which only what is wrong in the C++ itself is reported.
+    # XML that cannot be read has no text, and so no items: their findings are kept until it can be read again.
+    # The text of a C++ file is its models, but only what is wrong in the C++ itself is reported.
     file = store.state.files[path]
     reported = store.ask(reported_in_file, path, False) if file.text and not file.is_cpp else ()
     return findings_of(store.state, path, (*reported, *of_logs))
@@ -328,8 +328,8 @@ def reported_in_file(store: Store[Workspace], viewpoint: str, is_alone: bool) ->
     Args:
         is_alone: leave out what is wrong in the files that it includes.
     """
-    # What demands add depends on all files in scope: items to which they add nothing should not depend on that.  In a
-    # target they may add something else.
+    # Demands depend on all files in scope: an item to which they add no finding should not.  In a target they may add
+    # other findings.
     demanded = store.ask(demands.demands_by_item, viewpoint)
     has_target = View(store, viewpoint).project.moves_to is not None
     by_item = [

@@ -23,8 +23,8 @@ from btq_lang.workspace.workspace import Workspace
 
 
 def unread_argument(view: View) -> Iterator[Diagnostic]:
-    """An argument of a SubTree that nothing in its tree names, once for each tree; one that the tree's declared ports
-    lack is an unknown port."""
+    """An argument of a SubTree that nothing in its tree names, once for each tree.  If the tree declares ports, the
+    argument is an unknown port instead."""
     reported: set[tuple[str, str]] = set()
     for resolved in view.seen.subtrees:
         tree = resolved.id.text if resolved.id is not None else ""
@@ -47,7 +47,7 @@ def unread_argument(view: View) -> Iterator[Diagnostic]:
 
 
 def unread_port(view: View) -> Iterator[Diagnostic]:
-    """The same for a declared port, at its declaration, if a SubTree gives it."""
+    """A declared port that SubTrees give a value and nothing in the tree names, reported at its declaration."""
     for owner in view.owners:
         is_of_tree = isinstance(owner, Tree) or owner.category.raw == "SubTree"
         tree = owner.name.text if is_of_tree and owner.name is not None else ""
@@ -68,7 +68,6 @@ def _is_given(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> 
 
 @of_scope
 def _similar_entries(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> tuple[str, ...]:
-    """The entries of a tree whose names are similar."""
     return near(name, [entry for entry in store.ask(below, viewpoint, tree).uses if entry.isidentifier()])
 
 
@@ -90,7 +89,7 @@ def _is_named(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> 
 
 @of_scope
 def _words(store: Store[Workspace], viewpoint: str, tree: str) -> frozenset[str]:
-    """All words in the values of a tree's attributes: programs read names of entries from some, whatever their form."""
+    """All words in the values of a tree's attributes: a program may read the name of an entry from any of them."""
     view = View(store, viewpoint)
     definition = view.ask(inputs.definition, Kind.TREE, tree)
     words: set[str] = set()

@@ -26,7 +26,7 @@ from btq_lang.util.text import Span
 
 
 def impossible_bound(view: View) -> Iterator[Diagnostic]:
-    """A fractional number of attempts, a negative time, and what comes out the same in every run."""
+    """A fractional number of attempts, a negative time, and a claim that every run answers alike."""
     for requirement, claim in _claims(view):
         bound, verb = claim.bound, claim.verb.raw
         operand = VERBS[verb].operand
@@ -82,7 +82,7 @@ def _claims(view: View) -> Iterator[tuple[syntax.Requirement, syntax.Claim]]:
 
 
 def _value(amount: syntax.Amount) -> tuple[float, str]:
-    """A value, if it is a count or a time; others are reported elsewhere or are a parameter's."""
+    """A number, and "count" or "time"; an empty text for any other value, which another rule reports."""
     word = amount.word
     number, what = 0.0, ""
     if word.kind == NUMBER:
@@ -119,7 +119,7 @@ def _shown(amount: syntax.Amount) -> str:
 
 
 def _is_enforceable(view: View, written: syntax.Requirement) -> bool:
-    """Whether the engine is to enforce its times, which are then reported as limit-too-small."""
+    """Whether the engine is to enforce the times of a requirement; limit-too-small reports them then."""
     from btq_lang.requirements.definitions import requirement  # few files have claims about times
 
     resolved, _ = view.ask(requirement, written.name.text) if written.name is not None else (None, ())
@@ -133,7 +133,7 @@ def _dimensions() -> dict[Dimension, str]:
 
 
 def same_in_every_run(view: View, claim: syntax.Claim) -> Diagnostic | None:
-    """What is wrong with a clause that each run answers alike; None if runs may differ."""
+    """The diagnostic for a claim that every run answers alike; None if runs may differ."""
     problem = _of_subject(view, claim) or _of_event(view, claim) or _of_span(view, claim)
     if problem is None:
         return None
@@ -142,7 +142,7 @@ def same_in_every_run(view: View, claim: syntax.Claim) -> Diagnostic | None:
 
 
 def _of_subject(view: View, claim: syntax.Claim) -> tuple[str, str] | None:
-    """Message and note, if it is about how often, or after what, a mission starts."""
+    """The message and the note for a claim about how often, or after what, a mission starts."""
     verb, event = claim.verb.raw, claim.event
     if not (verb in _STARTS and _is_mission(view, claim.subject)):
         return None
@@ -156,7 +156,7 @@ def _of_subject(view: View, claim: syntax.Claim) -> tuple[str, str] | None:
 
 
 def _of_event(view: View, claim: syntax.Claim) -> tuple[str, str] | None:
-    """The same, if it is about what happens after the mission has ended, or what runs before it."""
+    """The message and the note for a claim about what happens after the mission has ended, or what runs before it."""
     event = claim.event
     if event is None or not _is_of_mission(view, event):
         return None
@@ -170,7 +170,7 @@ def _of_event(view: View, claim: syntax.Claim) -> tuple[str, str] | None:
 
 
 def _of_span(view: View, claim: syntax.Claim) -> tuple[str, str] | None:
-    """The same, if it is about a time that begins when the mission ends, or ends when it starts."""
+    """The message and the note for a claim about a time that begins when the mission ends, or ends when it starts."""
     if not isinstance(claim.subject, syntax.Between):
         return None
     for event, side, is_outside in ((claim.subject.first, "after", False), (claim.subject.last, "before", True)):
@@ -184,8 +184,8 @@ def _is_of_mission(view: View, event: syntax.Event) -> bool:
 
 
 def _is_mission(view: View, subject: syntax.Subject | None) -> bool:
-    """Whether it means the mission, as such or by the name of its root, which no other tree runs again and which has
-    children: a single action is rather a part of a mission."""
+    """Whether a subject means the mission, by that word or by the name of its root.  The root must have children, and
+    no other tree may run it: a single action is rather a part of a mission."""
     if not isinstance(subject, syntax.Path):
         return isinstance(subject, syntax.Mission)
     from btq_lang.requirements.nodes import callers, find, mission  # few clauses need them

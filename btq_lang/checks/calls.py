@@ -50,13 +50,13 @@ def is_uncreated(store: Store[Workspace], viewpoint: str, tree: str) -> bool:
 
 
 def circle(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[str, ...] | None:
-    """The shortest way from a tree back to itself, both ends included; of trees that reach each other only the first
-    has one: there it is reported."""
+    """The shortest way from a tree back to itself, both ends included.  Of the trees of a circle only the first has
+    one, as it is reported there."""
     return store.ask(_circles, viewpoint).get(tree)
 
 
 def has_gaps(store: Store[Workspace], viewpoint: str) -> bool:
-    """Whether a SubTree names no tree or an unknown one, so that it is not known which trees are reached."""
+    """Whether a SubTree names no tree or an unknown one, so that the reached trees are unknown."""
     view = View(store, viewpoint)
     graph = dict(view.ask(_graph))
     return not view.ask(inputs.is_complete) or any(name not in graph for called, _ in graph.values() for name in called)
@@ -79,9 +79,9 @@ def _callers(store: Store[Workspace], viewpoint: str) -> dict[str, tuple[str, ..
 
 @hub
 def _circles(store: Store[Workspace], viewpoint: str) -> dict[str, tuple[str, ...]]:
-    """All circles: hardly any mission has one, so that after an edit no tree looks for its own again.
+    """All circles.  Hardly any mission has one, so after an edit no tree looks for its own again.
 
-    The trees of the file come first: included XML may not know that it is in one.
+    The trees of the file come first, for included XML may not see that it is in a circle.
     """
     graph = {name: called for name, (called, _) in store.ask(_graph, viewpoint)}
     names = dict.fromkeys((*store.ask(lookups.own_trees, viewpoint), *graph))
@@ -107,7 +107,7 @@ def _missed(store: Store[Workspace], viewpoint: str) -> Set[str]:
 
 @hub
 def _uncreated(store: Store[Workspace], viewpoint: str) -> Set[str]:
-    """Those of all trees in scope; an unknown tree matters only if a main tree reaches it."""
+    """The trees in scope that no main tree runs; empty if a main tree reaches an unknown one."""
     view = View(store, viewpoint)
     mains = view.ask(lookups.main_trees)
     if not mains or not view.ask(inputs.is_complete) or not view.is_read:

@@ -23,7 +23,7 @@ _ONCE: dict[type, str] = {
 
 
 def duplicate_clause(view: View) -> Iterator[Diagnostic]:
-    """A second clause of a kind of which the first counts; an equal one can be removed."""
+    """A second clause of a kind where only the first takes effect; an equal one can be removed."""
     for symbol, requirement in view.requirements:
         first: dict[type, syntax.Clause] = {}
         for clause in requirement.clauses:
@@ -134,8 +134,8 @@ def _repeated(view: View, span: Span, first: Span, fixes: tuple[Fix, ...] = ()) 
 
 
 def _names(view: View, clause: syntax.NodeClause) -> Iterator[tuple[object, Span, bool]]:
-    """The names in a clause: what is equal for those that mean the same, the place, and whether it can be removed; if
-    not, the user must decide."""
+    """The names in a clause, each with a key that is equal for names of one meaning, its place, and whether a fix may
+    remove it."""
     if isinstance(clause, syntax.Tags):
         yield from ((("tag", name.text), name.span, True) for name in clause.names)
     elif isinstance(clause, syntax.Satisfices):
@@ -152,7 +152,7 @@ def _names(view: View, clause: syntax.NodeClause) -> Iterator[tuple[object, Span
 
 
 def _requirements(uses: tuple[syntax.ReqRef | syntax.Requirement, ...]) -> Iterator[tuple[object, Span, bool]]:
-    """Requirements, of which a definition, or a name with arguments, cannot be removed."""
+    """The same for requirements; a fix removes neither a definition nor a name with arguments."""
     for use in uses:
         arguments = use.arguments if isinstance(use, syntax.ReqRef) else ()
         if use.name is not None:

@@ -55,7 +55,7 @@ def _in_item(store: Store[Workspace], viewpoint: str, facts: Facts) -> Sequence[
 
 
 def _of_trees(store: Store[Workspace], viewpoint: str) -> tuple[tuple[Found, ...], tuple[Guard, ...]]:
-    """The same as of a tree, for all in scope."""
+    """The findings and the guards of all trees in scope."""
     results = [store.ask(_of_tree, viewpoint, *tree) for tree in store.ask(inputs.trees, viewpoint)]
     return tuple(chain(*[findings for findings, _ in results])), tuple(chain(*[guards for _, guards in results]))
 
@@ -87,13 +87,13 @@ def _of_tree(
 
 
 def _of_requirements(store: Store[Workspace], viewpoint: str) -> tuple[Found, ...]:
-    """What is wrong with requirements, whatever they apply to."""
+    """The findings about requirements that do not depend on nodes."""
     names = store.ask(inputs.names, viewpoint, Kind.REQUIREMENT)
     return tuple(chain(*[store.ask(_of_requirement, viewpoint, name) for name in names]))
 
 
 def _of_requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Found, ...]:
-    """What is wrong with a requirement, whatever it applies to."""
+    """The findings about a requirement that do not depend on nodes."""
     from btq_lang.checks import budgets, enforcement, limits  # as above
     from btq_lang.requirements.definitions import requirement
 

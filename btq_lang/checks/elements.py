@@ -1,7 +1,7 @@
-"""Elements beside the trees, models and includes: what the engine refuses in them, and what it drops without a word.
+"""Elements of XML that the engine refuses, or drops without a word, outside of trees.
 
-One invariant: what is here is refused or dropped whatever the trees are; an element that it knows nothing of, and that
-is like no other, may be of another tool, and is a hint.
+One invariant: the result does not depend on trees.  An unknown element that resembles no known one may be of another
+tool, so it is a hint.
 
 Source: loadDocImpl, loadSubtreeModel and VerifyXML in src/xml_parsing.cpp of 3.8.6, 4.6.2, 4.8.4 and 4.10.0.
 """
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def refused_element(view: View) -> Iterator[Diagnostic]:
-    """What keeps the engine from loading the file."""
+    """An element, or a missing attribute, with which the engine does not load the file."""
     item = view.item
     is_model_read = any(map(PORTS_OF_SUBTREE.holds, view.engines))
     is_palette = lookups.is_palette(item)
@@ -58,7 +58,7 @@ def refused_element(view: View) -> Iterator[Diagnostic]:
 
 
 def ignored_element(view: View) -> Iterator[Diagnostic]:
-    """What the engine drops, though it is not what was meant."""
+    """An element or an attribute that the engine drops."""
     item = view.item
     for element, part in _spelt((item,)):
         yield from _below_root(element, part)
@@ -74,7 +74,7 @@ def ignored_element(view: View) -> Iterator[Diagnostic]:
 
 
 def _near_key(port: Port, name: str) -> str:
-    """The end of a message about a port that lacks an attribute: what may be meant for it."""
+    """The end of a message about a port that lacks an attribute, if another one is nearly called so."""
     return did_you_mean((name,)) if any(near(pair.key.text, (name,)) for pair in port.attributes) else ""
 
 
@@ -174,7 +174,7 @@ def _attributes(view: View) -> Iterator[Diagnostic]:
 
 
 def _spelt(parts: tuple[object, ...]) -> Iterator[tuple[Element, Verbatim]]:
-    """The elements among some parts that the language has no words for, as far as they can be read."""
+    """The elements that the language has no words for, as far as they can be read."""
     for part in parts:
         if isinstance(part, Verbatim) and part.text is not None:
             from btq_lang.btcpp.reader import read  # few files have such elements
@@ -207,7 +207,7 @@ _OF_TOOLS: Final = frozenset(("MetadataFields", "Metadata", "description"))  # o
 _OF_PORT: Final = frozenset(("name", "type", "default", "description"))
 _OF_ROOT_TAG: Final = frozenset(("BTCPP_format", "main_tree_to_execute"))
 _OF_INCLUDE: Final = frozenset(("path", "ros_pkg"))
-# Other words for them, which no tool is known to write.
+# Other words for these attributes; no known tool writes them.
 _CALLED: Final = {
     **dict.fromkeys(
         ("main_tree", "maintree", "main_tree_id", "main", "main_tree_name", "entry_point"), ("main_tree_to_execute",)

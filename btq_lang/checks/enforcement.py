@@ -27,7 +27,7 @@ Swallower: TypeAlias = tuple[ResolvedNode, str]  # the node that does not fail w
 
 
 def not_enforced(demanded: Demanded) -> Iterator[Found]:
-    """A claim about a node that no build enforces, or only one that writes all files into one."""
+    """A claim about a node that no build enforces, or only a build into one file."""
     for applied, claim, node, place, why in demanded.hard:
         if place is None or _is_reported_otherwise(demanded, applied, claim, node, place):
             continue
@@ -47,7 +47,7 @@ def not_enforced(demanded: Demanded) -> Iterator[Found]:
 
 
 def not_enforced_between(view: View, name: str) -> Iterator[Found]:
-    """The same for the claims of a requirement that are about no particular node."""
+    """A claim about no particular node that no build enforces."""
     for applied in view.ask(claimed_of_no_tree, name):
         judge = judge_of(view)
         for claim in applied.requirement.claims:
@@ -75,7 +75,7 @@ def _diagnostic(
 def _is_reported_otherwise(
     demanded: Demanded, applied: Applied, claim: ResolvedClaim, node: ResolvedNode, place: Place
 ) -> bool:
-    """Whether a rule of its own reports why the engine does not enforce it."""
+    """Whether another rule reports why the engine does not enforce a claim."""
     if claim.signal is not None:
         return claim.signal.behaviour == "gauge"
     if not applied.requirement.is_enforceable or place == node.place:
@@ -191,7 +191,7 @@ def _swallows(parent: ResolvedNode, child: ResolvedNode) -> str | None:
 
 
 def _failures_needed(parallel: ResolvedNode) -> int:
-    """The number of children that must fail for it to fail; 1 if unknown."""
+    """The number of children that must fail before a Parallel fails; 1 if unknown."""
     n = len(parallel.node.children)
     counts = [port_count(parallel, role) for role in ("successes", "failures")]
     successes, failures = [n + count + 1 if count is not None and count < 0 else count for count in counts]

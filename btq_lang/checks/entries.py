@@ -1,7 +1,7 @@
 """What the nodes of trees do with blackboard entries, and which names in which trees are one entry.
 
-One invariant: unknown ports count as everything: a port without a model may read and write.  What the robot's program
-does with entries, and whether a name is right, is not known here.
+One invariant: a port without a model may read and write.  This module does not know what the robot's program does with
+entries, nor whether a name is right.
 """
 
 from __future__ import annotations
@@ -156,7 +156,7 @@ class SubTreeCall(Record):
 
 
 class Touch(Record):
-    """What may happen to an entry in one place: see Mention."""
+    """What may happen to an entry in one place, as in `EntryMention`."""
 
     name: str
     reads: bool
@@ -271,7 +271,7 @@ def _call(view: View, resolved: ResolvedNode) -> SubTreeCall | None:
 
 
 def _bare_values(nodes: Iterable[ResolvedNode]) -> Iterator[str]:
-    """The values of custom nodes, and of built-in ones that remove entries, which look like names."""
+    """The values that look like names, of custom nodes and of built-in ones that remove entries."""
     for resolved in nodes:
         for pair in resolved.node.attributes if not resolved.is_subtree else ():
             port = resolved.kind.port(pair.key.text) if resolved.kind is not None else None
@@ -290,7 +290,7 @@ def _names_by_value(resolved: ResolvedNode) -> bool:
 
 
 def _is_stranger(view: View, resolved: ResolvedNode) -> bool:
-    """Whether it is not known which ports a node has: nothing declares it, or it has more than are declared."""
+    """Whether the ports of a node are unknown: nothing declares it, or it has more than are declared."""
     if resolved.kind is not None or resolved.is_subtree or resolved.is_placeholder:
         return False
     names = {port.id.text for port in ports_beside(view, resolved) if port.id is not None}

@@ -1,8 +1,8 @@
 """Data flow across trees: what happens to an entry in a tree, in the trees that it runs, and in those that run it.
 
-One invariant: whatever may happen is included: unknown trees and XML may do anything, and what only a robot's program
-does is a flag of its own.  When nodes run is not known here.  What a tree itself does is `handling` (entries.py); the
-rest is composed of that tree by tree, so that an edit stops where it does not change what others see.
+One invariant: all that may happen is included.  Unknown trees and XML may do anything; what only a robot's program does
+is a flag of its own.  This module does not know when nodes run.  `handling` (entries.py) says what a tree itself does;
+the rest is composed of that, tree by tree, so that an edit stops where it does not change what others see.
 
 Sources: addSubtreeRemapping, getEntry and enableAutoRemapping in src/blackboard.cpp of 4.6.2 and 4.10.0; for version 3
 buildTreeRecursively in src/xml_parsing.cpp of 3.8.8.
@@ -35,7 +35,7 @@ class EntryUse(IntFlag):
     READ, WRITTEN, CREATED: by nodes, scripts and values that SubTrees give.
     GIVEN: it is a declared port, or a signal is read from it.
     STRANGE: a node that nothing declares may read and write any entry.
-    OPEN: something that btq does not know may.
+    OPEN: something unknown to btq may read and write it.
     OUTSIDE: it is on the root blackboard, where the robot's program may set and read it.
     """
 
@@ -69,7 +69,7 @@ _ANYTHING: Final = EntryUse(127)
 
 @of_scope
 def uses(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> EntryUse:
-    """What may happen to an entry of a tree, under whatever names it is passed up and down."""
+    """What may happen to an entry of a tree, in it and in the trees above and below that it is passed to."""
     if name[:1] == "@":
         return store.ask(_of_root, viewpoint, name[1:])
     view = View(store, viewpoint)
@@ -135,7 +135,7 @@ def _of_root(store: Store[Workspace], viewpoint: str, name: str) -> EntryUse:
 
 @of_scope
 def of_program(store: Store[Workspace], viewpoint: str, name: str) -> EntryUse:
-    """What the program is known to do with an entry of the root blackboard, and trees by its name with `@`."""
+    """What the program does with an entry of the root blackboard, and trees by its name with `@`."""
     view = View(store, viewpoint)
     use = view.ask(_with_sign).get(name, EntryUse(0))
     if ("", name) in view.ask(signal_entries):

@@ -94,7 +94,7 @@ def is_reported_beside(diagnostic: Diagnostic, checked: Container[str]) -> bool:
 
 
 def include_fix(view: View, path: str) -> Fix:
-    """The fix that includes another file, after the existing includes."""
+    """The fix that adds an include after the existing ones."""
     offset, line = include_line(view.ask(lookups.head), view.path, path)
     shown = posixpath.relpath(path, posixpath.dirname(view.path) or ".")
     return Fix(f"Include `{shown}`", (FixEdit(Place(Span(offset, offset), view.path), line),))

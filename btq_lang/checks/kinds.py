@@ -41,8 +41,8 @@ if TYPE_CHECKING:
 
 
 def unknown_node(view: View) -> Iterator[Diagnostic]:
-    """An unknown kind: if a palette of models is in scope, or if a known name is so similar that this must be a
-    misspelling.  Otherwise, any name without a palette is a custom node that the robot's program registers."""
+    """A node of unknown kind, if a palette of models is in scope, or if a known name is so similar that this one must
+    be misspelt.  Without a palette, any other name is a custom node that the robot's program registers."""
     for resolved in view.seen.strangers:
         name = resolved.id
         word = resolved.node.category
@@ -91,7 +91,7 @@ def unknown_node(view: View) -> Iterator[Diagnostic]:
 
 
 def not_an_engine_node(view: View) -> Iterator[Diagnostic]:
-    """A word of the published language, or of an older engine, that no current engine registers."""
+    """A word of the published language or of an older engine that no current engine registers."""
     for resolved in view.nodes:
         name = resolved.id
         if name is None or resolved.is_defined or resolved.is_subtree:
@@ -127,7 +127,7 @@ def not_an_engine_node(view: View) -> Iterator[Diagnostic]:
 
 
 def newer_engine_node(view: View) -> Iterator[Diagnostic]:
-    """A built-in that is missing in a version which the project targets."""
+    """A built-in that a version lacks for which the file is."""
     for tagged in view.seen.by_tag.values():
         missing = [] if tagged[0].kind is None else _missing(tagged[0].kind.tag, view.engines)
         for resolved in tagged if missing else ():
@@ -154,8 +154,8 @@ def _missing(tag: str, engines: tuple[str, ...]) -> list[str]:
 
 
 def no_models(view: View) -> Iterator[Diagnostic]:
-    """A mission of many nodes with ports and not one model: an include may be missing, which nothing else would
-    report."""
+    """A mission of many nodes with ports and without any model: an include may be missing, which no other rule
+    reports."""
     if view.is_xml or not view.ask(is_first_tree, view.facts) or view.ask(has_names, Kind.MODEL):
         return
     names = view.ask(_nodes_with_ports) if view.ask(inputs.is_complete) and view.is_read else ()
@@ -252,7 +252,7 @@ def duplicate_definition(view: View) -> Iterator[Diagnostic]:
 
 
 def declared_category(resolved: ResolvedNode) -> str | None:
-    """A node's category according to the engine or a model, whatever is written at the node."""
+    """A node's category by the engine or a model; what is written at the node does not matter."""
     if resolved.is_subtree:
         return None
     if resolved.kind is not None:
@@ -284,7 +284,7 @@ def way_in(view: View) -> tuple[str, ...]:
 
 
 def _is_of(view: View, word: str) -> bool:
-    """Whether the engine that the file is for has the node of an older engine's word, or is said to be an older one."""
+    """Whether the engine that the file is for still has an older engine's word, or the file is for an older one."""
     known_word = KNOWN_WORDS.get(word)
     if known_word is None or known_word.until is None:
         return False
@@ -306,7 +306,7 @@ def _of_today(view: View, resolved: ResolvedNode, name: Word, known_word: KnownW
 
 
 def _as_precondition(view: View, resolved: ResolvedNode) -> tuple[str, ...]:
-    """What does the same as a BlackboardCheck of version 3."""
+    """The note with the Precondition that does the same as a BlackboardCheck of version 3."""
     values = {pair.key.text: pair.value.text for pair in resolved.node.attributes if pair.value is not None}
     if not values.keys() >= {"value_A", "value_B"}:
         return ()
@@ -321,7 +321,7 @@ def _as_precondition(view: View, resolved: ResolvedNode) -> tuple[str, ...]:
 
 
 def _as_child_condition(view: View, resolved: ResolvedNode, tag: str) -> tuple[str, ...]:
-    """Where the condition goes that an `If` or a `While` has as an attribute."""
+    """The note with the ScriptCondition for the condition that an `If` or a `While` has as an attribute."""
     conditions = [pair.value for pair in resolved.node.attributes if pair.key.text.casefold() in _CONDITIONS]
     if BUILTINS[tag].flow != "choice" or not conditions or conditions[0] is None:
         return ()
@@ -331,8 +331,8 @@ def _as_child_condition(view: View, resolved: ResolvedNode, tag: str) -> tuple[s
 
 
 def _foreign(view: View, resolved: ResolvedNode) -> ForeignName | None:
-    """What a node means to other engines, if it has children, or a label that may be meant as one, and nothing says
-    that there is such a node."""
+    """What a node means to other engines, if it has children, or a label that may be meant as one, and nothing
+    declares it."""
     name = resolved.id
     if name is None or resolved.node.category is not None or resolved.of_model is not None:
         return None
@@ -378,7 +378,7 @@ def _unknown(view: View, resolved: ResolvedNode, name: Word) -> Iterator[Diagnos
     if not has_palette and resolved.node.category is not None:
         return  # written as a declaration: `Action Foo` declares such a node
     likely = view.ask(near_names, Kind.MODEL, name.text)
-    is_parent = False  # and nothing else is known against its name
+    is_parent = False  # and nothing else is wrong with its name
     if not has_palette:
         likely = tuple(meant for meant in likely if _is_slip(name.text, meant))
         is_parent = not (is_complete and view.ask(lookups.most_have_models))
@@ -408,14 +408,14 @@ def _unknown(view: View, resolved: ResolvedNode, name: Word) -> Iterator[Diagnos
 
 
 def _has_own_children(view: View, resolved: ResolvedNode, name: Word) -> bool:
-    """Whether a node that no known library has must be one of the program's own with children."""
+    """Whether a node must be one of the program's own that has children: no known library has it."""
     if ports_of(name.text) is not None or view.entry.diagnostics:
         return False
     return bool(resolved.node.nodes) and not any(misspelt_clause(child) for child in resolved.node.nodes)
 
 
 def _declared(view: View, resolved: ResolvedNode, model: str, ports: tuple[LikelyPort, ...]) -> Fix:
-    """The fix that declares a node's model, with the ports that its uses show, before an item."""
+    """The fix that declares a node's model before an item, with the ports that its uses show."""
     margin = view.text[: view.item.start]
     below = view.text[: resolved.node.start + 1].splitlines()[1:]
     inside = next((line[: len(line) - len(line.lstrip())] for line in below if line.strip()), "")
@@ -476,7 +476,7 @@ def _is_plain_call(view: View, resolved: ResolvedNode, name: Word) -> bool:
 
 
 def _is_refused(view: View, resolved: ResolvedNode, name: Word) -> bool:
-    """Whether the name itself is the mistake, which is reported."""
+    """Whether another rule reports the name itself."""
     return resolved.node.category is None and model_name_problem(name.text, view.target) is not None
 
 

@@ -30,7 +30,7 @@ from btq_lang.workspace.resolved import ResolvedNode
 
 
 def limit_too_small(demanded: Demanded) -> Iterator[Found]:
-    """A limit that has no effect in the engine: it counts whole milliseconds, and 0 means no limit."""
+    """A limit below one millisecond: the engine counts whole milliseconds, and 0 means no limit."""
     for applied, claim, _, place in demanded.claims:
         most = claim.highest if VERBS[claim.verb].limits and applied.requirement.is_enforceable else None
         if most is None or most[0] >= 0.001:
@@ -58,7 +58,7 @@ def limit_on_synchronous_node(demanded: Demanded) -> Iterator[Found]:
 
 
 def dead_bound(demanded: Demanded) -> Iterator[Found]:
-    """A bound beyond what a Timeout around the node allows: it is never reached.  A Timeout that never succeeds is
+    """A bound that is never reached, as a Timeout around the node is shorter.  If the Timeout never succeeds, that is
     reported instead."""
     for _, claim, node, place in demanded.claims:
         most = claim.highest if VERBS[claim.verb].limits else None
@@ -75,7 +75,7 @@ def dead_bound(demanded: Demanded) -> Iterator[Found]:
 
 
 def outbid_bound(demanded: Demanded) -> Iterator[Found]:
-    """A bound without effect, for the same requirement has a tighter one of the same kind for the same node."""
+    """A bound without effect: the same requirement has a tighter one of the same kind for the same node."""
     kinds: dict[tuple[object, ...], list[tuple[ResolvedClaim, _Limit, Place]]] = {}
     for applied, claim, node, place in demanded.claims:
         if claim.limit is not None and ResolvedTable in (type(claim.limit.value), type(claim.limit.upper)):
@@ -148,7 +148,7 @@ def attempts_mismatch(demanded: Demanded) -> Iterator[Found]:
 
 
 def contradicting_bounds(demanded: Demanded) -> Iterator[Found]:
-    """Two bounds on one node that cannot both hold; or one that cannot hold by itself."""
+    """Two bounds on one node that cannot both hold, or one that cannot hold by itself."""
     least: dict[tuple[object, ...], tuple[float, str, Place]] = {}
     most: dict[tuple[object, ...], tuple[float, str, Place]] = {}
     for applied, claim, node, place in demanded.claims:

@@ -1,5 +1,5 @@
-"""Values that the engine refuses, reads as something else, or that have a unit that is not known; and numbers that a
-SubTree passes to text ports."""
+"""Values that the engine refuses or reads as something else, values of an unknown unit, and numbers that a SubTree
+passes to text ports."""
 
 from __future__ import annotations
 
@@ -54,9 +54,8 @@ class _Target(Record):
 
     Attributes:
         unit: of a number in the port, if known.
-        converts: whether the engine reads a literal as the type; for a tree's port it keeps the text or number it
-            finds.
-        is_output: whether it is an output, for which every literal is wrong, which is reported.
+        converts: whether the engine reads a literal as the type; for a tree's port it keeps the text or number.
+        is_output: whether it is an output; another rule reports every literal for one.
         is_count: whether it says how often a child runs, and -1 means endless.
     """
 
@@ -86,7 +85,7 @@ def old_entry(view: View) -> Iterator[Diagnostic]:
 
 
 def json_in_braces(view: View) -> Iterator[Diagnostic]:
-    """A text in braces that no entry is called by."""
+    """A text in braces that cannot be the name of an entry."""
     for _, pair, value in view.seen.values():
         if not is_pointer(value.text) or not _JSON.search(value.text[1:-1]) or not is_port_name(pair.key.text):
             continue
@@ -148,7 +147,7 @@ def invalid_literal(view: View) -> Iterator[Diagnostic]:
 
 
 def number_for_text(view: View) -> Iterator[Diagnostic]:
-    """A number that a SubTree passes to a port, or that is a port's default, where a node below expects a text."""
+    """A number where a node below expects a text: a SubTree passes it to a port, or it is a port's default."""
     if not TYPED_CONSTANTS.holds(view.target):
         return
     for resolved in view.seen.subtrees:

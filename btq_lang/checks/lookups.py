@@ -30,10 +30,10 @@ if TYPE_CHECKING:
 
 
 class VisibleMeaning(Record):
-    """All that others see of what a name means.
+    """What others see of the meaning of a name.
 
     Attributes:
-        owner: the item that defines it; for trees and models, others see no more than what follows.
+        owner: the item that defines it; None for trees and models, of which others see only what follows.
         target: its meaning; None for a tree.
         ports: of a tree or a model.
     """
@@ -170,7 +170,7 @@ def is_repeated(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> 
 
 @of_viewpoint
 def outside_entries(workspace: Workspace, viewpoint: str) -> tuple[OutsideEntry, ...]:
-    """The entries of the root blackboard that the program sets or reads, as far as they are known."""
+    """The known entries of the root blackboard that the program sets or reads."""
     if workspace.factory is not None and workspace.factory.entries:
         return workspace.factory.entries
     nav2 = _distribution(workspace, viewpoint)
@@ -203,8 +203,8 @@ def signs(workspace: Workspace, viewpoint: str) -> Signs | None:
 
 @of_viewpoint
 def has_palette(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether the models in scope are meant to be complete: a TreeNodesModel, or models of another file.  Those of Nav2
-    or of C++ sources are not: programs register nodes of other packages, too."""
+    """Whether the models in scope are meant to be complete: a TreeNodesModel, or models of another file.  Models of
+    Nav2 or of C++ sources are not, for programs register nodes of other packages, too."""
     scope = workspace.scope(viewpoint)
     files = workspace.files
     beside = (path for path in scope.node_paths if path not in FILES.values() and not files[path].is_cpp)
@@ -233,7 +233,7 @@ def registers_all(workspace: Workspace, viewpoint: str) -> bool:
 @of_viewpoint
 def clashes(workspace: Workspace, viewpoint: str) -> tuple[tuple[Facts, Declaration, Declaration], ...]:
     """The names that an included file and one included before it both define: the include, the definition that counts
-    and the other one.  The two files cannot see each other, so no check of theirs reports it, except in a factory."""
+    and the other one.  The two files do not see each other, so no check of theirs reports it, except in a factory."""
     if workspace.factory is not None:
         return ()
     file = workspace.files[viewpoint]
@@ -274,7 +274,7 @@ def is_run_elsewhere(workspace: Workspace, viewpoint: str, tree: str) -> bool:
 
 @of_viewpoint
 def uses_of_tree(workspace: Workspace, viewpoint: str, name: str) -> tuple[Place, ...]:
-    """Where the tree of a name is referred to, in whatever file."""
+    """Where any file refers to the tree of a name."""
     meant = workspace.scope(viewpoint).find(Kind.TREE, name)
     if meant is None:
         return ()
@@ -571,7 +571,6 @@ def _declaration(workspace: Workspace, definition: Definition) -> Declaration:
 
 
 def _distribution(workspace: Workspace, viewpoint: str) -> str | None:
-    """The distribution whose nodes of Nav2 are declared for a file."""
     return distribution_among(workspace.scope(viewpoint).node_paths)
 
 

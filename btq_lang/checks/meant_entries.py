@@ -1,8 +1,8 @@
-"""Values that are meant as entries and are texts to the engine, or entries of other names: `goal`, `{goal`, `$goal`,
+"""Values that are meant as entries, but are texts to the engine, or entries of other names: `goal`, `{goal`, `$goal`,
 `@{goal}`, `{ goal }`, `{goal.x}`.
 
-One invariant: a bare word is reported only if its port makes a text unlikely, for a text may be called like an entry.
-Sources: isBlackboardPointer and stripBlackboardPointer in src/tree_node.cpp of 4.6.2 and 4.10.0.
+One invariant: a bare word is reported only if its port makes a text unlikely, for a text may equal the name of an
+entry. Sources: isBlackboardPointer and stripBlackboardPointer in src/tree_node.cpp of 4.6.2 and 4.10.0.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def meant_entry(view: View) -> Iterator[Diagnostic]:
 
 
 def with_entries(view: View, reported: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """What the parser has reported of an item, with the entries meant by values that are no words: `[goal]`."""
+    """The parser's diagnostics of an item, with the entry that a value like `[goal]` means."""
     words = {value.span: value for _, _, value in view.seen.values() if not value.quoted and "{" not in value.raw}
     for diagnostic in reported:
         meant = entry_in(view, words[diagnostic.span]) if diagnostic.span in words else None

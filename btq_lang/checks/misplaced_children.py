@@ -52,7 +52,7 @@ def has_bare_label(view: View, node: Node) -> bool:
 
 
 def on_own_lines(view: View, reported: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """What the parser has reported of an item, with what it took for labels and is a child."""
+    """The parser's diagnostics of an item, reworded where the parser took a child for a label."""
     for diagnostic in reported:
         yield (
             _on_own_line(view, diagnostic)
@@ -104,7 +104,7 @@ def _on_lines(view: View, node: Node, starts: Sequence[int]) -> tuple[Fix, ...]:
 
 
 def sequence_above(view: View, children: Sequence[Node | Verbatim]) -> tuple[Fix, ...]:
-    """The fix that writes `->` above children of one parent; none where their lines cannot be indented as they are."""
+    """The fix that writes `->` above children of one parent; none if their lines cannot be indented."""
     margin, step, starts = _movable_lines(view, children)
     if not starts:
         return ()
@@ -141,7 +141,7 @@ def _indented(starts: Sequence[int], step: str) -> list[FixEdit]:
 
 
 def _movable_lines(view: View, children: Sequence[Node | Verbatim]) -> tuple[str, str, list[int]]:
-    """The margin of some children and a step more, and where their lines begin; no lines if those cannot be moved."""
+    """The margin of some children, an indentation step, and where their lines begin; no lines if they cannot move."""
     if view.is_xml or view.entry.diagnostics or not children:
         return "", "", []
     text = view.text

@@ -1,8 +1,8 @@
 """Blackboard entries whose name is misspelt.
 
-Every name is an entry to the engine, and the robot's program may read and write any, so an unused name alone proves
-nothing.  Here a name occurs in one place only, its use there has no effect, and another name in the same tree differs
-from it as only misspellings do.
+Every name is an entry to the engine, and the robot's program may read and write any, so an unused name proves nothing.
+A name is reported if it occurs in one place only, its use there has no effect, and another name in the same tree
+differs from it as only misspellings do.
 """
 
 from __future__ import annotations
@@ -130,7 +130,6 @@ def _root_names(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
 
 
 def _is_created(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
-    """Whether anything creates an entry."""
     return any(touch.creates for touch in store.ask(blackboards, viewpoint).uses_of(tree, name))
 
 
@@ -140,7 +139,7 @@ def _is_set(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bo
 
 
 def _is_meant(store: Store[Workspace], viewpoint: str, tree: str, name: str, meant: str, is_mentioned: bool) -> bool:
-    """Whether the use of one entry has no effect, and would have one for the other entry.
+    """Whether the use of one entry has no effect, and would have one for another entry.
 
     Args:
         is_mentioned: whether the tree names the other one other than as a port.
@@ -168,7 +167,11 @@ def _is_meant(store: Store[Workspace], viewpoint: str, tree: str, name: str, mea
 
 
 def _diagnostic(mentions: Iterable[EntryMention], mention: EntryMention, meant: str, is_single: bool) -> Diagnostic:
-    """is_single: whether the other name also occurs once, so that it may be the misspelt one."""
+    """The diagnostic for an entry that is meant as another one.
+
+    Args:
+        is_single: whether the other name also occurs once, so that it may be the misspelt one.
+    """
     name = mention.name
     other = next((candidate for candidate in mentions if candidate.name == meant), None)
     message = f"`{name}` appears only here; did you mean `{meant}`?"
@@ -184,8 +187,8 @@ def _diagnostic(mentions: Iterable[EntryMention], mention: EntryMention, meant: 
 
 
 def _by_piece(names: Iterable[str]) -> dict[str, list[str]]:
-    """An index by which similar names are found without comparing all pairs: two names with one edit between them
-    become equal, or equal to the other, when one letter is left out."""
+    """An index to find similar names without comparing all pairs: two names one edit apart become equal, or equal to
+    the other, when one letter is left out."""
     by_piece: dict[str, list[str]] = {}
     for name in names:
         for piece in _pieces(name):

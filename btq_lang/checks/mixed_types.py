@@ -88,8 +88,8 @@ def _types_below(store: Store[Workspace], viewpoint: str, tree: str) -> _Types:
 
 @of_scope
 def _types(store: Store[Workspace], viewpoint: str, tree: str) -> _Types:
-    """The types as which the entries of a tree are used in it and below.  `_types_below` does not ask for it, or it
-    would be part of each circle."""
+    """The types of the ports to which entries of a tree are assigned, in it and below.  `_types_below` calls it and
+    does not ask for it, or it would be part of each circle."""
     view = View(store, viewpoint)
     types: _Types = {}
     for number, resolved in enumerate(_nodes(view, tree)):
@@ -107,7 +107,7 @@ def _types(store: Store[Workspace], viewpoint: str, tree: str) -> _Types:
 
 
 def _handed_on(view: View, resolved: ResolvedNode) -> Iterator[tuple[str, int | None, _Meeting]]:
-    """The uses of entries that a SubTree passes to its tree, by the names that they have here."""
+    """The uses of entries that a SubTree passes to its tree, by their names in the tree of the SubTree."""
     if resolved.id is None or not resolved.id.text:
         return
     positions = {
@@ -123,7 +123,8 @@ def _handed_on(view: View, resolved: ResolvedNode) -> Iterator[tuple[str, int | 
 
 
 def _is_first(view: View, tree: str, key: str) -> bool:
-    """Whether on some way into a tree the first of its ports creates the entry, or is of a type that does."""
+    """Whether on some way into a tree the entry gets its type from the tree's first port, or above from a port whose
+    type accepts no texts."""
 
     def entry_above(place: tuple[str, str | None]) -> Iterator[tuple[str, str | None]]:
         """The entry in the trees that run a tree, where the first port creates it; None: it is that tree's own."""
@@ -193,7 +194,7 @@ def _related(view: View, port: _Port, message: str) -> Related:
 
 
 def _severity(first: str, later: str) -> Severity | None:
-    """How certain it is that two types differ: a type of the user's program may be an alias for the other."""
+    """The severity for two types; None if they may be one: a type of a program may be an alias for another."""
     if is_known_type(first) and is_known_type(later):
         return Severity.ERROR
     if any(_VECTOR(one) and _MESSAGE(other) for one, other in ((first, later), (later, first))):
