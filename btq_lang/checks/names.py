@@ -97,7 +97,7 @@ def _of_id(view: View, resolved: ResolvedNode, name: Word, reason: str) -> Itera
 
 
 def _is_prefixed(name: str) -> bool:
-    """Whether it is a name in a namespace of XML: `x:Foo`."""
+    """Whether a name is in a namespace of XML: `x:Foo`."""
     prefix, _, rest = name.partition(":")
     return is_name(prefix) and is_name(rest)
 
@@ -126,7 +126,8 @@ def _nameless(view: View, tree: Tree) -> Iterator[Diagnostic]:
 
 
 def _tree_name(view: View, name: Word, reason: str, fixes: tuple[Fix, ...]) -> Diagnostic:
-    """Only a warning if a build writes the tree and all references to it under a legal name, which must be free."""
+    """The diagnostic for the name of a tree: a warning if a build writes the tree and all references to it under a
+    legal name, which must be free; else an error."""
     if view.is_xml:
         notes = view.pin_note(lambda version: model_name_problem(name.text, version) is None)
         return replace(_refused("tree ID", name, reason), notes=notes)
@@ -185,7 +186,7 @@ def empty_text(view: View) -> Iterator[Diagnostic]:
 
 
 def _is_without_content(part: object, what: str) -> bool:
-    """Whether it is the title of a requirement that demands nothing, which is reported."""
+    """Whether a text is the title of a requirement that demands nothing; another rule reports that."""
     return what == _TITLE and isinstance(part, syntax.Requirement) and not part.clauses
 
 

@@ -94,7 +94,7 @@ def _renamed(resolved: ResolvedNode, is_old: bool) -> Iterator[tuple[str, str]]:
 
 
 def _passed(resolved: ResolvedNode, entry: str, is_old: bool) -> str | None:
-    """The entry that a SubTree passes to its tree under a name; None: it passes none.
+    """The entry that a SubTree passes to its tree under a name; None if it passes none.
 
     Version 3 takes the value of a port for the name of an entry.
     """
@@ -133,13 +133,12 @@ def _twice(view: View, resolved: ResolvedNode, server: str, first: ResolvedNode,
 
 
 def _with_all_below(resolved: ResolvedNode) -> Iterator[ResolvedNode]:
-    """A node and all below it in its tree."""
     yield from reached([resolved], lambda node: node.children)
 
 
 def _calls(view: View, resolved: ResolvedNode) -> tuple[tuple[str, str], ...]:
-    """The servers that a node calls, each with the ID of the node that does: those of a SubTree are those of its
-    tree's nodes."""
+    """The servers that a node calls, each with the ID of the node that calls it.  A SubTree calls those of its tree's
+    nodes."""
     if resolved.is_subtree:
         return view.ask(_calls_of_tree, resolved.node.id.text) if resolved.node.id is not None else ()
     from btq_lang.catalog.nav2.creation import SERVERS  # only for Nav2
@@ -174,7 +173,7 @@ def _calls_in(
 
 
 def of_nav2(view: View, distribution: str, nodes: Iterable[ResolvedNode]) -> Iterator[tuple[ResolvedNode, str, str]]:
-    """Those nodes that are Nav2's, each with its ID and the name of its tree."""
+    """The nodes of Nav2 among some, each with its ID and the name of its tree."""
     for resolved in nodes:
         name = of_distribution(view, resolved, distribution)
         if name is not None and resolved.tree is not None:

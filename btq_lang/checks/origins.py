@@ -1,7 +1,7 @@
 """Diagnostics of files that are written in XML, shown on the XML.
 
-One invariant: results count from the start of the file on the disk, whatever its language, and a fix of a file in
-another language is offered only where exactly that edit can be made there.
+One invariant: the spans of results count from the start of the file on the disk.  A fix of a file in another language
+is offered only if that edit can be made there exactly.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ def shown_on_origins(workspace: Workspace, path: str, diagnostics: Iterable[Diag
 
 
 def _placed(workspace: Workspace, path: str, fix: Fix) -> Fix | None:
-    """The fix with its changes of files in XML as changes of the XML; None if they cannot be made there.
+    """The fix with its changes made in the XML; None if they cannot be made there.
 
     Fixes are safe for version 4 of the engine, so not in XML that may be for version 3.
     """

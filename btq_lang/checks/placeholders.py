@@ -77,7 +77,7 @@ def _code_as_name(node: Node, kind: Word, name: Word) -> Diagnostic:
 
 
 def placeholder_clash(view: View) -> Iterator[Diagnostic]:
-    """A name that becomes an ID which another name has become already, or which is taken."""
+    """A name that becomes the ID of another placeholder, of a built-in node or of a tree."""
     for resolved in view.seen.placeholders:
         name = resolved.name
         if name is None:
@@ -127,7 +127,7 @@ def _placeholders(tree: Facts) -> Iterator[Word]:
 
 @lru_cache(10_000)
 def _id_of(name: str) -> str:
-    """The ID that a placeholder's name becomes; cached, for a mission repeats the names of skills."""
+    """The ID that a placeholder's name becomes; cached, as a mission repeats the names of skills."""
     return legal_name(name)
 
 
@@ -139,7 +139,8 @@ def _why_taken(view: View, name: str) -> str | None:
 
 
 def _short_form(view: View, resolved: ResolvedNode, name: str) -> Fix | None:
-    """`MoveBase (…)`, `Condition BatteryLow "BatteryLow?"`; None if what is around the name is unusual.
+    """The fix that writes `MoveBase (…)`, `Condition BatteryLow "BatteryLow?"`; None if the name is not in its usual
+    place.
 
     It is safe if no models are in scope: with models the node would be checked against them.
     """

@@ -31,11 +31,11 @@ from btq_lang.workspace.workspace import Workspace
 
 
 def literal_for_output(view: View) -> Iterator[Diagnostic]:
-    """A value for an output, which needs an entry to write to: the node's own writing fails when it is ticked.  A value
-    that the output's type does not accept is refused before.
+    """A value for an output, which needs an entry to write to: the node fails to write when it is ticked.  The engine
+    refuses a value that the output's type does not accept already at load.
 
-    Some programs take such a value for the name of an entry, so if a file does so as a rule, that is reported once, as
-    a hint.
+    Some programs take such a value for the name of an entry.  If most outputs of a file have one, that is reported
+    once, as a hint.
     """
     if not OUTPUT_IN_BRACES.holds(view.target):
         return
@@ -65,8 +65,8 @@ def literal_for_output(view: View) -> Iterator[Diagnostic]:
 
 
 def _outputs(view: View, nodes: Iterable[ResolvedNode]) -> Iterator[tuple[ResolvedNode, Pair, Word, str]]:
-    """The values for the outputs of nodes with attributes, and the outputs' types; empty for a tree's, which keep
-    whatever they are given."""
+    """The values for the outputs of nodes with attributes, and the outputs' types; empty for those of a tree, which
+    take any value."""
     for resolved in nodes:
         if resolved.is_placeholder:
             continue
@@ -77,7 +77,7 @@ def _outputs(view: View, nodes: Iterable[ResolvedNode]) -> Iterator[tuple[Resolv
 
 
 def _is_custom(store: Store[Workspace], viewpoint: str) -> bool:
-    """Whether the file assigns values to outputs as a rule."""
+    """Whether most outputs of the file have a value, or many."""
     counts = [store.ask(_counts, viewpoint, tree) for tree in store.ask(lookups.trees, viewpoint)]
     assigned, values = sum(count[0] for count in counts), sum(count[1] for count in counts)
     return values > 2 and (values > assigned / 2 or values > 9)

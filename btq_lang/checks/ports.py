@@ -135,7 +135,7 @@ def missing_port(view: View) -> Iterator[Diagnostic]:
                 *(WHY if is_own else ()),
             ),
             fixes=(*to_port, *_passing_on(view, resolved, missing)),
-            # Only the robot's program knows whether it requires an input, except for what is known of Nav2.
+            # Only the robot's program knows whether it requires an input, except for the nodes of Nav2.
             severity=None if is_severe else Severity.WARNING,
         )
 
@@ -252,7 +252,7 @@ def misspelt_type(view: View) -> Iterator[Diagnostic]:
 
 
 def first_port(view: View, resolved: ResolvedNode) -> PortKind | None:
-    """The port that a value without a name is most likely for: the first that needs one, or else the first."""
+    """The likely port of a value without a name: the first that needs a value, or else the first."""
     ports = _ports(view, resolved)
     return next(iter((*ports.required, *ports.all)), None) if ports is not None else None
 
@@ -296,7 +296,7 @@ def _ports(view: View, resolved: ResolvedNode) -> KnownPorts | None:
 
 
 def _throwing(resolved: ResolvedNode) -> tuple[str, ...]:
-    """The ports without which a node of Nav2 is known to throw."""
+    """The ports without which a node of Nav2 throws."""
     behavior = resolved.behavior if resolved.kind is None else None
     return tuple([port.name for port in behavior.ports if port.required]) if behavior is not None else ()
 
@@ -311,7 +311,7 @@ def _may_have_more(view: View, resolved: ResolvedNode) -> bool:
 
 
 def _model_ports(store: Store[Workspace], viewpoint: str, name: str) -> KnownPorts | None:
-    """The ports of a node with a model; of several that differ, those that any has, required if all require them."""
+    """The ports of a node with a model.  Of several models a port of any counts, and is required if all require it."""
     models = [[*map(as_kind, ports)] for ports in store.ask(lookups.ports_of_models, viewpoint, Kind.MODEL, name)]
     needed = [{port.name for port in ports if port.required} for ports in models]
     first: dict[str, PortKind] = {}
@@ -322,14 +322,14 @@ def _model_ports(store: Store[Workspace], viewpoint: str, name: str) -> KnownPor
 
 
 def _of_version_3(view: View, resolved: ResolvedNode, key: str) -> tuple[str, ...]:
-    """What to do about a port that a built-in has in version 3 of the engine."""
+    """The notes about a port that a built-in has in version 3 of the engine only."""
     if resolved.kind is None or (resolved.kind.tag, key) not in OLD_PORTS:
         return ()
     return (f"version 3 of the engine has `{key}`", *way_in(view))
 
 
 def _of_model_in_xml(view: View, resolved: ResolvedNode) -> str:
-    """The rest of a sentence about a port, if only a model in XML says which ones a node has: it may be an old one."""
+    """The end of a message about a port of a node whose only model is in XML: the model may be out of date."""
     name = resolved.id if resolved.is_defined and not (resolved.kind or resolved.is_subtree) else None
     declaration = view.ask(lookups.declaration, Kind.MODEL, name.text) if name is not None else None
     if name is None or declaration is None or not _is_xml(view, declaration.path):
@@ -355,10 +355,10 @@ def _is_of_pool(view: View, resolved: ResolvedNode) -> bool:
 
 
 def _needed(view: View, resolved: ResolvedNode, missing: list[PortKind]) -> list[PortKind]:
-    """Those of a node's missing ports that it seems to need.
+    """The missing ports that a node seems to need.
 
-    A model in XML does not say which inputs its node can do without; one of C++ does.  If there are several such nodes
-    and none has a value for a port, it can; and so it may if the model is one of another program.
+    A model in C++ says which inputs its node can do without; one in XML does not.  If there are several such nodes and
+    none has a value for a port, the port is optional; likewise if the model may be one of another program.
     """
     if not missing or resolved.kind is not None or resolved.is_subtree or resolved.id is None:
         return missing
@@ -381,7 +381,7 @@ def _builtin_ports(tag: str, has_old_names: bool) -> KnownPorts:
 
 
 def _unknown_keys(view: View, resolved: ResolvedNode, ports: KnownPorts) -> dict[Word, tuple[str, ...]]:
-    """The keys that are not ports, each with the ports that may be meant and have no value."""
+    """The keys that are not ports, each with the ports without a value that it may mean."""
     names = ports.names
     keys = [pair.key.text for pair in resolved.node.attributes]
     if names.issuperset(keys):
@@ -407,7 +407,7 @@ def _unknown_keys(view: View, resolved: ResolvedNode, ports: KnownPorts) -> dict
 def _renamings(
     view: View, resolved: ResolvedNode, ports: KnownPorts, key: Word, likely: tuple[str, ...]
 ) -> tuple[Fix, ...]:
-    """The fixes that write a port's name in place of a key, and with a unit what a key with that unit is given."""
+    """The fixes that write a port's name in place of a key; if the key names a unit, the value gets it."""
     value = resolved.node.attribute(key.text)
     unit = _unit_in(key.text)
     fixes: list[Fix] = []
@@ -445,7 +445,7 @@ def _node_meant(resolved: ResolvedNode, ports: KnownPorts, key: Word, likely: tu
 def _assigned(
     view: View, resolved: ResolvedNode, ports: KnownPorts, key: Word, likely: tuple[str, ...]
 ) -> tuple[tuple[str, ...], tuple[Fix, ...]] | None:
-    """What a Script assigns as if its entry were a port: `Script (x = 3)`."""
+    """The suggestion and the fix for `Script (x = 3)`, which assigns to an entry as if it were a port."""
     port, value = ports.named(likely[0]) if len(likely) == 1 else None, resolved.node.attribute(key.text)
     if (
         resolved.flow != "succeeds"
@@ -482,7 +482,7 @@ def _forbidden_id(resolved: ResolvedNode) -> Iterator[Diagnostic]:
 
 
 def _remaps_all(resolved: ResolvedNode) -> bool:
-    """Whether a SubTree gets every entry under its own name, or is meant to, which is reported."""
+    """Whether a SubTree gets every entry under its own name, or has an attribute of version 3 that means it."""
     values = [resolved.node.attribute(key) for key in ("_autoremap", *_OF_TODAY)]
     return any(value is not None and not _is_off(value) for value in values)
 
@@ -520,7 +520,11 @@ def _label_as_value(
 
 
 def adding_fix(view: View, node: Node, title: str, pairs: str) -> tuple[Fix, ...]:
-    """The fix that gives a node more attributes, written as in a file; none if they have no place."""
+    """The fix that adds attributes to a node; none if there is no place for them.
+
+    Args:
+        pairs: the attributes as a .btq file writes them.
+    """
     title = f"{title}: `{pairs}`"
     if node.attributes:
         end = node.attributes[-1].span.end

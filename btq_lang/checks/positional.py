@@ -1,6 +1,6 @@
 """Values without the name of their port, as in calls of other languages: `MoveBase ("dock")`, `Retry 3`.
 
-One invariant: the parser has reported them; this only adds which port is meant, which it cannot know.
+One invariant: the parser reports them; this module adds which port is meant, which the parser cannot know.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from btq_lang.util.text import Span
 
 
 def with_ports(view: View, reported: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """What the parser has reported of an item, with the ports of values that lack one."""
+    """The parser's diagnostics of an item, with the ports of values that lack one."""
     for diagnostic in reported:
         if isinstance(view.item, Tree) and (quoted := _with_quotes(view, diagnostic)) is not None:
             yield quoted
@@ -55,7 +55,7 @@ def _with_port(view: View, reported: Diagnostic) -> Diagnostic:
 
 
 def _with_quotes(view: View, reported: Diagnostic) -> Diagnostic | None:
-    """What is reported of a script without quotes, with them: `Script x = 3`, `Go (_skipIf = x == 3)`."""
+    """The diagnostic for a script without quotes, `Script x = 3` or `Go (_skipIf = x == 3)`; None for any other."""
     resolved = view.node_before(reported.span.start)
     if resolved is None:
         return None
@@ -86,7 +86,7 @@ def _with_quotes(view: View, reported: Diagnostic) -> Diagnostic | None:
 
 
 def _value(view: View, reported: Diagnostic, after: re.Match[str], port: PortKind) -> str | None:
-    """The one value after a node, in brackets or at the end of the line; None if there is something else."""
+    """The only value after a node, in brackets or at the end of the line; None if more follows."""
     text, span = view.text, reported.span
     if text[after.end()] in _OPENS_VALUE:
         is_whole = span.start == after.end() and (_CLOSING if after[1] else _LAST).match(text, span.end)

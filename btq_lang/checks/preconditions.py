@@ -18,8 +18,8 @@ _PASS_SKIPPED_ON = frozenset(
 
 
 def one_shot_monitor(view: View) -> Iterator[Diagnostic]:
-    """`_failureIf`, which is evaluated once, on a node that runs; `_successIf` is a hint, for it mostly means "do it
-    unless it is done"."""
+    """`_failureIf` on a node that runs over several ticks, though it is evaluated once.  `_successIf` gives a hint, as
+    it mostly means "do it unless it is done"."""
     for resolved in view.seen.marked:
         for pair in resolved.node.attributes:
             key = pair.key.text
@@ -42,7 +42,7 @@ def one_shot_monitor(view: View) -> Iterator[Diagnostic]:
 
 
 def while_skip_is_success(view: View) -> Iterator[Diagnostic]:
-    """`_while` on a step of a Sequence: when it becomes false the step is halted, and the next one begins.
+    """`_while` on a step of a Sequence: when it becomes false, the step is halted and the next one begins.
 
     If another step has a `_while` or a `_skipIf` too, the steps are the branches of a choice, and that is intended.
     """
@@ -66,8 +66,8 @@ def while_skip_is_success(view: View) -> Iterator[Diagnostic]:
 
 
 def skipped_condition(view: View) -> Iterator[Diagnostic]:
-    """`_skipIf` or `_while` on the condition of an IfThenElse or a WhileDoElse, which do not accept SKIPPED from it, or
-    on a child of a node that accepts it from none."""
+    """`_skipIf` or `_while` on a child from which its parent does not accept SKIPPED: the condition of an IfThenElse or
+    a WhileDoElse, and any child of some nodes."""
     for resolved in view.seen.marked:
         pair = next((pair for pair in resolved.node.attributes if pair.key.text in ("_skipIf", "_while")), None)
         if pair is None:
@@ -81,7 +81,7 @@ def skipped_condition(view: View) -> Iterator[Diagnostic]:
 
 
 def _skipped(resolved: ResolvedNode) -> tuple[ResolvedNode, ResolvedNode | None]:
-    """The node that is skipped with one, and its parent, which must do something about it."""
+    """The topmost node that is skipped with a node, and its parent, which handles that."""
     while resolved.parent is not None and resolved.parent.flow in _PASS_SKIPPED_ON:
         resolved = resolved.parent
     return resolved, resolved.parent

@@ -1,4 +1,4 @@
-"""SuccessIf and FailureIf in a requirement's description: whether prose follows them, or a constraint."""
+"""Prose after SuccessIf and FailureIf in a requirement's description, where a constraint should be."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def prose_constraint(view: View) -> Iterator[Diagnostic]:
-    """A keyword followed by prose, in a requirement that has no clause yet: reported once, where it is defined."""
+    """A keyword followed by prose, in a requirement without clauses; reported once, where it is defined."""
     for symbol, requirement in view.requirements:
         if requirement.text is None or requirement.clauses:
             continue
@@ -43,7 +43,7 @@ def prose_constraint(view: View) -> Iterator[Diagnostic]:
 
 
 def _not_checked(view: View, requirement: Requirement, name: str) -> list[Constraint]:
-    """The constraints that are neither a script nor meaningful clauses."""
+    """The constraints that no tool can check: they are neither a script nor clauses."""
     constraints = view.constraints(requirement)
     is_checked = any(checkable for _, checkable in constraints) and view.ask(is_measured)
     if is_checked and view.defines_here(Kind.REQUIREMENT, name) and view.ask(_claims_nothing, name):
@@ -95,7 +95,7 @@ def _notes(clauses: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def _fixes(view: View, text: Word, name: str, clauses: tuple[str, ...]) -> tuple[Fix, ...]:
-    """The fixes that add the clauses; none if the text is repeated in other places, which would then differ."""
+    """The fixes that add the clauses; none if other definitions repeat the text, which would then differ."""
     if not clauses or view.entry.diagnostics or view.ask(lookups.is_repeated, Kind.REQUIREMENT, name):
         return ()
     added = " ".join(clauses)

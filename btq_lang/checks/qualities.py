@@ -1,5 +1,5 @@
-"""Quality names: unknown, of another edition, or with several meanings.  None is an error: a model is open.  Also what
-is attached with the wrong word: a requirement with `satisfices`, or a quality with `satisfies`."""
+"""Names of qualities that are unknown, of another edition, or ambiguous; none is an error, as a quality model is open.
+Also what is attached with the wrong word: a requirement with `satisfices`, or a quality with `satisfies`."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from btq_lang.workspace.symbols import Use
 
 
 def quality_name(view: View) -> Iterator[Diagnostic]:
-    """An unknown edition; and of the qualities that no file in scope declares, those that are neither the standard's,
-    or only an alias or of another edition, or have several meanings."""
+    """An unknown edition; and qualities that no file in scope declares and that are unknown to the standard, an alias,
+    of another edition, or ambiguous."""
     if isinstance(view.item, Qualities) and view.item.edition is not None:
         edition = view.item.edition
         if edition.text not in EDITIONS:
@@ -82,10 +82,10 @@ def _ambiguous(view: View, use: Use, match: QualityMatch) -> Diagnostic:
 
 
 def other_word(view: View, use: Use, rule: str, *, requirement: bool, safe: bool = True) -> Diagnostic:
-    """The name of a requirement is in the place of a quality's, or the other way round.
+    """The diagnostic for a requirement in the place of a quality, or the other way round.
 
     Args:
-        requirement: whether it is one.
+        requirement: whether the name is that of a requirement.
         safe: whether the name would be right after the other word.
     """
     kind, other_kind = ("requirement", "quality") if requirement else ("quality", "requirement")
@@ -98,7 +98,7 @@ def other_word(view: View, use: Use, rule: str, *, requirement: bool, safe: bool
 
 
 def _whole(view: View, use: Use) -> Span:
-    """The span to replace: for `performance <time-behavior>` with the `>`, which is not a part of the name."""
+    """The span to replace; for `performance <time-behavior>` it includes the `>`, which is not part of the name."""
     text = view.text
     end = use.span.end
     if "<" in text[use.span.start : end]:

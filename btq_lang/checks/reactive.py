@@ -24,7 +24,7 @@ _APART = "put it in a Sequence of its own"
 
 def reactive_multiple_async(view: View) -> Iterator[Diagnostic]:
     """A running child of a reactive node after another one that runs: a warning if the other one certainly takes more
-    than a tick, a hint if it does only if a custom action does."""
+    than one tick, a hint if only a custom action in it may."""
     for resolved in view.seen.of_flow("sequence", "fallback"):
         if resolved.kind is None or not resolved.kind.reactive:
             continue
@@ -53,8 +53,8 @@ def reactive_multiple_async(view: View) -> Iterator[Diagnostic]:
 
 
 def explicit_in_reactive(view: View) -> Iterator[Diagnostic]:
-    """An explicit form just below a ReactiveSequence: for a `.btq` file a build writes the compact one, if the name can
-    be a tag.
+    """An explicit form directly below a ReactiveSequence.  For a `.btq` file a build writes the compact form, if the
+    name can be a tag.
 
     Source: BehaviorTree.CPP 4.7 to 4.10, xml_parsing.cpp, where the tags of these children are looked up as nodes.
     """
@@ -105,7 +105,7 @@ def condition_without_recheck(view: View) -> Iterator[Diagnostic]:
 
 
 def _second_async_sequence(resolved: ResolvedNode, version: str) -> Diagnostic | None:
-    """The engine checks only this kind, and only its children."""
+    """The diagnostic for a second asynchronous sequence: the engine checks only this kind, and only its children."""
     if resolved.kind is None or not resolved.kind.inspects_children or not ONE_ASYNC_SEQUENCE.holds(version):
         return None
     sequences = [child for child in resolved.children if child.kind is not None and _is_async_sequence(child.kind)]
@@ -138,8 +138,8 @@ def _never_gets_further(view: View, resolved: ResolvedNode, first: Node, child: 
 
 
 def _pauses(view: View, resolved: ResolvedNode) -> bool:
-    """Whether it returns RUNNING between its children, unless it begins with a condition, which chooses and is meant to
-    interrupt what is beside it."""
+    """Whether a node returns RUNNING between its children.  One that begins with a condition does not count: it
+    chooses, and is meant to interrupt its siblings."""
     if resolved.kind is None or not resolved.kind.pauses or len(resolved.node.children) < 2 or not resolved.children:
         return False
     return resolved.children[0].category != "Condition" and bool(
@@ -166,13 +166,13 @@ def _is_at_the_top(resolved: ResolvedNode) -> bool:
 
 
 def _begins_again(resolved: ResolvedNode) -> bool:
-    """Whether it is a sequence or a fallback that begins with its first child at every tick."""
+    """Whether a node is a sequence or a fallback that begins with its first child at every tick."""
     return resolved.kind is not None and resolved.kind.reactive and resolved.kind.flow in GOES_ON
 
 
 def _guard(branch: ResolvedNode) -> ResolvedNode | None:
-    """The condition that begins a branch `-> [condition, …]`; a condition alone is not a branch: what follows it in the
-    Fallback achieves it. One in `R->` guards what runs beside it: it is evaluated all the while."""
+    """The condition that begins a branch `-> [condition, …]`.  A condition alone is not a branch: the next child of the
+    Fallback achieves it.  One in `R->` is evaluated while its siblings run."""
     if not _is_resuming_sequence(branch) or len(branch.node.children) < 2:
         return None
     resolved: ResolvedNode | None = branch
@@ -187,8 +187,8 @@ def _is_resuming_sequence(resolved: ResolvedNode) -> bool:
 
 
 def _can_be_asked_again(view: View, resolved: ResolvedNode) -> bool:
-    """Whether `R?` would restart only what its condition is for: any other child that takes time and fails would
-    restart at the next tick, and halt what was to follow it."""
+    """Whether `R?` would restart guarded children only.  Any other child that takes time and fails would restart at the
+    next tick, and halt the next child."""
     return all(
         _guard(child) is not None or not result(view, child.node).ever & RUNNING for child in resolved.children[:-1]
     )

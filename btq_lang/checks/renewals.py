@@ -1,7 +1,8 @@
 """Guards on values that nothing writes while the guarded node runs: they are effectively checked once.
 
-One invariant: all that may run beside a node is assumed to run, and all that may write an entry to write it, so a
-finding is true for every run of the mission.  What the robot's program writes is not known here.
+One invariant: every node that may run in parallel to another one is assumed to run, and every node that may write an
+entry to write it, so a finding is true for every run of the mission.  This module does not know what the robot's
+program writes.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ _ONE_AT_A_TIME = frozenset(("sequence", "fallback", "choice", "switch", "resume"
 
 
 def guard_never_renewed(demanded: Demanded) -> Iterator[Found]:
-    """A guard whose signals all have writers in the mission, none of which is ticked while the node runs."""
+    """A guard whose signals all have writers in the mission, but no writer is ticked while the node runs."""
     for applied, claim, node, place, why in demanded.hard:
         signals = _watched(applied.requirement, claim) if why is None else ()
         keys = dict.fromkeys([signal.entry for signal in signals])
@@ -79,7 +80,7 @@ def _is_fixed(demanded: Demanded, node: ResolvedNode, key: str) -> bool:
 
 
 def _is_renewed_beside(writing: frozenset[int], carrying: frozenset[int], node: ResolvedNode) -> bool:
-    """Whether an entry may be written while a node runs, by one above it in the tree, or below one of these.
+    """Whether a node above another one in its tree, or below such a node, may write an entry while the other one runs.
 
     Args:
         writing, carrying: the result of `_renewing` for the tree.
@@ -112,7 +113,7 @@ def _renewing(
 
 
 def _writers(store: Store[Workspace], viewpoint: str, key: str) -> tuple[ResolvedNode, ...]:
-    """The nodes that may write an entry of this name; empty if others may too, or if no node certainly does."""
+    """The nodes that may write an entry of this name; empty if the program may too, or if no node certainly does."""
     view = View(store, viewpoint)
     if view.ask(nodes.mission) is None or not view.ask(inputs.is_complete) or not view.is_read:
         return ()
@@ -125,7 +126,7 @@ def _writers(store: Store[Workspace], viewpoint: str, key: str) -> tuple[Resolve
     writers = [node for of_tree in writing for node, name in of_tree.writes if name.removeprefix("@") == key]
     running = view.ask(_reached)
     if not all(writer.tree in running for writer in writers):
-        return ()  # perhaps another mission that runs beside this one
+        return ()  # perhaps another mission that runs in parallel
     sure = [write for of_tree in writing for write in of_tree.sure]
     if not any(name.removeprefix("@") == key for _, name in sure) or isolated(view, sure, key) is not None:
         return ()
@@ -151,7 +152,7 @@ def _carrying(store: Store[Workspace], viewpoint: str, key: str) -> frozenset[st
 
 
 def _is_renewed_above(store: Store[Workspace], viewpoint: str, tree: str | None, key: str) -> bool:
-    """Whether an entry may be written while a tree runs, by nodes above it or beside it; or nothing runs the tree."""
+    """Whether nodes of other trees may write an entry while a tree runs, or nothing runs the tree."""
     if tree not in store.ask(_reached, viewpoint):
         return True
     for name in _with_callers(store, viewpoint, tree):

@@ -59,7 +59,7 @@ def unknown_requirement(view: View) -> Iterator[Diagnostic]:
 
 
 def conflicting_requirement(view: View) -> Iterator[Diagnostic]:
-    """One ID with two texts; one ID with one text is one requirement in several places."""
+    """Two requirements of one ID with different content; with the same content they are one requirement."""
     for first, second in view.clashes(Kind.REQUIREMENT):
         if _differ(second.symbol, first.symbol):
             related = (Related(first.place, COUNTS), Related(second.place, "other definition"))
@@ -74,7 +74,7 @@ def conflicting_requirement(view: View) -> Iterator[Diagnostic]:
 
 
 def unused_requirement(view: View) -> Iterator[Diagnostic]:
-    """A requirement at file level that no node, no `apply` and no subject of its own connects to the mission."""
+    """A requirement at file level that is attached to nothing: by no node, no `apply` and no subject of its own."""
     requirement = view.item
     if not isinstance(requirement, Requirement) or requirement.name is None:
         return
@@ -135,7 +135,7 @@ def _other_way(view: View, symbol: Symbol) -> str:
 
 
 def _differ(symbol: Symbol, first: Symbol) -> bool:
-    """Whether two definitions contradict each other; an empty one is reported as such."""
+    """Whether two definitions contradict each other; another rule reports an empty one."""
     mine, other = symbol.target, first.target
     return (
         isinstance(mine, Requirement)
@@ -158,7 +158,7 @@ def _is_empty(requirement: Requirement) -> bool:
 
 
 def _is_meant(store: Store[Workspace], viewpoint: str, name: str) -> bool:
-    """Whether something uses an undeclared name that looks like this one, which is reported already."""
+    """Whether something uses an undeclared name that is similar to this one; another rule reports it."""
     view = View(store, viewpoint)
     names = view.ask(lookups.asked_for_in_vain)
     declared = len(view.ask(inputs.names, Kind.SIGNAL)) + len(view.ask(inputs.names, Kind.CONTEXT))
@@ -178,8 +178,8 @@ def _misspelt_uses(_: Store[Workspace], facts: Facts) -> frozenset[str]:
 
 @hub
 def is_measured(store: Store[Workspace], viewpoint: str) -> bool:
-    """Whether any requirement in scope has a clause, or anything is declared for one: else nothing needs to be
-    resolved."""
+    """Whether any requirement in scope has a clause, or a signal or context is declared; else there is nothing to
+    resolve."""
     view = View(store, viewpoint)
     if view.ask(has_names, Kind.SIGNAL) or view.ask(has_names, Kind.CONTEXT):
         return True
@@ -197,7 +197,8 @@ def _has_clauses(store: Store[Workspace], viewpoint: str, name: str) -> bool:
 
 
 def unresolved(view: View) -> Iterator[Diagnostic]:
-    """What is wrong with the requirements of an entry when they are resolved: units, signals, paths, arguments."""
+    """The problems in the requirements of an entry that show when they are resolved: units, signals, paths,
+    arguments."""
     if not view.ask(is_measured):
         return
     from btq_lang.requirements.resolve import problems_in  # a file without clauses needs none of it
@@ -206,8 +207,8 @@ def unresolved(view: View) -> Iterator[Diagnostic]:
 
 
 def requirement_without_subject(view: View) -> Iterator[Diagnostic]:
-    """A claim about nothing, in a requirement that has other claims with subjects of their own; without any the whole
-    requirement is unused, and reported as that.  Also what only applies to nodes, demanded of a span or a sum."""
+    """A claim without a subject in a requirement that has claims with one; if none has one, the requirement is unused
+    and another rule reports it.  Also a claim about a span or a sum whose verb applies only to nodes."""
     if not isinstance(view.item, Requirement) or not view.ask(is_measured):
         return
     names = [symbol.name for symbol in view.facts.summary.symbols]

@@ -1,4 +1,4 @@
-"""What a node forgets because its parent resets it, and a success that is lost at its end.
+"""Nodes whose parent resets what they remember, and nodes that fail although their last child succeeds.
 
 Sources: what BehaviorTree.CPP 3.8.7, 4.6.2 and 4.10.0 and the branches of Nav2 do with children that have ended.
 """
@@ -20,12 +20,12 @@ from btq_lang.workspace.node_names import wraps
 from btq_lang.workspace.resolved import ResolvedNode
 
 _REMEMBERING: Final[tuple[Flow, ...]] = ("notices", "throttle", "throttle-or-fail", "pass-once")
-# They tick children that have succeeded again, while a later one runs.
+# While a later child runs, they tick again those that have succeeded.
 _REPEATING: Final[frozenset[Flow]] = frozenset(("pipeline", "together"))
 
 
 def memory_lost(view: View) -> Iterator[Diagnostic]:
-    """A node that has an effect only if it is ticked again as it was left, below one that resets it before."""
+    """A node that has an effect only with its memory of earlier ticks, below a parent that resets it."""
     for resolved in view.seen.of_flow(*_REMEMBERING):
         parent = resolved.parent
         if parent is None or _keeps(parent, resolved):
@@ -67,12 +67,12 @@ def _keeps(parent: ResolvedNode, child: ResolvedNode) -> bool:
     if parent.flow in _REPEATING:
         is_last = child.index == len(parent.node.children) - 1
         return child.behavior is not None and child.behavior.memory == "success" and not is_last
-    # What another node does is not known; with a number instead of an entry, one that resumes begins there every time.
+    # Other nodes are unknown; one that resumes at a number instead of an entry begins there every time.
     return parent.flow in ("", "pause", "resume")
 
 
 def _kept_elsewhere(resolved: ResolvedNode) -> str:
-    """Where a node would keep its memory."""
+    """The note about the places where a node keeps its memory."""
     choice = next(kind.tag for kind in BUILTINS.values() if kind.flow == "choice" and kind.reactive)
     place = f"the condition of a {choice}"
     if resolved.behavior is not None and resolved.behavior.memory == "success":

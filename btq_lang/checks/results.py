@@ -1,8 +1,8 @@
 """The possible results of a file's nodes, as far as their kinds, attributes and children determine them.
 
 One invariant: every status that a node can return is included, so a missing one is impossible; an unknown leaf can
-return anything.  Only `first` has an assumption: a custom action takes longer than one tick.  Not known here: the
-blackboard, and so whether a condition is ever true.
+return anything.  Only `first` and `usual` assume that some actions take longer than one tick.  This module does not
+know the blackboard, and so not whether a condition is ever true.
 """
 
 from __future__ import annotations
@@ -67,8 +67,8 @@ def _of_tree(store: Store[Workspace], viewpoint: str, tree: str) -> Results:
 
 
 def _is_filled_in(view: View, name: str, tree: Tree) -> bool:
-    """Whether a tree that does nothing is one in the place of which the program registers another: by its name,
-    `__BringUp__`, or because C++ of the project has that name."""
+    """Whether a tree does nothing because the program replaces it: its name is like `__BringUp__`, or C++ of the
+    project has that name."""
     is_stub = len(tree.children) < 2 and all(isinstance(child, Node) and _succeeds(child) for child in tree.children)
     return is_stub and (_TEMPLATE(name) is not None or view.ask(lookups.is_in_cpp, name))
 
@@ -110,7 +110,7 @@ def _of_node(view: View, resolved: ResolvedNode, by_node: dict[int, Results]) ->
 
 
 def _of_behavior(kind: NodeKind, node: Node, children: tuple[Results, ...]) -> Results:
-    """Cached, for most nodes have no attributes and few kinds of children."""
+    """The possible results by a node's row; cached, as most nodes have no attributes and few kinds of children."""
     key = id(kind), *[child.first | child.usual << 4 | child.ever << 8 for child in children]
     possible = _without_ports.get(key) if not node.attributes else None
     if possible is not None:

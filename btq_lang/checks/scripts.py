@@ -17,8 +17,7 @@ from btq_lang.workspace.resolved import ResolvedNode
 
 
 def script_error(view: View) -> Iterator[Diagnostic]:
-    """What is wrong with a script, in any version that the project targets: script-error, empty-script,
-    script-version."""
+    """The problems in a script, in any version that the project targets: script-error, empty-script, script-version."""
     for resolved, pair, value in view.seen.values():
         expects_value = _expects_value(resolved, pair)
         if expects_value is not None:
@@ -58,8 +57,8 @@ def _problems(view: View, resolved: ResolvedNode, key: str, value: Word, expects
 
 
 def _empty(resolved: ResolvedNode, key: str, value: Word, diagnostic: Diagnostic) -> Diagnostic:
-    """The whole value is the place; the engine runs a Script without any character, and refuses all other empty
-    ones."""
+    """The diagnostic for an empty script, at the whole value: the engine runs a Script without any character, and
+    refuses all other empty ones."""
     is_port = resolved.kind is not None and resolved.kind.port(key) is not None
     if is_port and resolved.flow == "succeeds" and value.text == "":
         return replace(diagnostic, span=value.span, message="empty script", severity=Severity.WARNING)

@@ -57,8 +57,8 @@ def guards(demanded: Demanded) -> Iterator[Guard]:
 
 def _never_written(view: View, own_signals: list[ResolvedSignal], guards: Sequence[Guard]) -> Iterator[Found]:
     """A signal whose blackboard entry no port and no script of the mission writes, if another entry has nearly the same
-    name, or if a guard reads it; the robot's program may write it, so then it is a hint.  A guard reads the root
-    blackboard, so what a tree writes into its own is another entry."""
+    name, or if a guard reads it.  The latter is a hint, as the robot's program may write the entry.  A guard reads the
+    root blackboard: an entry in a tree's own blackboard is another one."""
     if not view.ask(has_nodes) or not view.ask(inputs.is_complete) or not view.is_read:
         return
     if view.ask(inputs.is_included):
@@ -91,8 +91,8 @@ def _near_keys(store: Store[Workspace], viewpoint: str, key: str) -> tuple[str, 
 
 
 def _of_text(view: View, own_signals: list[ResolvedSignal]) -> Iterator[Found]:
-    """A numeric signal whose entry a text port writes: a script that compares it converts the text, and throws if it is
-    not a number."""
+    """A numeric signal whose entry a text port writes.  A script that compares it converts the text, and throws if that
+    is not a number."""
     main = view.ask(mission)
     numbers = {signal.entry: signal for signal in own_signals if signal.sort == "number"}
     entries = [of_tree for of_tree in view.ask(all_entries) if not numbers.keys().isdisjoint(of_tree.pointers)]
@@ -112,8 +112,8 @@ def _of_text(view: View, own_signals: list[ResolvedSignal]) -> Iterator[Found]:
 
 
 def _may_be_unset(view: View, guards: Iterable[Guard]) -> Iterator[Found]:
-    """A guard on a signal without a first value, or of a classic description on an entry that nothing writes: until
-    something writes it, the engine ends the mission."""
+    """A guard on a signal without an initial value, or a classic guard on an entry that nothing writes: the engine ends
+    the mission if it reads the entry before anything writes it."""
     reported: dict[str, tuple[ResolvedSignal, list[Related]]] = {}
     for read, entries, place in guards:
         for entry in entries:

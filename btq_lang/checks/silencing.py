@@ -1,7 +1,7 @@
-"""Where a comment that silences rules goes: at the end of a line or above it; in XML before the element.
+"""Edits that add a comment to silence rules: at the end of a line or above it; in XML before the element.
 
-One invariant: an edit adds a comment, and blanks and line ends around it, and changes nothing else.  Whether the
-comment has the effect is for `suppressions`, which reads it.
+One invariant: an edit adds a comment, and blanks and line ends around it, and changes nothing else.  `suppressions`
+reads the comment, and decides what it silences.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from btq_lang.workspace.file import File
 
 
 def line_to_silence(file: File, diagnostic: Diagnostic) -> int | None:
-    """The line on which a comment can silence a diagnostic of a file; None: nothing can.
+    """The line on which a comment can silence a diagnostic of a file; None if no comment can.
 
     Args:
         diagnostic: counted from the start of the file on the disk.
@@ -65,7 +65,7 @@ def before_element(file: File, line: int, rules: Sequence[str], reason: str = ""
 
 
 def before_tag(file: File, diagnostic: Diagnostic, reason: str = "") -> Edit | None:
-    """A comment before the tag, or the text, that a diagnostic of the XML itself is about; None for any other."""
+    """A comment before the tag or the text of a diagnostic about the XML itself; None for any other diagnostic."""
     origin, start = file.origin, diagnostic.span.start
     if origin is None or diagnostic.rule in UNREADABLE or diagnostic not in origin.diagnostics:
         return None

@@ -37,7 +37,7 @@ class SortedNodes:
         placeholders: those that represent a skill.
         strangers: those that are neither a built-in, a placeholder nor a SubTree, and have no model.
         by_tag: the built-ins, by their tag.
-        by_flow: the nodes of which it is known what they do, by their flow.
+        by_flow: the nodes with a known flow, by that.
     """
 
     def __init__(self, nodes: tuple[ResolvedNode, ...]) -> None:

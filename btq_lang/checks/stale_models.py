@@ -1,4 +1,4 @@
-"""Models that say otherwise of a node than the C++ that registers it."""
+"""Models that differ from the C++ that registers their node."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from btq_lang.workspace.symbols import may_be_one_type
 
 
 def stale_model(view: View) -> Iterator[Diagnostic]:
-    """A model with another category, or with a port that the C++ of its node has not, or has otherwise."""
+    """A model with another category than in C++, or with a port that the C++ lacks or declares differently."""
     for symbol, other, _ in view.repeated(Kind.MODEL):
         model, of_code = symbol.target, other.symbol.target
         is_cpp = view.store.ask(lookups.is_cpp, other.path)
@@ -34,7 +34,7 @@ def stale_model(view: View) -> Iterator[Diagnostic]:
 
 
 def _of_port(view: View, model: Model, port: Port, other: lookups.Declaration) -> Iterator[Diagnostic]:
-    """What is wrong with a port of a model."""
+    """The differences of a port in a model and in C++."""
     of_code = other.symbol.target
     assert isinstance(of_code, Model), "the caller has looked"
     assert port.id is not None, "the caller has looked"

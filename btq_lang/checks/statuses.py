@@ -1,4 +1,4 @@
-"""The possible results of a node of which it is known what it does, given those of its children.
+"""The possible results of a node with a known flow, given those of its children.
 
 One invariant: every status that the node returns in any version is included.  A set of statuses is a sum of
 powers of two; a missing or surplus child can return anything.
@@ -48,7 +48,7 @@ def of_kind(kind: NodeKind, node: Node, children: Sequence[int], starting: bool)
 
 
 def _number(kind: NodeKind, node: Node, role: Role) -> int | None:
-    """The literal integer of the port; None if that is not an integer."""
+    """The literal integer of a port; None if the value is anything else."""
     value = _port_value(kind, node, role)
     text = value.text if value is not None else ""
     return int(text) if text.removeprefix("-").isdecimal() and len(text) < 12 else None
@@ -60,9 +60,11 @@ def _port_value(kind: NodeKind, node: Node, role: Role) -> Word | None:
 
 
 def _in_order(children: Sequence[int], goes_on: int, pauses: bool, starting: bool) -> int:
-    """A sequence goes on after SUCCESS, a fallback after FAILURE.
+    """The results of a node that ticks its children one after the other.
 
-    `pauses`: whether it returns RUNNING between two children that complete at once.
+    Args:
+        goes_on: the status after which it ticks the next child: SUCCESS for a sequence, FAILURE for a fallback.
+        pauses: whether it returns RUNNING between two children that complete at once.
     """
     results = 0
     skipped = ANYTHING
@@ -81,7 +83,6 @@ def _in_order(children: Sequence[int], goes_on: int, pauses: bool, starting: boo
 
 
 def _if(results: int, status: int, then: int) -> int:
-    """What follows if a status is possible."""
     return then if results & status else 0
 
 
@@ -98,7 +99,8 @@ def _if_then_else(children: Sequence[int], *_: object) -> int:
 
 
 def _parallel(children: Sequence[int], kind: NodeKind, node: Node) -> int:
-    """Without thresholds all must succeed and one may fail; with some, any completed child may decide."""
+    """The results of a Parallel: without thresholds all children must succeed, and one failure decides; with some, any
+    completed child may decide."""
     results = _any_of(children)
     everyone = ANYTHING
     for child in children:
@@ -111,7 +113,7 @@ def _parallel(children: Sequence[int], kind: NodeKind, node: Node) -> int:
 
 
 def _rotate(children: Sequence[int], kind: NodeKind, node: Node) -> int:
-    """One child after the other; without a first one after the last, it fails after that."""
+    """The results of a node that takes the next child after a failure; unless it wraps, it fails after the last one."""
     results, last = _any_of(children), children[-1]
     without = _any_of(children[:-1]) | last & ~SUCCESS | _if(last, SUCCESS | SKIPPED, FAILURE)
     goes_round = wraps(kind, node)
@@ -119,7 +121,7 @@ def _rotate(children: Sequence[int], kind: NodeKind, node: Node) -> int:
 
 
 def _again(child: int, repeats: int, count: int | None, starting: bool) -> int:
-    """It repeats after SUCCESS or after FAILURE; a count of -1 is unlimited."""
+    """The results of a loop that repeats after SUCCESS or after FAILURE; a count of -1 is unlimited."""
     if count is not None and (count == 0 or count < -1):
         return repeats | SKIPPED
     if count == 1 or not child & repeats:
@@ -130,7 +132,7 @@ def _again(child: int, repeats: int, count: int | None, starting: bool) -> int:
 
 
 def _otherwise(kind: NodeKind, node: Node) -> int:
-    """The result without its child."""
+    """The result that a node returns instead of its child's."""
     port, value = kind.port_for("otherwise"), _port_value(kind, node, "otherwise")
     text = value.text if value is not None else port.default if port is not None else None
     return _STATUSES.get(text or "", ANYTHING)

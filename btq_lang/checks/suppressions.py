@@ -45,7 +45,7 @@ class Suppressions:
     """The comments of a file that silence rules.
 
     Attributes:
-        useless: what is wrong with comments, these and others; spans count from the start of the file.
+        useless: diagnostics about comments; spans count from the start of the file.
     """
 
     def __init__(self, file: File) -> None:
@@ -54,7 +54,7 @@ class Suppressions:
         self._everything: set[int] = set()
         self._silenced: dict[int, set[str]] = {}
         self.useless: list[Diagnostic] = []
-        target_lines: dict[int, int] = {}  # from lines that are only a comment to the next line that is more
+        target_lines: dict[int, int] = {}  # by each line that is only a comment, the next line that is not
         for token in reversed(file.parsed.tokens):
             if token.kind != COMMENT:
                 continue

@@ -37,7 +37,7 @@ Key = TypeVar("Key", bound=tuple[str, ...])
 
 
 def engine_changes(view: View, origin: str, target: str) -> Iterator[Diagnostic]:
-    """What nodes of a tree do otherwise in the target.
+    """The nodes of a tree that act differently in the target.
 
     Args:
         origin: the version that the tree is for; a line such as 4.8 means any of its releases.
@@ -62,7 +62,7 @@ def is_between(since: str, until: str, after: str, origin: str, target: str) -> 
 
 
 def new_in_target(view: View, checks: tuple[Check, ...], diagnostics: list[Diagnostic]) -> Iterator[Diagnostic]:
-    """What the target refuses, or reads otherwise, and the version that the tree is for does not."""
+    """The errors and warnings that only the target gives, and not the version that the tree is for."""
     workspace = view.ask(inputs.everything).moved
     moved = View(workspace.store, view.path, view.facts)
     reported = {(diagnostic.rule, diagnostic.span) for diagnostic in diagnostics if is_severe(diagnostic)}
@@ -81,12 +81,12 @@ def new_in_target(view: View, checks: tuple[Check, ...], diagnostics: list[Diagn
 
 
 def is_severe(diagnostic: Diagnostic) -> bool:
-    """Whether it is more than a hint."""
+    """Whether a diagnostic is an error or a warning."""
     return diagnostic.effective_severity in (Severity.ERROR, Severity.WARNING)
 
 
 def of_target(diagnostic: Diagnostic, target: str) -> Diagnostic:
-    """What is found for a target alone, as a finding of the rules about moving on."""
+    """A diagnostic that only a target gives, as one of the rules about moving on."""
     breaks = diagnostic.effective_severity is Severity.ERROR or diagnostic.rule == "not-an-engine-node"
     notes = (*diagnostic.notes, f"in {target} this is {diagnostic.rule}: `btq explain {diagnostic.rule}`")
     return replace(diagnostic, rule="target-breaks" if breaks else "target-differs", notes=notes, severity=None)
@@ -108,7 +108,7 @@ def _entries(resolved: ResolvedNode) -> Iterator[Diagnostic]:
 
 
 def _first_tree(view: View) -> Iterator[Diagnostic]:
-    """A tree whose ID another one before it has."""
+    """A tree with the ID of an earlier one."""
     name = view.tree_name
     if name is not None and not view.defines_here(Kind.TREE, name.text):
         what = f"from {LAST_TREE_COUNTS.since} on this tree `{name.text}` counts, no longer the first one"
@@ -127,7 +127,7 @@ def _skipped_in_the_end(view: View, resolved: ResolvedNode) -> bool:
 
 
 def _queue_of_script(view: View, resolved: ResolvedNode) -> bool:
-    """Whether a script of the tree writes the queue."""
+    """Whether a script of the tree writes the entry of a node's queue."""
     value = resolved.node.attribute("queue")
     name = pointed_at("queue", value.text) if value is not None else None
     names = [
@@ -142,7 +142,7 @@ def ports_in(view: View, distribution: str, node: str) -> frozenset[str] | None:
 
 
 def changes_of(view: View, resolved: ResolvedNode, name: Word, steps: tuple[str, ...]) -> Iterator[Diagnostic]:
-    """What changes for a node of Nav2 on some steps."""
+    """What changes for a node of Nav2 on the way through some distributions."""
     renamed = _first_in(RENAMED, ((step, name.text) for step in steps))
     ports_before, ports = ports_in(view, steps[0], name.text), ports_in(view, steps[-1], renamed or name.text)
     if ports_before is not None and ports is not None:
@@ -170,7 +170,7 @@ def _collects(view: View, resolved: ResolvedNode) -> bool:
 
 
 def changed(view: View, resolved: ResolvedNode, name: Word, change: BehaviorChange) -> Iterator[Diagnostic]:
-    """A row about a node, if the value of its port is one that the row concerns."""
+    """The diagnostic for a row about a node, if the row concerns the value of its port."""
     value = resolved.node.attribute(change.port) if change.port else None
     if not change.matches(value.text if value is not None else None):
         return
@@ -190,7 +190,8 @@ def changed(view: View, resolved: ResolvedNode, name: Word, change: BehaviorChan
 def _without_node(
     view: View, name: Word, renamed: str | None, steps: tuple[str, ...], differing: Iterable[str]
 ) -> Diagnostic:
-    """The finding for a node that is gone, with what else changes on the way: it is to be replaced in any case."""
+    """The diagnostic for a node that is gone; its notes say what else changes on the way, for the node that replaces
+    it."""
     gone = next(step for step in steps if ports_in(view, step, name.text) is None)
     instead = INSTEAD.get((gone, name.text))
     message = f"Nav2 has no `{name.text}` in {gone.title()}" + _called(renamed)

@@ -68,7 +68,7 @@ def unknown_tree(view: View) -> Iterator[Diagnostic]:
 
 
 def _nowhere(view: View) -> str:
-    """Where a tree was looked for, for a message."""
+    """The end of a message about an unknown tree: where it was looked for."""
     if view.factory is not None:
         return "; no file of its factory defines it"
     is_pooled = view.is_xml and view.project.pool_of(view.path) is not None
@@ -76,7 +76,7 @@ def _nowhere(view: View) -> str:
 
 
 def nested_too_deep(view: View) -> Iterator[Diagnostic]:
-    """A node deeper than 4.6 reads; what no version reads is reported by the parser."""
+    """A node deeper than 4.6 reads; the parser reports one deeper than any version reads."""
     nodes = view.nodes
     if len(nodes) <= _DEEPEST_OF_4_6 or DEEP_TREES.holds(view.engines[0]):
         return
@@ -123,7 +123,7 @@ def recursive_tree(view: View) -> Iterator[Diagnostic]:
 
 
 def unused_tree(view: View) -> Iterator[Diagnostic]:
-    """A tree to which nothing refers, or only such trees, in a file with a mission."""
+    """A tree that the main trees of a mission do not reach: nothing refers to it, or only unreached trees do."""
     name = view.tree_name
     if (
         name is None
@@ -147,7 +147,7 @@ def unused_tree(view: View) -> Iterator[Diagnostic]:
 
 
 def unknown_main_tree(view: View) -> Iterator[Diagnostic]:
-    """Several trees of which none is marked as the mission, reported at the first; or a factory's missing main tree."""
+    """Several trees without a mark of the main one, reported at the first; or a factory's missing main tree."""
     if not view.ask(is_first_tree, view.facts):
         return
     if view.factory is not None:
@@ -267,7 +267,7 @@ def tree_named_like_node(view: View) -> Iterator[Diagnostic]:
 
 
 def as_uncreated(view: View, diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """What was found in an item; errors are only warnings if the engine never comes to them."""
+    """The diagnostics of an item; errors become warnings if the engine never reaches their tree."""
     name = view.tree_name.text if view.tree_name is not None else ""
     factory = view.factory
     if factory is None or not view.ask(calls.is_uncreated, name):
@@ -291,7 +291,7 @@ def _as_node(use: Use) -> tuple[Fix, ...]:
 
 
 def _main_tree_fix(view: View, name: str) -> Fix:
-    """The fix that names the main tree: in the existing Root, or in a line of its own after the includes."""
+    """The fix that names the main tree: in the existing Root, or on a line of its own after the includes."""
     offset, margin = view.ask(lookups.head)
     text = f"{margin}Root {written(name)}\n"
     if (root := view.ask(lookups.root)) is not None:
@@ -303,8 +303,8 @@ def _is_subtree_model(meaning: VisibleMeaning) -> bool:
     return isinstance(meaning.target, Model) and meaning.target.category.raw == "SubTree"
 
 
-# What 4.6.2 and 4.10.0 load in such a tree, and refuse when it is created or ticked.  They refuse at once, and with it
-# all trees of the file: wrong numbers of children, unknown nodes, names that they forbid, an ID that is missing.
+# 4.6.2 and 4.10.0 load a tree with these mistakes, and refuse it when it is created or ticked.  Other mistakes they
+# refuse at once, with all trees of the file: wrong numbers of children, unknown nodes, forbidden names, a missing ID.
 AT_CREATION: Final = frozenset(
     (
         "unknown-port",

@@ -16,7 +16,7 @@ from btq_lang.workspace.resolved import ResolvedNode
 
 
 def unreachable_child(view: View) -> Iterator[Diagnostic]:
-    """A child that can never run; reported once for all those after one place."""
+    """A child that can never run; reported once for all children after the cause."""
     for resolved in view.nodes:
         if len(resolved.node.children) < 2:
             continue
@@ -38,7 +38,7 @@ def unreachable_child(view: View) -> Iterator[Diagnostic]:
 
 
 def _unreached_after(view: View, children: tuple[Node | Verbatim, ...], goes_on: int) -> Diagnostic | None:
-    """The child after one that can only end the node."""
+    """The diagnostic for the child after one that always ends its parent."""
     by_node = results(view)
     for child, following in pairwise(children):
         if isinstance(child, Node) and not by_node.get(id(child), UNKNOWN).ever & (goes_on | SKIPPED):
@@ -48,7 +48,7 @@ def _unreached_after(view: View, children: tuple[Node | Verbatim, ...], goes_on:
 
 
 def _in_try(view: View, resolved: ResolvedNode) -> Diagnostic | None:
-    """The last child of a try, which cleans up after a failure and perhaps after a halt, if it can never run."""
+    """The diagnostic for the last child of a try, which cleans up after a failure and perhaps after a halt."""
     *tried, last = resolved.node.children
     diagnostic = _unreached_after(view, tuple(tried), SUCCESS)
     if diagnostic is not None or resolved.node.attribute("catch_on_halt") is not None:

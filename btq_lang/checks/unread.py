@@ -1,7 +1,7 @@
 """Trees that nodes of Nav2 name for the goals that they send, values that a node never reads or looks for, and outputs
 that nothing reads.
 
-Sources: the tables of `catalog/nav2`.  What bt_navigator loads for goals says the factory.
+Sources: the tables of `catalog/nav2`; for the trees of goals, `Factory.goals`.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ from btq_lang.workspace.workspace import Workspace
 
 
 def default_instead(view: View) -> Iterator[Diagnostic]:
-    """An entry for an input that is read before anything can have written it, and a number that the node's code refuses
-    though the port's type does not: the node goes on with its default."""
+    """A value that a node replaces by its default: an entry that it reads before anything can have written it, and a
+    number that its code refuses though the port's type does not."""
     distribution = view.ask(lookups.distribution)
     if distribution is None:
         return
@@ -52,7 +52,7 @@ def default_instead(view: View) -> Iterator[Diagnostic]:
 
 
 def error_code_not_collected(view: View) -> Iterator[Diagnostic]:
-    """An error code in an entry that neither a node reads nor the result of a goal has."""
+    """An error code in an entry that no node reads and that the result of a goal does not have."""
     distribution = view.ask(lookups.distribution)
     if distribution is None:
         return
@@ -146,7 +146,7 @@ def _default(view: View, resolved: ResolvedNode, pair: Pair, value: Word, what: 
 
 
 def _is_refused(view: View, resolved: ResolvedNode, pair: Pair, value: Word) -> bool:
-    """Whether the node reads a literal as another type than its port has, which refuses it."""
+    """Whether the code of a node refuses a literal that the type of its port accepts."""
     port = resolved.behavior.port(pair.key.text) if resolved.behavior is not None else None
     target = view.target
     if port is None or port.literal is None or is_pointer(value.text) or is_before_4(target):

@@ -1,8 +1,8 @@
 """Entries that are read, or assigned to, where nothing can have set them.
 
-One invariant: a warning is certain but for what C++ does without a port; where the robot's program or a node without a
-model may set an entry, there is a hint at most.  Found here is what is wrong in a tree; what happens to its entries in
-other trees is known by flow.py.
+One invariant: a warning is certain, except for what C++ does without a port.  If the robot's program or a node without
+a model may set an entry, there is a hint at most.  This module looks at one tree; flow.py says what happens to its
+entries in other trees.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from btq_lang.workspace.workspace import Workspace
 
 
 def unset_entry(view: View) -> Iterator[Diagnostic]:
-    """What is wrong with the entries of a tree: unset-entry, uncreated-entry."""
+    """The problems with the entries of a tree: unset-entry, uncreated-entry."""
     name = view.tree_name
     if name is None or not view.defines_here(Kind.TREE, name.text):
         return
@@ -48,12 +48,11 @@ def unset_entry(view: View) -> Iterator[Diagnostic]:
 
 
 def _diagnostics(view: View, tree: str, mentions: Sequence[EntryMention], excluded: set[str]) -> list[Diagnostic]:
-    """What is wrong with entries, except some."""
     return [*_uncreated(view, tree, mentions, excluded), *_unset(view, tree, mentions, excluded)]
 
 
 def _reported_otherwise(view: View, mentions: Sequence[EntryMention]) -> set[str]:
-    """The entries of which another rule tells what is wrong: they are misspelt, or in a script that is."""
+    """The entries that another rule reports: they are misspelt, or in a script with an error."""
     spans: list[Span] = []
     for diagnostic in chain(misspelt_entry(view), meant_entry(view)):
         spans += (diagnostic.span, *(related.place.span for related in diagnostic.related))
@@ -82,7 +81,7 @@ def _uncreated(view: View, tree: str, mentions: Sequence[EntryMention], excluded
 
 
 def _creating(view: View, mention: EntryMention) -> tuple[str, tuple[Fix, ...]]:
-    """How an entry is created that a script assigns to, and the fix if that is done with another sign."""
+    """The note on how to create the entry that a script assigns to, and the fix if another sign does it."""
     from btq_lang.syntax.script.tree import Assign  # few scripts assign to what nothing creates
 
     pairs = [pair for pair in mention.node.node.attributes if pair.span.contains(mention.span)]
@@ -160,7 +159,8 @@ def _runs_without(store: Store[Workspace], viewpoint: str, tree: str, name: str)
 
 
 def _never_set(view: View, mentions: Sequence[EntryMention]) -> Iterator[Diagnostic]:
-    """Entries of the root blackboard: a warning each if it is known what the program sets; else a hint for all."""
+    """The diagnostics for entries of the root blackboard: a warning for each if the entries that the program sets are
+    known; else one hint for all."""
     if view.ask(lookups.outside_entries):
         for mention in mentions:
             message = f"nothing writes `{mention.name}` before it is read here, and bt_navigator does not set it"
@@ -180,7 +180,7 @@ def _never_set(view: View, mentions: Sequence[EntryMention]) -> Iterator[Diagnos
 
 
 def _not_written(view: View, mentions: Sequence[EntryMention]) -> Iterator[str]:
-    """What in the tree was probably meant to write the entries: one with a similar name, or an input."""
+    """The notes about what in the tree was meant to write the entries: a similar name, or an input."""
     of_tree = view.ask(mentions_in, view.path, view.facts)
     read = {mention.name for mention in of_tree if mention.reads or mention.node.is_subtree}
     written_only = [mention.name for mention in of_tree if mention.writes and mention.name not in read]
@@ -204,7 +204,7 @@ def _reads(mention: EntryMention) -> bool:
 
 @on_circle(False)
 def _needs(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
-    """Whether a node in a tree, or in those that get the entry from it, cannot do without its value."""
+    """Whether a node in a tree, or in the trees that get the entry from it, needs its value."""
     view = View(store, viewpoint)
     definition = view.ask(inputs.definition, Kind.TREE, tree)
     mentions = view.ask(mentions_in, *definition) if definition is not None else ()
@@ -217,7 +217,7 @@ def _needs(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> boo
 
 
 def _is_needed(view: View, mention: EntryMention) -> bool:
-    """Whether a node cannot do without the value of an entry."""
+    """Whether the node of a mention needs the value of the entry."""
     if mention.in_script or mention.node.kind is not None:
         return True
     pairs = [pair for pair in mention.node.node.attributes if pair.value is not None and is_pointer(pair.value.text)]
@@ -271,8 +271,8 @@ def _is_earlier(resolved: ResolvedNode, other: ResolvedNode) -> bool:
 
 
 def _is_known_root(view: View, tree: str) -> bool:
-    """Whether the root blackboard is that of a main tree, which runs a tree: no file that is not in scope runs it and
-    gives it entries."""
+    """Whether a known main tree has the root blackboard and runs a tree: no file out of scope runs that tree and gives
+    it entries."""
     mains = view.ask(lookups.main_trees) or ((view.main_tree,) if view.main_tree is not None else ())
     if not mains or view.ask(is_missed, tree):
         return False
@@ -284,7 +284,7 @@ def _is_known_root(view: View, tree: str) -> bool:
 
 @on_circle(True)
 def _is_passed(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
-    """Whether a tree above names the entry that it passes down, and so is where its fault is found."""
+    """Whether a tree above names the entry that it passes down; a mistake is then reported there."""
     for caller, call in calls_of(View(store, viewpoint), tree):
         if name in call.given or store.ask(_is_passed, viewpoint, caller, name):
             return True

@@ -1,7 +1,7 @@
 """What a check sees: one item in the scope of a viewpoint, with the look-ups that many checks need.
 
-It decides nothing and caches nothing: every result comes from the query store.  A look-up that only one rule needs does
-not belong here.
+A view decides nothing and caches nothing: every result comes from the query store.  A look-up that only one rule needs
+does not belong here.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ class View:
 
     @property
     def head(self) -> Span:
-        """Where a diagnostic about the whole item points: to the name of a tree or the path of an include, if there is
+        """The span of a diagnostic about the whole item: the name of a tree or the path of an include, if there is
         one."""
         word = self.item.path if isinstance(self.item, Include) else self.tree_name
         return word.span if word is not None else Span(self.item.start, self.item.end)
@@ -162,7 +162,7 @@ class View:
         return self.is_xml and self.ask(lookups.is_pooled, kind, name)
 
     def declared_at(self, kind: Kind, name: str, message: str) -> tuple[Related, ...]:
-        """The place where a name is defined, to be shown beside a diagnostic."""
+        """The definition of a name as a related place."""
         declaration = self.ask(lookups.declaration, kind, name)
         return (Related(declaration.place, message),) if declaration is not None else ()
 
@@ -227,7 +227,7 @@ class View:
 
     @property
     def is_pinned(self) -> bool:
-        """Whether the file is for other versions than all that are known."""
+        """Whether the file is for particular versions, and not for all known ones."""
         return self.engines != VERSIONS
 
     @property
@@ -237,7 +237,7 @@ class View:
 
     @property
     def factory(self) -> Factory | None:
-        """The factory that the file is looked at in; None: the file is one of its own."""
+        """The factory in whose scope the file is checked; None if it is checked by itself."""
         return self.store.ask(inputs.factory)
 
     @property
@@ -252,7 +252,7 @@ class View:
         return f"`<{kind.tag}>`" if self.is_xml and kind is not None else f"`{symbol}`"
 
     def pin_note(self, accepts: Callable[[str], bool]) -> tuple[str, ...]:
-        """A note for XML that only newer versions of the engine refuse: how to say that an older one runs.
+        """The note for XML that only newer versions of the engine refuse: how to name an older one.
 
         Args:
             accepts: whether a version accepts it.
@@ -267,7 +267,7 @@ class View:
         return self.store.ask(_script, text)
 
     def constraints(self, requirement: Requirement) -> tuple[tuple[Constraint, bool], ...]:
-        """What follows SuccessIf and FailureIf in a description, and whether it is more than prose."""
+        """The constraints after SuccessIf and FailureIf in a description, each with whether a tool can check it."""
         if requirement.text is None or requirement.clauses:
             return ()
         from btq_lang.requirements.constraints import (  # requirements with clauses need none of it
@@ -324,7 +324,7 @@ def misspelt_clause(node: Node) -> str | None:
 
 
 def _torn_places(store: Store[Workspace], viewpoint: str, facts: Facts) -> list[int]:
-    """Where in an item something begins that could not be read."""
+    """The offsets in an item at which something begins that could not be read."""
     entry = store.ask(inputs.entry, viewpoint, facts)
     return sorted([problem.span.start for problem in entry.diagnostics])
 

@@ -1,7 +1,7 @@
 """Which nodes write which blackboard entries, as far as a mission determines it.
 
-One invariant: every node that may write an entry is included; only ports that are declared as inputs are not.  When
-nodes run is not known here.
+One invariant: every node that may write an entry is included; only ports that are declared as inputs are not.  This
+module does not know when nodes run.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def _entries_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts
 
 
 def key_of(pointer: str, port: str) -> str:
-    """The entry that a port is given: `{speed}`, or `{=}` for one of the port's own name."""
+    """The entry that a port's value points to: `speed` for `{speed}`, the port's own name for `{=}`."""
     key = pointer[1:-1].strip()
     return port if key == "=" else key
 

@@ -1,6 +1,6 @@
-"""What is wrong with a parameter file, and with what bt_navigator loads by it.
+"""The diagnostics of a parameter file and of the files that bt_navigator loads by it.
 
-One invariant: without a distribution nothing is said that depends on it.
+One invariant: without a distribution there is no diagnostic that depends on one.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class NavigatorTree(Record):
 def findings(
     parameters: Parameters, distribution: str, trees: Iterable[NavigatorTree]
 ) -> Iterator[tuple[str | None, Diagnostic]]:
-    """All that is wrong, with the file that it is in; None: the parameter file."""
+    """All diagnostics, each with its file; None is the parameter file."""
     trees = tuple(trees)
     libraries = Libraries(parameters, distribution, own_libraries(tree.workspace for tree in trees))
     results: list[tuple[str | None, Diagnostic]] = []
@@ -57,8 +57,8 @@ def _own_code(parameters: Parameters, libraries: Libraries, trees: Iterable[Navi
 def wrong_goals(
     parameters: Parameters, distribution: str, trees: Iterable[NavigatorTree]
 ) -> Iterator[tuple[str, Diagnostic]]:
-    """What is wrong with the trees that goals name, by this name, wherever it is; without other files, which the trees
-    that name them need not have loaded."""
+    """The diagnostics of the trees that goals name, each with that name; without related places, as their files need
+    not be loaded."""
     for load, diagnostic in _of_loads(parameters, distribution, trees):
         tree_name = load.main or (load.tree.named if load.tree is not None else None)
         if load.goals and tree_name is not None:
@@ -80,7 +80,7 @@ def _of_loads(
 
 
 def _places(navigator_tree: NavigatorTree) -> Iterator[Diagnostic]:
-    """What parameters or goals name, and is not there."""
+    """Files, folders and trees that parameters or goals name and that do not exist."""
     load = navigator_tree.load
     for place in (load.tree, *(load.folders if not load.goals else ())):
         if place is None or not place.problem or place.named is None:
@@ -111,8 +111,7 @@ def _places(navigator_tree: NavigatorTree) -> Iterator[Diagnostic]:
 
 
 def _without_main(navigator_tree: NavigatorTree, parameters: Parameters) -> Iterator[Diagnostic]:
-    """A file with several trees, with those that it includes, none of which is the main one; Lyrical creates a tree by
-    its ID."""
+    """A file that has several trees, with its includes, and names no main one.  Lyrical creates a tree by its ID."""
     load, workspace = navigator_tree.load, navigator_tree.workspace
     top = workspace.files.get((load.tree.path if load.tree is not None else None) or "")
     listed = listed_trees(top.source) if top is not None else None
@@ -133,7 +132,7 @@ def _without_main(navigator_tree: NavigatorTree, parameters: Parameters) -> Iter
 
 
 def _folders(load: Load, parameters: Parameters, reported_paths: set[str | None]) -> Iterator[Diagnostic]:
-    """The files that bt_navigator skips or refuses, except those that were seen before, to which these are added."""
+    """The files that bt_navigator skips or refuses, except those already reported, to which these are added."""
     for place in load.refused:
         if place.path not in reported_paths:
             name = _name(place)
@@ -168,7 +167,7 @@ def _skipped(skipped: SkippedFile, load: Load, parameters: Parameters) -> Diagno
 
 
 def _span(file: Place, load: Load, parameters: Parameters) -> Span:
-    """Where the parameters name a file, or the folder that it is in."""
+    """The span in the parameters that names a file or a folder around it."""
     path = file.path or ""
     for place in (load.tree, *load.folders):
         if place is None or place.path is None or place.named is None:

@@ -32,9 +32,9 @@ class Libraries:
         own: those that the team builds.
 
     Attributes:
-        nodes: that the libraries among them register of which that is known.
-        are_of_nav2: whether all are Nav2's.
-        are_all_known: whether it is known of all.
+        nodes: that the libraries with known nodes register.
+        are_of_nav2: whether all libraries are Nav2's.
+        are_all_known: whether the nodes of all libraries are known.
     """
 
     def __init__(self, parameters: Parameters, distribution: str, own: OwnLibraries) -> None:
@@ -82,7 +82,7 @@ class Libraries:
         yield Diagnostic("library-loaded-twice", first.span, message, related, (_REFUSED,))
 
     def _suggestion(self, name: str) -> str | None:
-        """What a library that is not Nav2's in this distribution may mean, for a message; None: it is a team's own."""
+        """The end of a message about a library that Nav2 lacks in this distribution; None if it is a team's own."""
         existing = [library for library in LIBRARIES if self._exists(library)]
         if name in LIBRARIES and name.startswith(_BESIDE):
             return None
@@ -103,7 +103,7 @@ class OwnLibraries(Record):
 
     Attributes:
         of_node: by the ID of a node, the libraries that register it.
-        whole: those of which every source was read.
+        whole: the libraries whose sources were all read.
     """
 
     of_node: dict[str, frozenset[str]]
@@ -168,19 +168,19 @@ def _targets(folder: str) -> dict[str, frozenset[str]]:
 
 
 def _matching(folder: str, pattern: str, below: str) -> tuple[str, ...]:
-    """The files that a pattern of CMake matches, which in folders below counts for the last part alone."""
+    """The files that a pattern of CMake matches; in folders below, its last part alone counts."""
     inside = os.path.relpath(os.path.join(folder, pattern), folder).replace(os.sep, "/")
     above, _, last = inside.rpartition("/")
     return matching(folder, f"{above}{'/' * bool(above)}{below}{last}")
 
 
 def _is_source(word: str) -> bool:
-    """Whether it is a C++ source, or something whose sources are not known: a library with that is not whole."""
+    """Whether a word is a C++ source, or a variable whose sources are unknown: a library with one is not whole."""
     return "$" in word or (word.endswith(CPP_SUFFIXES) and not word.endswith((".h", ".hh", ".hpp", ".hxx")))
 
 
 _REPLACING: Final = "hi"  # the distributions in which the named libraries take the place of Nav2's own
-_BESIDE: Final = "opennav_"  # packages that were beside Nav2 before they became a part of it, and still are for Humble
+_BESIDE: Final = "opennav_"  # packages that became a part of Nav2 after Humble
 _SHOWN: Final = 3  # of many that are equally wrong
 _REFUSED: Final = "bt_navigator refuses to configure"
 _COMMENT: Final = re.compile("#.*")

@@ -1,8 +1,8 @@
 """The trees that bt_navigator creates, and the files that it reads for them.
 
 One invariant: a file or folder that is not on this machine is an error only if the package that should have it is
-installed here, and a warning if its package is in the workspace, or a relative path leads to no file of the project:
-what a launch file or a build puts in its place is not known.
+installed here.  It is a warning if its package is in the workspace, or if a relative path leads to no file of the
+project, as a launch file or a build may put another one in its place.
 """
 
 from __future__ import annotations
@@ -36,10 +36,10 @@ class Located(Record):
     """A file or folder that parameters name.
 
     Attributes:
-        named: as it is written, and where; None: it counts because nothing is written in the parameters.
-        path: where it is; None if it is not here.
-        problem: why it is not here, for a message; empty if nothing is wrong with that.
-        severity: how sure it is that it is not on the robot either.
+        named: its name in the parameters, and where; None for the default.
+        path: None if it is not on this machine.
+        problem: the reason why it is not here, for a message; empty if that is no mistake.
+        severity: of the problem, by how certain it is that the robot lacks it too.
     """
 
     named: ParameterText | None
@@ -54,7 +54,7 @@ class SkippedFile(Record):
     Attributes:
         place: of its first tree, or of the one that another file has too.
         id: of that tree, and where it is in the other file; None: no tree has an ID.
-        loses: whether that makes a difference: it has a tree that no other file has, or either file may be skipped.
+        loses: whether that has an effect: it has a tree that no other file has, or either file may be skipped.
         ids: of all its trees.
     """
 
@@ -73,7 +73,7 @@ class Load(Record):
         tree: the file with the tree; None if an ID names it.
         main: that ID.
         files: that it registers, in order.
-        skipped: files that it passes over, with why.
+        skipped: files that it passes over, with the reasons.
         refused: files that keep it from loading anything: nothing says which of their trees is the main one; the
             place is that of the second tree.
         folders: that it searches.
@@ -262,7 +262,7 @@ def _stem(path: str) -> str:
 
 def goals_in(workspace: Workspace) -> Iterator[tuple[str, Place]]:
     """The trees that nodes of Nav2 name for the goals that they send, in the files that a program registers, each with
-    its place; what an entry names is not known, nor what scripts and other programs send."""
+    its place.  The names in entries, and the goals of scripts and other programs, are unknown."""
     for path in workspace.registered:
         file = workspace.files[path]
         for entry, use in file.uses if TREE_OF_GOAL in file.text else ():

@@ -32,7 +32,7 @@ from btq_lang.util.text import Span
 
 
 def file_findings(parameters: Parameters) -> Iterator[Diagnostic]:
-    """What keeps bt_navigator from finding its parameters, in any distribution."""
+    """Keys with which bt_navigator does not find its parameters, in any distribution."""
     for wrong, right in parameters.misspelt:
         message = f"unknown key `{wrong.text}`{did_you_mean((right,))}"
         notes = ("no node that is given this file starts",) if right != NODE else ()
@@ -43,7 +43,7 @@ def file_findings(parameters: Parameters) -> Iterator[Diagnostic]:
 
 
 def distribution_unknown(parameters: Parameters) -> Diagnostic:
-    """Says that nothing tells for which distribution a file is."""
+    """The diagnostic for a file whose distribution is unknown."""
     choices = ", ".join(f'"nav2-{distribution}"' for distribution in DISTRIBUTIONS)
     message = "the parameters of bt_navigator do not tell for which distribution of ROS 2 they are"
     notes = (f"write `nodes = [...]` with one of {choices} into btq.toml",)
@@ -82,7 +82,7 @@ def _mistyped(parameters: Parameters, distribution: str) -> Iterator[Diagnostic]
 
 
 def _may_be(expected: str, value: YamlValue) -> bool:
-    """Whether ROS 2 reads a value as this type; or nothing, or what a launch file puts in its place."""
+    """Whether ROS 2 reads a value as a type; an empty value, or one that a launch file replaces, may be of any."""
     if value.text is None:
         return expected == STRINGS
     if "$(" in value.text or (value.is_plain and value.text in ("", "~", "null")):
@@ -126,7 +126,7 @@ class OwnCode(Record):
 
 
 def unknown_parameters(parameters: Parameters, distribution: str, own: OwnCode) -> Iterator[Diagnostic]:
-    """The parameters that nothing reads, each with what may be meant; of a section that is unknown, only its name."""
+    """The parameters that nothing reads, each with suggestions; of an unknown section only its name is reported."""
     names = {name.removeprefix("*") for name, row in PARAMETERS.items() if distribution[0] in row.of}
     names |= {name for name, letters in OTHER_PARAMETERS.items() if distribution[0] in letters}
     navigators = {*NAVIGATORS, *parameters.navigators}
@@ -137,7 +137,7 @@ def unknown_parameters(parameters: Parameters, distribution: str, own: OwnCode) 
         if parameters.row(name) is not None or section in names or (is_below and not point):
             continue
         if point and not is_below and section in parameters.values:
-            continue  # which is what is unknown
+            continue  # the section itself is reported
         wrong, candidates = (f".{rest}", names) if is_below else (section, names | navigators)
         likely = [
             candidate

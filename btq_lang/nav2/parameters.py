@@ -1,4 +1,4 @@
-"""What a parameter file says of bt_navigator, and of which distribution it is.
+"""The parameters of bt_navigator in a file, and the distribution that they are for.
 
 One invariant: a parameter is found as ROS 2 finds it: below `bt_navigator`, in a namespace or not, or below `/**`, as
 `a: b:` or as `a.b:`; the last one counts.
@@ -135,7 +135,7 @@ class Parameters(Record):
         return outside_entries(distribution, None if codes is None else tuple(code.text for code in codes), renamed)
 
     def row(self, name: str) -> str | None:
-        """The row of a parameter in the table; None: it is not one of Nav2."""
+        """The row of a parameter in the table; None if it is not one of Nav2."""
         navigator, _, rest = name.partition(".")
         row_name = f"*.{rest}" if rest and navigator in (*NAVIGATORS, *self.navigators) else name
         return row_name if row_name in PARAMETERS else None
@@ -175,7 +175,7 @@ def read_parameters(text: str) -> Parameters:
 
 
 def _nodes(top: YamlValue) -> Iterator[tuple[YamlValue, YamlValue]]:
-    """The names of nodes with their parameters, whatever the namespaces around them."""
+    """The names of nodes with their parameters, in any namespaces."""
     around = reached([top], lambda value: [below for _, below in value.entries if below.get(_PARAMETERS) is None])
     for key, below in (entry for value in around for entry in value.entries):
         if (parameters := below.get(_PARAMETERS)) is not None:
@@ -183,7 +183,7 @@ def _nodes(top: YamlValue) -> Iterator[tuple[YamlValue, YamlValue]]:
 
 
 def _misspelt(top: YamlValue, has_no_node: bool) -> Iterator[tuple[ParameterText, str]]:
-    """The keys that are nearly those around the parameters of bt_navigator, each with what is meant."""
+    """The misspelt keys around the parameters of bt_navigator, each with the right one."""
 
     def inside(value: YamlValue) -> list[YamlValue]:
         entries = [(key.text or "", below) for key, below in value.entries if below.get(_PARAMETERS) is None]
@@ -197,7 +197,7 @@ def _misspelt(top: YamlValue, has_no_node: bool) -> Iterator[tuple[ParameterText
 
 
 def _flat(node: YamlValue) -> Iterator[tuple[tuple[YamlValue, ...], YamlValue]]:
-    """The parameters of a node, and those one level below: there are no others that matter."""
+    """The parameters of a node, and those one level below; deeper ones do not matter."""
     for key, value in node.entries:
         yield (key,), value
         for name, below in value.entries:

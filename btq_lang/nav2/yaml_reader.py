@@ -18,7 +18,7 @@ class YamlValue:
     """A value: a scalar, a list or a mapping.
 
     Attributes:
-        span: without what a list or mapping in lines of its own is followed by.
+        span: of a list or mapping on lines of its own, up to the end of its last value.
         text: of a scalar; None for the others.
         is_plain: whether a scalar has no quotes, so that `true` and `1` are not strings.
         items: of a list.
@@ -40,7 +40,7 @@ class YamlValue:
 
 
 class YamlProblem(Exception):
-    """What makes a text no YAML, and where: an offset."""
+    """Why a text is not YAML, and the offset of the mistake."""
 
     def __init__(self, message: str, offset: int) -> None:
         super().__init__(message)
@@ -129,7 +129,7 @@ class _Builder:
         return None
 
     def _merged(self, entries: list[tuple[YamlValue, YamlValue]]) -> list[tuple[YamlValue, YamlValue]]:
-        """The entries of a mapping after those that `<<` names, of which each key is kept once."""
+        """The entries that `<<` names, each key once, and then the entries of the mapping itself."""
         merged: dict[str | None, tuple[YamlValue, YamlValue]] = {}
         for _, value in [entry for entry in entries if entry[0].text == "<<" and entry[0].is_plain]:
             for mapping in reversed(value.items or [value]):  # the first of several counts
