@@ -1,7 +1,7 @@
 """The clause for a sentence about a bound: "shall take at most 30 sec" is `takes at most 30 s`.
 
 One invariant: there is a result only if the sentence has one number with a unit, one comparison, and no word that could
-change its meaning (and, or, if, per, average …).  This module knows no files; signals are arguments.
+change its meaning (and, or, if, per, average …).  It looks at no files; signals are arguments.
 """
 
 from __future__ import annotations

@@ -39,7 +39,7 @@ class Located(Record):
         named: its name in the parameters, and where; None for the default.
         path: None if it is not on this machine.
         problem: the reason why it is not here, for a message; empty if that is no mistake.
-        severity: of the problem, by how certain it is that the robot lacks it too.
+        severity: of the problem; an error if the robot certainly lacks it too.
     """
 
     named: ParameterText | None
