@@ -194,7 +194,7 @@ def _new_in_target(
     found: list[_Finding], moved: ParameterFile, workspace_of: Callable[[Factory], Workspace]
 ) -> Iterator[_Finding]:
     """What the target refuses, or reads otherwise, and the distribution that the parameters are for does not."""
-    from btq_lang.checks.moved_engine import is_severe, of_target  # few checks have a target
+    from btq_lang.checks.target_changes import is_severe, of_target  # few checks have a target
 
     known = {_key(each) for each in found if is_severe(each[1])}
     for path, each in _found(moved, workspace_of):

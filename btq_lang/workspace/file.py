@@ -149,6 +149,11 @@ class File:
         return self.origin is not None and self.origin.nodes is not None
 
     @property
+    def cpp_nodes(self) -> Mapping[str, CppNode]:
+        """The nodes that it registers, by ID, if it is C++; empty for any other file."""
+        return (self.origin.nodes if self.origin is not None else None) or {}
+
+    @property
     def is_understood(self) -> bool:
         """Whether a name that is not in this file's tree is not in the file."""
         return self.origin.is_complete if self.origin else self.is_btq
