@@ -53,7 +53,7 @@ def said_elsewhere(source: ExportSource) -> Mapping[int, tuple[str, ...]]:
     for applied in requirements(source.workspace, source.path).applied:
         node = applied.node
         if node is not None and applied.how != "satisfies":
-            line = _defined(source, applied.requirement.name, applied.given)
+            line = _defined(source, applied.requirement.name, applied.argument_list)
             found[id(node.node)] = (*found.get(id(node.node), ()), line)
     return found
 

@@ -172,9 +172,7 @@ def item_tokens(file: File, offset: int) -> Sequence[Token]:
     tokens: list[Token] = []
     for start, end in _stretches(file, offset):
         if tokens:
-            tokens.append(
-                Token(NEWLINE, start, "")
-            )  # a line without a line end, as in open brackets, ends all the same
+            tokens.append(Token(NEWLINE, start, ""))  # a line without a line end, as in open brackets, ends here too
         cut = tokens_of(file.text[start:end])
         tokens += [Token(token.kind, token.start + start, token.text) for token in cut] if start else cut
     return tokens

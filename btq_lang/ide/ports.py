@@ -64,11 +64,8 @@ def cpp_place(workspace: Workspace, path: str, node: str, port: str = "") -> tup
     registration = next((nodes[node] for nodes in registered if nodes is not None and node in nodes), None)
     if registration is None:
         return None
-    place = (
-        next((each.place for each in registration.ports if each.name == port), None)
-        if port
-        else registration.class_place
-    )
+    places = (each.place for each in registration.ports if each.name == port)
+    place = next(places, None) if port else registration.class_place
     if place is None:
         return None
     if place.path not in workspace.files or not workspace.files[place.path].is_cpp:

@@ -153,22 +153,18 @@ def undeclared(workspace: Workspace, path: str, kind: Kind, what: What) -> Itera
 
 def signals(workspace: Workspace, path: str) -> Iterator[Proposal]:
     for definition, include in defined(workspace, path, Kind.SIGNAL):
-        item = definition.symbol.target
+        item, name = definition.symbol.target, definition.symbol.name
         unit = item.unit.text if isinstance(item, Signal) and item.unit else ""
-        yield Proposal(
-            definition.symbol.name, "signal", unit, definition.symbol.name, None, "", definition.symbol.name, include
-        )
+        yield Proposal(name, "signal", unit, name, None, "", name, include)
 
 
 def _contexts(workspace: Workspace, path: str) -> Iterator[Proposal]:
     for definition, include in defined(workspace, path, Kind.CONTEXT):
-        item = definition.symbol.target
+        item, name = definition.symbol.target, definition.symbol.name
         shown = ""
         if isinstance(item, Context) and item.condition is not None:
             shown = workspace.files[definition.path].on_one_line(definition.entry, item.condition)
-        yield Proposal(
-            definition.symbol.name, "context", shown, definition.symbol.name, None, "", definition.symbol.name, include
-        )
+        yield Proposal(name, "context", shown, name, None, "", name, include)
 
 
 def operands(
@@ -191,13 +187,8 @@ def parameters(workspace: Workspace, path: str, requirement: str) -> Iterator[Pr
     item = workspace.scope(path).target(Kind.REQUIREMENT, requirement)
     for parameter in item.parameters if isinstance(item, Requirement) else ():
         unit = parameter.unit.text if parameter.unit is not None else ""
-        yield Proposal(
-            parameter.name.text,
-            "parameter",
-            unit,
-            f"{parameter.name.text} = ",
-            f"{parameter.name.text} = ${{0:1 {unit}}}",
-        )
+        name = parameter.name.text
+        yield Proposal(name, "parameter", unit, f"{name} = ", f"{name} = ${{0:1 {unit}}}")
 
 
 def tags(workspace: Workspace, path: str) -> Iterator[Proposal]:
