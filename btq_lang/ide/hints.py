@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from btq_lang.btcpp.side_elements import said_in_xml
+from btq_lang.btcpp.side_elements import element_descriptions
 from btq_lang.btcpp.side_file import side_path
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.ide import describe
@@ -128,7 +128,7 @@ def _verdict_lenses(workspace: Workspace, path: str, evidence: ProjectVerdicts |
 def _build_lenses(workspace: Workspace, path: str, side: str | None) -> Iterator[Lens]:
     """How many requirements and qualities each element of XML has by its build; what is wrong with its side file."""
     file = workspace.files[path]
-    built = said_in_xml(workspace, path, side)
+    built = element_descriptions(workspace, path, side)
     if built.problem:
         yield Lens(Span(0, 0), f"{side_path(path.rpartition('/')[2])} {built.problem}", ())
     for tag, lines in sorted(built.lines.items()):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from btq_lang.btcpp.side_elements import said_in_xml
+from btq_lang.btcpp.side_elements import element_descriptions
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.language import phrase_at
 from btq_lang.ide import describe
@@ -57,7 +57,7 @@ def _written_by_build(workspace: Workspace, reference: ReferenceAt, side: str | 
     if file.origin is None:
         return ""
     tag = file.origin.text.rfind("<", 0, file.on_disk(reference.span).start) + 1
-    lines = said_in_xml(workspace, reference.path, side).lines.get(tag, ())
+    lines = element_descriptions(workspace, reference.path, side).lines.get(tag, ())
     return "\n".join(("Written by `btq build`:\n", *(f"* {line}" for line in lines))) if lines else ""
 
 
