@@ -19,6 +19,7 @@ from btq_lang.btcpp.manual_edits import node_guards
 from btq_lang.btcpp.marks import MARK
 from btq_lang.catalog.units import Unit
 from btq_lang.diagnostics.model import Place
+from btq_lang.requirements import model
 from btq_lang.requirements.model import Applied, InContext, NodeTarget, ResolvedRequirement, ResolvedSignal
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.requirements.resolve import requirements
@@ -281,7 +282,7 @@ def _plain(value: object, place: _Places) -> Json:
         return {"is": "incontext", "name": value.name}
     record: dict[str, Json] = {}
     if not isinstance(value, ResolvedRequirement | ResolvedSignal):
-        record["is"] = type(value).__name__.lower()
+        record["is"] = _KINDS[type(value)]
     for field in fields_of(value):
         part = getattr(value, field)
         if part is None or part == () or field in _LEFT_OUT or (field == "every" and not part):
@@ -295,3 +296,33 @@ def _plain(value: object, place: _Places) -> Json:
 
 _LEFT_OUT: Final = frozenset(("place", "path", "item"))
 _RENAMED: Final = {"name": "id", "action": "on_violation", "method": "verified_by"}
+# The format keeps these names, whatever the classes are called.
+_KINDS: Final[dict[type, str]] = {
+    model.NodeTarget: "target",
+    model.MissionRun: "mission",
+    model.Quantity: "value",
+    model.Flag: "flag",
+    model.TextValue: "text",
+    model.SignalRead: "read",
+    model.ResolvedParameter: "parameter",
+    model.Aggregate: "aggregate",
+    model.Minus: "minus",
+    model.Arithmetic: "arithmetic",
+    model.ResolvedCase: "case",
+    model.ResolvedTable: "table",
+    model.Compare: "compare",
+    model.All: "all",
+    model.Any: "any",
+    model.Negation: "not",
+    model.Running: "running",
+    model.ClassicScript: "script",
+    model.Limit: "limit",
+    model.ResolvedEvent: "event",
+    model.Interval: "span",
+    model.DurationSum: "total",
+    model.EveryNode: "every",
+    model.ResolvedClaim: "claim",
+    model.ResolvedScope: "scope",
+    model.ResolvedOdds: "odds",
+    model.ResolvedWindow: "window",
+}
