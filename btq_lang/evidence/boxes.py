@@ -96,7 +96,7 @@ def _bounds(demand: Demand) -> tuple[Quantity, ...]:
 def _key(applied: Applied) -> _Key:
     """What is the same in all missions that have the node."""
     where = id(applied.node.node) if applied.node is not None else applied.requirement.claims[0].text
-    return applied.requirement.name, applied.given, where
+    return applied.requirement.name, applied.argument_list, where
 
 
 _HELD: Final = {SATISFIED: 1.0, VIOLATED: 0.0}

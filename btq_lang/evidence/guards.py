@@ -12,7 +12,7 @@ from collections.abc import Collection, Mapping, Set
 from itertools import takewhile
 from typing import Final
 
-from btq_lang.btcpp.around import EVALUATING, LIMITING, WATCHING
+from btq_lang.btcpp.wrappers import EVALUATING, LIMITING, WATCHING
 from btq_lang.catalog.verbs import VERBS, words
 from btq_lang.evidence.model import ROOT, Activation, LoggedTree, Moment
 from btq_lang.util.record import Record

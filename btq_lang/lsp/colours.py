@@ -65,7 +65,7 @@ def register(server: Server) -> None:
         if before is None or before[0] != params.previous_result_id:
             return whole(number, found)
         changes = features.colours.delta(before[1], found)
-        edits = [f'{{"start": {one.start}, "deleteCount": {one.gone}, "data": {one.come}}}' for one in changes]
+        edits = [f'{{"start": {one.start}, "deleteCount": {one.delete_count}, "data": {one.data}}}' for one in changes]
         return Json(f'{{"resultId": "{number}", "edits": [{", ".join(edits)}]}}')
 
     @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_RANGE, legend, _NO_TOKENS)

@@ -25,7 +25,7 @@ SHOW_REFERENCES = "btq.showReferences"  # a command of the editor, which opens i
 def register(server: Server) -> None:
     convert = server.convert
 
-    def item(workspace: Workspace, tree: features.calls.TreeItem) -> types.CallHierarchyItem:
+    def item(workspace: Workspace, tree: features.navigation.TreeItem) -> types.CallHierarchyItem:
         return types.CallHierarchyItem(
             tree.name,
             types.SymbolKind.Class,
@@ -37,27 +37,27 @@ def register(server: Server) -> None:
 
     def calls(
         given: types.CallHierarchyItem,
-        feature: Callable[[Workspace, features.calls.TreeItem], tuple[features.calls.TreeCall, ...]],
+        feature: Callable[[Workspace, features.navigation.TreeItem], tuple[features.navigation.TreeCall, ...]],
     ) -> Iterator[tuple[types.CallHierarchyItem, list[types.Range]]]:
         data = given.data if isinstance(given.data, dict) else {}
         workspace = server.session.workspace_of(str(data.get("path")))
         if workspace is not None:
-            tree = features.calls.TreeItem(given.name, data["path"], Span(*data["span"]), Span(*data["name"]))
+            tree = features.navigation.TreeItem(given.name, data["path"], Span(*data["span"]), Span(*data["name"]))
             for call in feature(workspace, tree):
                 yield item(workspace, call.tree), [convert.range(workspace, call.path, span) for span in call.places]
 
     @server.feature(types.TEXT_DOCUMENT_PREPARE_CALL_HIERARCHY)
     def prepare(params: types.CallHierarchyPrepareParams) -> list[types.CallHierarchyItem] | None:
-        workspace, _, tree = server.ask(params, features.calls.prepare_calls, reads=True)
+        workspace, _, tree = server.ask(params, features.navigation.prepare_calls, reads=True)
         return [item(workspace, tree)] if tree else None
 
     @server.feature(types.CALL_HIERARCHY_INCOMING_CALLS)
     def incoming(params: types.CallHierarchyIncomingCallsParams) -> list[types.CallHierarchyIncomingCall]:
-        return [types.CallHierarchyIncomingCall(*call) for call in calls(params.item, features.calls.callers)]
+        return [types.CallHierarchyIncomingCall(*call) for call in calls(params.item, features.navigation.callers)]
 
     @server.feature(types.CALL_HIERARCHY_OUTGOING_CALLS)
     def outgoing(params: types.CallHierarchyOutgoingCallsParams) -> list[types.CallHierarchyOutgoingCall]:
-        return [types.CallHierarchyOutgoingCall(*call) for call in calls(params.item, features.calls.called)]
+        return [types.CallHierarchyOutgoingCall(*call) for call in calls(params.item, features.navigation.called)]
 
     @server.feature(types.TEXT_DOCUMENT_INLAY_HINT, otherwise=[])
     def hints(params: types.InlayHintParams) -> list[types.InlayHint]:

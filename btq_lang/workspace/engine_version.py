@@ -2,7 +2,7 @@
 
 One invariant: what a project says counts before what a text says of itself, and what a text declares before the words
 in it; but no text is for a version that refuses its words.  Not known here: how words are found in XML
-(`btcpp/signs.py`), and which distribution of Nav2 a file is for.
+(`btcpp/version3.py`), and which distribution of Nav2 a file is for.
 """
 
 from __future__ import annotations

@@ -242,8 +242,8 @@ def patched(data: list[int], changes: list[TokenEdit]) -> list[int]:
     patched, end = [], 0
     for one in changes:
         assert end <= one.start
-        patched += [*data[end : one.start], *one.come]
-        end = one.start + one.gone
+        patched += [*data[end : one.start], *one.data]
+        end = one.start + one.delete_count
     assert end <= len(data)
     return [*patched, *data[end:]]
 
