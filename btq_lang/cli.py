@@ -12,7 +12,12 @@ import os
 import sys
 from collections.abc import Callable, Sequence
 from io import BytesIO, TextIOWrapper
-from typing import Any
+from typing import TYPE_CHECKING, Any, NoReturn
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+
+    from btq_lang.projects.messages import CommandOutput
 
 CLEAN, FINDINGS, TROUBLE = 0, 1, 2
 _SYMBOLS_LIKE_OPTIONS = ("->",)
@@ -77,12 +82,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         unknown = []
     if unknown:
         command.error(f"unrecognized arguments: {' '.join(unknown)}")
-    run = _command(name)
+    if name == "lsp":
+        return _serve(options)
+    run, record = _command(name)
     if getattr(options, "config", None) is not None:
         from btq_lang.commands.configuring import configured
 
         run = configured(run, options.config)
-    return _finish(name, run, options)
+    return _finish(name, run, record(**{field: getattr(options, field) for field in record.__match_args__}))
 
 
 def _readable(error: UnicodeError) -> tuple[str, int]:
@@ -100,31 +107,32 @@ def _plain_check(paths: Sequence[str]) -> int:
 
     gc.freeze()
     gc.enable()
-    return _finish("check", run, CheckOptions(paths))
+    return _finish("check", run, CheckOptions(paths or (".",)))
 
 
-def _command(name: str) -> Callable[[Any], int]:
-    """The function that runs a command."""
-    if name == "lsp":
-        return _serve
+def _command(name: str) -> tuple[Callable[[Any, CommandOutput], int], Any]:
+    """The function that runs a command, and the record of its options, whose fields argparse has by the same names."""
     from importlib import import_module
 
-    run: Callable[[Any], int] = import_module(f"btq_lang.commands.{_MODULES.get(name, name)}").run
-    return run
+    module = import_module(f"btq_lang.commands.{_MODULES.get(name, name)}")
+    return module.run, getattr(module, module.run.__annotations__["options"])
 
 
-def _serve(options: Any) -> int:
+def _serve(options: Namespace) -> NoReturn:
     """`btq lsp`: the server, which `btq-lsp` starts too."""
+    from btq_lang.projects.options import ServerOptions
     from btq_lang.server import serve  # the protocol's types take longer to import than most commands to run
 
-    raise SystemExit(serve(options))  # standard output was the editor's and is closed: it must not be flushed
+    # Standard output was the editor's and is closed: it must not be flushed.
+    raise SystemExit(serve(ServerOptions(options.tcp, options.log)))
 
 
-def _finish(name: str, run: Callable[[Any], int], options: object) -> int:
+def _finish(name: str, run: Callable[[Any, CommandOutput], int], options: object) -> int:
+    from btq_lang.commands.output import Terminal
     from btq_lang.projects.options import Refused
 
     try:
-        code = run(options)
+        code = run(options, Terminal())
         sys.stdout.flush()
     except Refused as refused:
         for reason in refused.args:

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import json
 import os
-import sys
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
@@ -23,6 +22,7 @@ from btq_lang.workspace.loader import LoadProblem, absolute, read, shown, write_
 
 if TYPE_CHECKING:
     from btq_lang.projects.files import FileGroup
+    from btq_lang.projects.messages import CommandOutput
     from btq_lang.projects.options import CheckOptions
     from btq_lang.render import Finding
 
@@ -31,7 +31,11 @@ if TYPE_CHECKING:
 
 
 def compared(
-    findings: Sequence[Finding], groups: Iterable[FileGroup], options: CheckOptions, is_whole: bool
+    findings: Sequence[Finding],
+    groups: Iterable[FileGroup],
+    options: CheckOptions,
+    messages: CommandOutput,
+    is_whole: bool,
 ) -> tuple[list[Finding], int, tuple[LoadProblem, ...]]:
     """The findings that are not in the baseline of the command line, or else of the project of their file; the number
     of the others; and what is wrong with baselines.  With `--update-baseline`, they are written first if `is_whole`:
@@ -47,7 +51,7 @@ def compared(
         known, problem = _read(path, options.update_baseline)
         if problem is None and options.update_baseline and is_whole:
             mine = Counter(_identity(each) for each in findings if _may_be_known(each, files))
-            known, problem = _updated(path, known, mine, files)
+            known, problem = _updated(path, known, mine, files, messages)
         if problem is not None:
             problems.append(problem)
         else:
@@ -87,7 +91,9 @@ def _read(path: str, may_be_absent: bool) -> tuple[Known, LoadProblem | None]:
     return known, None
 
 
-def _updated(path: str, known: Known, mine: Known, files: set[str]) -> tuple[Known, LoadProblem | None]:
+def _updated(
+    path: str, known: Known, mine: Known, files: set[str], messages: CommandOutput
+) -> tuple[Known, LoadProblem | None]:
     """The baseline after an update; files that were not checked keep their findings as long as they are there."""
     others = {key: count for key, count in known.items() if key[0] not in files and os.path.exists(key[0])}
     after = Counter(others) + mine
@@ -97,7 +103,7 @@ def _updated(path: str, known: Known, mine: Known, files: set[str]) -> tuple[Kno
             write_whole(path, _text(after, os.path.dirname(path)))
     except OSError as error:
         return known, LoadProblem(path, f"cannot be written: {error.strerror}")
-    print(f"{shown(path)}: {added} added, {gone} removed, {after.total() - added} kept", file=sys.stderr)
+    messages.remark(f"{shown(path)}: {added} added, {gone} removed, {after.total() - added} kept")
     return after, None
 
 

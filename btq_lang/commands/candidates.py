@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from argparse import Namespace
 from collections.abc import Iterator, Mapping, Sequence
 from glob import escape, glob
 from typing import TYPE_CHECKING
@@ -52,10 +51,10 @@ def candidates(requested: Sequence[str], logs: Sequence[str], problems: list[str
     return found
 
 
-def strict_problem(options: Namespace, missions: Sequence[Candidate]) -> list[str]:
+def strict_problem(is_strict: bool, missions: Sequence[Candidate]) -> list[str]:
     """Why not every requirement can be satisfied: there is no mission."""
-    is_known = any(not isinstance(each, OwnTree) for each in missions)
-    return [] if is_known or not options.strict else [f"--strict: {NO_MISSION}"]
+    has_mission = any(not isinstance(mission, OwnTree) for mission in missions)
+    return [] if has_mission or not is_strict else [f"--strict: {NO_MISSION}"]
 
 
 def _of_logs(logs: Sequence[str], problems: list[str]) -> Sequence[Candidate]:

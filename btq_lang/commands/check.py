@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 
 from btq_lang.checks import check, check_each
 from btq_lang.checks.includes import is_reported_beside
-from btq_lang.commands.output import FOR_PEOPLE, is_coloured, tell
+from btq_lang.commands.output import FOR_PEOPLE, is_coloured
 from btq_lang.commands.reporting import form_of, report_problem, write_report
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.projects.files import STDIN, FileGroup, Files, no_mission_below, usage_problem
-from btq_lang.projects.options import Refused, refuse
+from btq_lang.projects.messages import CommandOutput
+from btq_lang.projects.options import CheckOptions, Refused, refuse
 from btq_lang.render import Finding, Report
 from btq_lang.util.record import replace
 from btq_lang.util.text import counted
@@ -26,27 +27,26 @@ from btq_lang.workspace.workspace import Workspace
 if TYPE_CHECKING:
     from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.projects.nav2_factory import ParameterFile
-    from btq_lang.projects.options import CheckOptions
 
 _ORDER = tuple(Severity)
 _FAILS = (Severity.ERROR, Severity.WARNING)
 
 
-def run(options: CheckOptions) -> int:
+def run(options: CheckOptions, messages: CommandOutput) -> int:
     """Check once, or again and again with `--watch`."""
     refuse(_usage_problem(options))
     if options.show_settings:
         from btq_lang.commands.show_settings import show_settings
 
         given = {"select": _rules(options.select), "ignore": _rules(options.ignore), "baseline": options.baseline}
-        return show_settings(options.paths, given)
+        return show_settings(options.paths, given, messages)
     files = Files()
-    code, watched = _check(options, files)
+    code, watched = _check(options, files, messages)
     if options.watch:
         from btq_lang.commands.watch_mode import run_on_changes
 
         suffixes = (*SUFFIXES, *XML_SUFFIXES)
-        run_on_changes(lambda: _check(options, files)[1], options.paths, watched, suffixes)
+        run_on_changes(lambda: _check(options, files, messages)[1], options.paths, watched, suffixes)
     return code
 
 
@@ -74,7 +74,7 @@ def _writing_problem(options: CheckOptions) -> str | None:
     return None
 
 
-def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
+def _check(options: CheckOptions, files: Files, messages: CommandOutput) -> tuple[int, tuple[str, ...]]:
     """Check once; returns the exit code and the files that another run depends on."""
     others = tuple(path for path in options.paths if _is_other(path))
     refused: tuple[LoadProblem, ...] = ()
@@ -96,35 +96,37 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
         parameter_files = _parameter_files(files, options)
         groups = _chosen(groups, parameter_files, options)
         if options.show_files:
-            tell(problems)
-            _show_files(groups, parameter_files, files)
+            messages.problems(problems)
+            _show_files(groups, parameter_files, files, messages)
             return 2 if problems or (empty and not parameter_files) else 0, ()
         if options.diff:
-            tell(problems)
-            code = _show_fixes(groups, options, bool(problems))
+            messages.problems(problems)
+            code = _show_fixes(groups, options, bool(problems), messages)
         else:
             mended = 0
             if options.fix:
                 from btq_lang.commands.fixing import fix, write_fixes
 
                 after, mended = fix(groups, lambda diagnostic: _is_wanted(diagnostic, options))
-                groups, trouble = write_fixes(groups, after, files.stdin)
+                groups, trouble = write_fixes(groups, after, files.stdin, messages)
                 problems += trouble
                 mended = 0 if trouble else mended  # fixes that could not be written do not count
-            tell(problems)
+            messages.problems(problems)
             why_empty = None if parameter_files else empty
-            code = _report(groups, parameter_files, options, files, problems, mended, why_empty)
+            code = _report(groups, parameter_files, options, files, problems, mended, why_empty, messages)
     except Refused as reason:
-        print(f"btq check: {reason}", file=sys.stderr)
+        messages.remark(f"btq check: {reason}")
         code = 2
     return code, (*_watched(groups), *files.project_files, *(each.path for each in files.parameter_files))
 
 
-def _show_files(groups: Iterable[FileGroup], parameter_files: Iterable[ParameterFile], files: Files) -> None:
+def _show_files(
+    groups: Iterable[FileGroup], parameter_files: Iterable[ParameterFile], files: Files, messages: CommandOutput
+) -> None:
     """`--show-files`: print what would be checked."""
     missions = (path for group in groups for path in (*group.given, *group.cpp))
     for path in sorted({*missions, *files.project_files, *(each.path for each in parameter_files)}):
-        print(shown(path))
+        messages.result(shown(path))
 
 
 def _is_other(path: str) -> bool:
@@ -141,6 +143,7 @@ def _report(
     problems: tuple[LoadProblem, ...],
     mended: int,
     empty: str | None,
+    messages: CommandOutput,
 ) -> int:
     """Check, leave out what is known, and write the report; returns the exit code.
 
@@ -172,11 +175,11 @@ def _report(
     if _has_baseline(every, options):
         from btq_lang.commands.baseline import compared
 
-        findings, known, trouble = compared(findings, every, options, is_whole=not problems)
-        tell(trouble)
+        findings, known, trouble = compared(findings, every, options, messages, is_whole=not problems)
+        messages.problems(trouble)
         problems += trouble
     if options.add_ignore is not None:
-        return _add_ignores(groups, findings, options, files)
+        return _add_ignores(groups, findings, options, files, messages)
     if options.target is not None:
         from btq_lang.commands.target import together
 
@@ -184,9 +187,9 @@ def _report(
     why_empty = empty or (f"nothing has changed since {options.since}" if options.since else None)
     checked += files.project_files
     report = Report(tuple(findings), texts, checked, problems, why_empty, known, options.quiet)
-    write_report(report, options, mended)
+    write_report(report, options, mended, messages)
     if empty and form_of(options, os.environ) not in FOR_PEOPLE:  # those have it in their summary
-        print(f"btq check: {empty}", file=sys.stderr)
+        messages.remark(f"btq check: {empty}")
     mistakes = [each for each in problems if each.path in files.project_files]
     if len(mistakes) < len(problems) or empty:
         return 2
@@ -244,18 +247,20 @@ def _has_baseline(checked: Iterable[FileGroup | ParameterFile], options: CheckOp
     return options.baseline is not None or any(each.project.baseline for each in checked)
 
 
-def _add_ignores(groups: tuple[FileGroup, ...], findings: list[Finding], options: CheckOptions, files: Files) -> int:
+def _add_ignores(
+    groups: tuple[FileGroup, ...],
+    findings: list[Finding],
+    options: CheckOptions,
+    files: Files,
+    messages: CommandOutput,
+) -> int:
     """`--add-ignore`: write the comments and check again."""
-    from copy import copy  # as all here only where it is needed
-
-    from btq_lang.commands.ignoring import add_ignores
+    from btq_lang.commands.ignoring import add_ignores  # as all here only where it is needed
 
     count, trouble = add_ignores(groups, findings, options.add_ignore or "")
-    tell(trouble)
-    print(f"Added {counted(count, 'comment')}", file=sys.stderr)
-    again = copy(options)
-    again.add_ignore = None
-    code, _ = _check(again, files)  # --add-ignore watches nothing
+    messages.problems(trouble)
+    messages.remark(f"Added {counted(count, 'comment')}")
+    code, _ = _check(replace(options, add_ignore=None), files, messages)  # --add-ignore watches nothing
     return 2 if trouble else code
 
 
@@ -289,14 +294,16 @@ def _watched(groups: Iterable[FileGroup]) -> tuple[str, ...]:
     return tuple(path for group in groups for path in group.watched)
 
 
-def _show_fixes(groups: tuple[FileGroup, ...], options: CheckOptions, has_problems: bool) -> int:
+def _show_fixes(
+    groups: tuple[FileGroup, ...], options: CheckOptions, has_problems: bool, messages: CommandOutput
+) -> int:
     """`--diff`: print what `--fix` would change; returns the exit code."""
     from btq_lang.commands.fixing import fix, show_fixes
 
     after, mended = fix(groups, lambda diagnostic: _is_wanted(diagnostic, options))
-    is_changed = show_fixes(groups, after, is_coloured(options, sys.stdout.isatty()))
+    is_changed = show_fixes(groups, after, is_coloured(options.color, sys.stdout.isatty()), messages)
     if mended:
-        print(f"Would fix {counted(mended, 'problem')}", file=sys.stderr)
+        messages.remark(f"Would fix {counted(mended, 'problem')}")
     return 2 if has_problems else int(is_changed and not options.exit_zero)
 
 

@@ -6,17 +6,18 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from btq_lang.projects.messages import CommandOutput
 from btq_lang.projects.options import refuse
 from btq_lang.workspace.loader import absolute, find_project, read, use_project_file
 
 
-def configured(run: Callable[[Any], int], config: str) -> Callable[[Any], int]:
+def configured(run: Callable[[Any, CommandOutput], int], config: str) -> Callable[[Any, CommandOutput], int]:
     """The function that runs a command with a project file."""
 
-    def run_configured(options: Any) -> int:
+    def run_configured(options: Any, messages: CommandOutput) -> int:
         refuse(_problem(config))
         with _using(absolute(config)):
-            return run(options)
+            return run(options, messages)
 
     return run_configured
 

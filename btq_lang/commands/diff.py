@@ -5,8 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import sys
-from argparse import Namespace
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 
 from btq_lang.btcpp.as_built import as_built
 from btq_lang.btcpp.manual_edits import ADVICE
@@ -18,36 +17,53 @@ from btq_lang.diff import DiskPlace, as_json, as_markdown, as_text
 from btq_lang.diff.comparison import NOWHERE, MissionComparison, Side, UnmergedEdit, compared, without_made_models
 from btq_lang.projects.files import STDIN, FileGroup, Files
 from btq_lang.projects.git import Commit, revisions
+from btq_lang.projects.messages import CommandOutput
 from btq_lang.projects.opening import Disk
 from btq_lang.projects.options import Refused, refuse
 from btq_lang.render.colour import painter
-from btq_lang.util.record import replace
+from btq_lang.util.record import Record, replace
 from btq_lang.workspace.file import SUFFIXES, File, is_of_package
 from btq_lang.workspace.loader import LoadProblem, absolute, collect, find_project, read, shown
 
 
-def run(options: Namespace) -> int:
-    """Compare and print; returns 0: the same, 1: different, 2: the comparison failed."""
+class DiffOptions(Record):
+    """The options of `btq diff`.
+
+    Attributes:
+        git: the revisions to compare, as in `HEAD` or `main...HEAD`; None: the paths are the two missions.
+    """
+
+    paths: Sequence[str]
+    stdin_filename: str | None
+    git: str | None
+    format: str
+    color: str
+
+
+def run(options: DiffOptions, messages: CommandOutput) -> int:
+    """Compare; the exit code is 0: the same, 1: different, 2: the comparison failed."""
     comparisons = tuple(
-        _of_revisions(options) if options.git is not None else _of_paths(options.paths, options.stdin_filename)
+        _of_revisions(options.paths, options.git)
+        if options.git is not None
+        else _of_paths(options.paths, options.stdin_filename)
     )
     for comparison in comparisons:
         for side in (comparison.old, comparison.new):
-            _warn(side)
-    write_output(None, "".join(f"{line}\n" for line in _rendered(comparisons, options)), options.format)
+            _warn(side, messages)
+    write_output(messages, None, "".join(f"{line}\n" for line in _rendered(comparisons, options)), options.format)
     return int(any(comparison.changes for comparison in comparisons))
 
 
-def _rendered(comparisons: tuple[MissionComparison, ...], options: Namespace) -> Iterator[str]:
+def _rendered(comparisons: tuple[MissionComparison, ...], options: DiffOptions) -> Iterator[str]:
     if options.format == "json":
         return as_json.render(comparisons)
     if options.format == "markdown":
         return as_markdown.render(comparisons)
-    colour = is_coloured(options, sys.stdout.isatty())
+    colour = is_coloured(options.color, sys.stdout.isatty())
     return as_text.render(comparisons, painter(colour))
 
 
-def _warn(side: Side) -> None:
+def _warn(side: Side, messages: CommandOutput) -> None:
     """Warn about a mission that is compared only in part."""
     for path in side.paths:
         file = side.workspace.files[path]
@@ -56,12 +72,12 @@ def _warn(side: Side) -> None:
                 continue
             if side.workspace.included_by(path, include) is None:
                 message = f"includes `{include.path.text}`, which does not exist: its content is not compared"
-                print(f"btq: {side.shown(path)}: {message}", file=sys.stderr)
+                messages.remark(f"btq: {side.shown(path)}: {message}")
         if file.origin is not None and DESCRIPTION_MARK in file.source:
             message = "its requirements are missing: `btq build` wrote them to the .qreq.json that was beside it"
-            print(f"btq: {side.shown(path)}: {message}", file=sys.stderr)
+            messages.remark(f"btq: {side.shown(path)}: {message}")
         if error := _first_error(file):
-            print(f"btq: {side.shown(path)}:{error}; btq compares the rest", file=sys.stderr)
+            messages.remark(f"btq: {side.shown(path)}:{error}; btq compares the rest")
 
 
 def _first_error(file: File) -> str | None:
@@ -76,7 +92,7 @@ def _first_error(file: File) -> str | None:
 # ---- two files, two folders ----
 
 
-def _of_paths(paths: list[str], stdin_filename: str | None) -> Iterator[MissionComparison]:
+def _of_paths(paths: Sequence[str], stdin_filename: str | None) -> Iterator[MissionComparison]:
     if len(paths) != 2:
         raise Refused(
             f"expected two missions, found {len(paths)}; to compare revisions of one: btq diff --git HEAD FILE"
@@ -97,7 +113,7 @@ def _of_paths(paths: list[str], stdin_filename: str | None) -> Iterator[MissionC
         yield without_made_models(compared(sides[0].get(before, NOWHERE), sides[1].get(after, NOWHERE)))
 
 
-def _with_stdin(paths: list[str], stdin_filename: str | None) -> MissionComparison:
+def _with_stdin(paths: Sequence[str], stdin_filename: str | None) -> MissionComparison:
     """Compare a file with standard input."""
     other = next((path for path in paths if path != STDIN), None)
     if other is None:
@@ -184,7 +200,7 @@ def _xml_below(folder: str) -> tuple[str, ...]:
     return tuple(path for path, xml in texts.items() if is_mission(xml) and not is_built_of(xml, sources))
 
 
-def _groups(paths: list[str], stdin_filename: str | None = None) -> tuple[FileGroup, ...]:
+def _groups(paths: Sequence[str], stdin_filename: str | None = None) -> tuple[FileGroup, ...]:
     groups, problems = Files().groups(paths, stdin_filename)
     refuse(*problems)
     return groups
@@ -193,11 +209,11 @@ def _groups(paths: list[str], stdin_filename: str | None = None) -> tuple[FileGr
 # ---- revisions ----
 
 
-def _of_revisions(options: Namespace) -> Iterator[MissionComparison]:
-    if STDIN in options.paths:
+def _of_revisions(paths: Sequence[str], revision: str) -> Iterator[MissionComparison]:
+    if STDIN in paths:
         raise Refused("standard input has no revisions: git show REV:FILE | btq diff - FILE")
-    for path in map(absolute, options.paths or ["."]):
-        known = revisions(options.git, path)
+    for path in map(absolute, paths or ["."]):
+        known = revisions(revision, path)
         if not os.path.isdir(path) and not known.had_folder(path):
             sides = _revised(known.old, path, True), _revised(known.new, path, True)
             if sides == (NOWHERE, NOWHERE):

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import sys
-from argparse import Namespace
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from textwrap import wrap
 from typing import Final
 
@@ -21,14 +20,23 @@ from btq_lang.commands.explain_nav2 import nav2_nodes, nav2_page
 from btq_lang.commands.output import is_coloured
 from btq_lang.diagnostics.rules import RULES, by_subject, page
 from btq_lang.ide.describe import in_si, si_symbol
+from btq_lang.projects.messages import CommandOutput
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tree import is_name, quote
 from btq_lang.util.grouping import grouped
+from btq_lang.util.record import Record
 from btq_lang.util.spelling import near
 
 
-def run(options: Namespace) -> int:
-    """Print everything with the given names; without a name, list the rules."""
+class ExplainOptions(Record):
+    """The options of `btq explain`."""
+
+    subject: Sequence[str]
+    color: str
+
+
+def run(options: ExplainOptions, messages: CommandOutput) -> int:
+    """Explain everything with the given names; without a name, list the rules."""
     names = [name for word in options.subject if (name := word.strip())]
     pages = list(_pages(" ".join(names)))  # a name of several words: `time behaviour`
     unknown = []
@@ -36,15 +44,15 @@ def run(options: Namespace) -> int:
         pages = [_overview()]
     elif not pages:
         by_name = {name: list(_pages(name)) or list(_pages(name.split()[0])) for name in names}  # `takes at most`
-        pages = [text for found in by_name.values() for text in found]
-        unknown = [name for name, found in by_name.items() if not found]
+        pages = [text for texts in by_name.values() for text in texts]
+        unknown = [name for name, texts in by_name.items() if not texts]
     for name in unknown:
         likely = _likely(name)
         meant = f"; did you mean {', '.join(likely)}?" if likely else "; `btq explain` says what there is"
-        print(f"btq explain: unknown name `{name}`{meant}", file=sys.stderr)
-    bold = is_coloured(options, sys.stdout.isatty())
+        messages.remark(f"btq explain: unknown name `{name}`{meant}")
+    is_bold = is_coloured(options.color, sys.stdout.isatty())
     for number, text in enumerate(pages):
-        print("\n" * (number > 0) + (_with_bold_headings(text) if bold else text))
+        messages.result("\n" * (number > 0) + (_with_bold_headings(text) if is_bold else text))
     return 2 if unknown else 0
 
 

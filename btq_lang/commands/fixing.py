@@ -9,7 +9,8 @@ from typing import Final
 from btq_lang.btcpp.opening import with_source
 from btq_lang.checks import check_each
 from btq_lang.diagnostics.model import Diagnostic
-from btq_lang.projects.files import FileGroup, write_stdout
+from btq_lang.projects.files import FileGroup
+from btq_lang.projects.messages import CommandOutput
 from btq_lang.render.colour import painter
 from btq_lang.util.record import replace
 from btq_lang.workspace.file import File
@@ -42,7 +43,7 @@ def fix(groups: Iterable[FileGroup], is_wanted: Callable[[Diagnostic], bool]) ->
 
 
 def write_fixes(
-    before: Iterable[FileGroup], after: Iterable[FileGroup], stdin: str | None
+    before: Iterable[FileGroup], after: Iterable[FileGroup], stdin: str | None, messages: CommandOutput
 ) -> tuple[tuple[FileGroup, ...], tuple[LoadProblem, ...]]:
     """Write what differs, and the new text of standard input to standard output; returns the groups as they
     are then."""
@@ -57,7 +58,7 @@ def write_fixes(
                 continue
             text = files[path].source
             if path == stdin and path not in new.damaged:
-                write_stdout(text)
+                messages.add(text, "document")
             elif text != old.workspace.files[path].source:
                 try:
                     write_whole(path, text)
@@ -69,7 +70,9 @@ def write_fixes(
     return tuple(done), tuple(trouble)
 
 
-def show_fixes(before: Iterable[FileGroup], after: Iterable[FileGroup], is_coloured: bool) -> bool:
+def show_fixes(
+    before: Iterable[FileGroup], after: Iterable[FileGroup], is_coloured: bool, messages: CommandOutput
+) -> bool:
     """Print what would be written as a unified diff; returns whether there is anything."""
 
     is_changed = False
@@ -79,7 +82,7 @@ def show_fixes(before: Iterable[FileGroup], after: Iterable[FileGroup], is_colou
             seen.add(path)
             texts = old.workspace.files[path].source, new.workspace.files[path].source
             for line in text_diff(shown(path), *texts, is_coloured=is_coloured):
-                write_stdout(line)
+                messages.add(line, "document")
                 is_changed = True
     return is_changed
 

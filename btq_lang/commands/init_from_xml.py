@@ -9,8 +9,6 @@ import json
 import os
 import posixpath
 import shlex
-import sys
-from argparse import Namespace
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from functools import cache
@@ -22,9 +20,9 @@ from btq_lang.checks import check_each
 from btq_lang.checks.engines import declared_engines
 from btq_lang.commands.init_navigators import free_name, navigator_tables
 from btq_lang.commands.init_nodes import OF_NAV2, NodesLines, nodes_for, nodes_lines
-from btq_lang.commands.output import show
 from btq_lang.commands.packages import Packages, packages_of
 from btq_lang.projects.files import Files
+from btq_lang.projects.messages import CommandOutput
 from btq_lang.projects.options import Refused
 from btq_lang.projects.xml_below import XmlBelow
 from btq_lang.syntax.tree import Tree
@@ -42,31 +40,39 @@ exclude = {}  # converted; delete the line when `btq build` writes these files
 """
 
 
-def run(options: Namespace) -> int:
-    """Write the project file, unless there is one."""
-    folder = absolute(options.folder)
+def init_from_xml(top: str, converts: bool, messages: CommandOutput) -> int:
+    """Write the project file of a folder, unless there is one; returns the exit code.
+
+    Args:
+        top: the folder as the command line names it.
+        converts: write .btq files beside the XML, too.
+
+    Raises:
+        Refused: there is a project file, or no XML; the file cannot be written.
+    """
+    folder = absolute(top)
     target = f"{folder}/btq.toml"
     if os.path.lexists(target):
         raise Refused(f"{shown(target)} is there already; nothing was written")
     workspace = _xml_below(folder)
     if not workspace.files:
-        raise Refused(f"no BehaviorTree.CPP XML below {options.folder}; nothing was written")
-    factories = [*_factories(workspace, folder)]
+        raise Refused(f"no BehaviorTree.CPP XML below {top}; nothing was written")
+    factories = [*_factories(workspace, folder, messages)]
     packages = packages_of(folder)
     excluded: list[str] = []
-    if options.convert:
+    if converts:
         from btq_lang.projects.import_files import ImportOptions, import_files
 
         files = [shown(path) for path in workspace.files if not path.endswith(GROOT_SUFFIX)]
         overlay = {target: f"engine = {json.dumps(packages.engines)}\n"} if packages.engines else {}
         imported = import_files(ImportOptions(files), overlay)
-        show(imported.messages)
+        messages.extend(imported.messages)
         if imported.code:
             return imported.code
         trees, models = _by_kind(workspace)
         excluded = [f"/{each}.xml" for each in patterns(folder, trees, models)]
-    engine = _engine_line(workspace, packages) if not options.convert else _ENGINES
-    ending = ".btq" if options.convert else ".xml"
+    engine = _engine_line(workspace, packages) if not converts else _ENGINES
+    ending = ".btq" if converts else ".xml"
     rest = _EXCLUDED.format(json.dumps(excluded, ensure_ascii=False)) if excluded else ""
     rest += "".join(f"\n{each.written(ending)}" for each in factories)
 
@@ -95,7 +101,7 @@ def run(options: Namespace) -> int:
         raise Refused(f"{shown(target)}: {error.strerror}") from error
     count = f"{text}{navigators}".count("\n[[factory]]")
     how_many = f"{count or 'no'} factor{'y' if count == 1 else 'ies'}"
-    print(f"Wrote {shown(target)} with {how_many}. Next: btq check {shlex.quote(options.folder)}")
+    messages.result(f"Wrote {shown(target)} with {how_many}. Next: btq check {shlex.quote(top)}")
     return 0
 
 
@@ -155,7 +161,7 @@ def _xml_below(folder: str) -> Workspace:
     return Workspace(files, replace(project, pools=(folder,)))
 
 
-def _factories(workspace: Workspace, folder: str) -> Iterator[_Together]:
+def _factories(workspace: Workspace, folder: str, messages: CommandOutput) -> Iterator[_Together]:
     """What belongs together; files of which two define one tree do not, whatever refers to them."""
     trees_in, models = _by_kind(workspace)
     of_groot = (posixpath.relpath(path, folder) for path in models if path.endswith(GROOT_SUFFIX))
@@ -169,7 +175,7 @@ def _factories(workspace: Workspace, folder: str) -> Iterator[_Together]:
         if len(set(trees)) < len(trees):
             twice = next(name for name in sorted(trees) if trees.count(name) > 1)
             files = ", ".join(shown(path) for path in paths)
-            print(f"not a factory, because several define the tree `{twice}`: {files}", file=sys.stderr)
+            messages.remark(f"not a factory, because several define the tree `{twice}`: {files}")
             continue
         paths += _beside(workspace, paths, [path for path in trees_in if path not in grouped])
         trees = [name for path in paths for name in workspace.files[path].names_of(Kind.TREE)]

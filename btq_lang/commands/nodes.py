@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import os
-import sys
-from argparse import Namespace
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Final, TypeAlias
 
 from btq_lang.btcpp import reader
@@ -18,7 +16,9 @@ from btq_lang.cpp.model import CppNodes
 from btq_lang.cpp.nodes import read_nodes
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.projects.cpp_files import MISSING, distributions_of
+from btq_lang.projects.messages import CommandOutput
 from btq_lang.projects.options import Refused
+from btq_lang.util.record import Record
 from btq_lang.util.text import LineIndex, Span, counted
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.file import CPP_SUFFIXES
@@ -29,7 +29,15 @@ Exported: TypeAlias = tuple[str, tuple[Diagnostic, ...]]  # the text, and what i
 FORMATS = ("btq", "xml", "html")
 
 
-def run(options: Namespace) -> int:
+class NodesOptions(Record):
+    """The options of `btq nodes`; `paths`: C++ files and folders."""
+
+    paths: Sequence[str]
+    format: str | None
+    output: str | None
+
+
+def run(options: NodesOptions, messages: CommandOutput) -> int:
     """Write the nodes, and say on standard error what cannot be seen or is wrong."""
     form = options.format or os.path.splitext(options.output or "")[1].lower().removeprefix(".") or FORMATS[0]
     project = find_project(options.paths[0]).project
@@ -41,7 +49,7 @@ def run(options: Namespace) -> int:
     elif not files and not exported and not problems:
         problems.append(f"btq nodes: no C++ file below {', '.join(options.paths)}")
     for problem in problems:
-        print(problem, file=sys.stderr)
+        messages.remark(problem)
     if problems:
         return 2
     try:
@@ -49,7 +57,7 @@ def run(options: Namespace) -> int:
     except GrammarMissing as error:
         raise Refused(MISSING) from error
     sources = " ".join(options.paths)
-    write_output(options.output, _written(found, form, sources))
+    write_output(messages, options.output, _written(found, form, sources))
     remarks = findings(found, files) | {path: nodes for path, (_, nodes) in exported.items() if nodes}
     texts = files | {path: text for path, (text, _) in exported.items()}
     for path in sorted(remarks):
@@ -57,17 +65,17 @@ def run(options: Namespace) -> int:
         for each in remarks[path]:
             line, column = lines.position(each.span.start)
             what = f"{each.effective_severity.value}[{each.rule}] {each.message}"
-            print(f"{path}:{line + 1}:{column + 1}: {what}", file=sys.stderr)
+            messages.remark(f"{path}:{line + 1}:{column + 1}: {what}")
     is_empty = bool(files) and not found.nodes and not remarks
     if is_empty:
-        print(f"btq nodes: {nothing_registered(files)}", file=sys.stderr)
+        messages.remark(f"btq nodes: {nothing_registered(files)}")
     ports = sum(len(node.ports) for node in found.nodes)
     counts = counted(len(found.nodes), "node"), counted(ports, "port"), counted(len(files), "file")
-    print("{} with {} in {}".format(*counts), file=sys.stderr)
+    messages.remark("{} with {} in {}".format(*counts))
     return int(bool(remarks) or is_empty)
 
 
-def _texts(paths: list[str], project: Project) -> tuple[dict[str, str], dict[str, Exported], list[str]]:
+def _texts(paths: Sequence[str], project: Project) -> tuple[dict[str, str], dict[str, Exported], list[str]]:
     """The C++ files below some paths, as they are shown, those of pluginlib, and what cannot be read; folders are left
     out as in a pattern of `nodes` in the project file."""
     problems: list[LoadProblem] = []

@@ -7,14 +7,14 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Final
 
 from btq_lang.catalog.versions import VERSIONS
-from btq_lang.commands.output import tell
+from btq_lang.projects.messages import CommandOutput
 from btq_lang.util.toml_places import find_key
 from btq_lang.workspace.config import KEYS, Project, keys_above, table_of
 from btq_lang.workspace.loader import FoundProject, absolute, find_project, read, shown
 from btq_lang.workspace.overrides import overrides_at
 
 
-def show_settings(paths: Iterable[str], given: Mapping[str, object]) -> int:
+def show_settings(paths: Iterable[str], given: Mapping[str, object], messages: CommandOutput) -> int:
     """Print the settings of each path; returns the exit code.
 
     Args:
@@ -22,11 +22,11 @@ def show_settings(paths: Iterable[str], given: Mapping[str, object]) -> int:
     """
     homes = [(path, find_project(path)) for path in paths]
     problems = tuple(dict.fromkeys(problem for _, home in homes for problem in home.problems))
-    tell(problems)
+    messages.problems(problems)
     for number, (path, home) in enumerate(homes if not problems else ()):
-        print("\n" * (number > 0) + f"# {path}")
+        messages.result("\n" * (number > 0) + f"# {path}")
         for setting, source in _settings(home, absolute(path), given):
-            print(f"{setting:<40} # {source}")
+            messages.result(f"{setting:<40} # {source}")
     return 2 if problems else 0
 
 

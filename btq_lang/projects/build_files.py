@@ -68,14 +68,12 @@ class BuildResult(Record):
         messages: what there is to print.
         watched: the files that another build depends on.
         files: those written, or already up to date.
-        text: the XML of standard input.
     """
 
     code: int
     messages: CommandOutput
     watched: tuple[str, ...]
     files: tuple[str, ...] = ()
-    text: str | None = None
 
 
 class _Target(Record):
@@ -123,8 +121,10 @@ def build_files(options: BuildOptions, files: Files) -> BuildResult:
     if not options.is_check:
         _guesses([output.done.export for output in planned], messages)
     if STDIN in options.paths:
-        text = next((output.text for output in planned if output.path == files.stdin), None)
-        return BuildResult(0, messages, watched, text=text)
+        for output in planned:
+            if output.path == files.stdin:
+                messages.add(output.text, "document")
+        return BuildResult(0, messages, watched)
     targets = [target for output in planned for target in _targets(output)]
     code = (_compare if options.is_check else _write)(targets, options, _stale(groups, options), messages)
     return BuildResult(code, messages, watched, tuple(target.path for target in targets if target.text is not None))
