@@ -1,5 +1,5 @@
-"""The commands: a module each, with a record of its options and a function `run(options, messages)` that adds what there
-is to print to the messages and returns the exit code.
+"""The commands: a module each, with a record of its options and a function `run(options, messages)` that adds what
+there is to print to the messages and returns the exit code.
 
 One invariant: 0 means clean, 1 findings, 2 a usage or I/O error; output files are written completely or not at all.
 `output.Terminal` prints messages as they come; only what runs until it is stopped, such as a preview, prints by itself.

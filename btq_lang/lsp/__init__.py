@@ -19,5 +19,6 @@ from btq_lang.lsp.editor import Server
 
 def register(server: Server) -> None:
     """Register all handlers with pygls."""
-    for group in (lifecycle, documents, navigation, colours, acting, hints, commands, logs):
-        group.register(server)
+    for group in (lifecycle, documents, navigation, colours, acting, hints, commands):
+        group.handlers.register(server)
+    logs.register(server)

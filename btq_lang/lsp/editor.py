@@ -71,6 +71,38 @@ POLL = 5  # seconds between checks that the editor's process still runs
 MAX_DETAILS = 500  # a parameter may contain a whole text
 
 
+class Handlers:
+    """What a module registers: functions whose first argument is the server."""
+
+    def __init__(self) -> None:
+        self._registrations: list[Callable[[Server], object]] = []
+
+    def feature(self, name: str, options: Any | None = None, otherwise: Any = None) -> Callable[[Handler], Handler]:
+        """Handle a request or a notification; the arguments are those of `Server.feature`."""
+
+        def add(handler: Handler) -> Handler:
+            self._registrations.append(
+                lambda server: server.feature(name, options, otherwise)(functools.partial(handler, server))
+            )
+            return handler
+
+        return add
+
+    def command(self, name: str) -> Callable[[Handler], Handler]:
+        """Handle a command, whose arguments pygls converts as the annotations say."""
+
+        def add(handler: Handler) -> Handler:
+            self._registrations.append(lambda server: server.command(name)(handler))
+            return handler
+
+        return add
+
+    def register(self, server: Server) -> None:
+        """Register all of them with pygls."""
+        for register in self._registrations:
+            register(server)
+
+
 class Traced(logging.Handler):
     """Sends log records to an editor that traces, which may not show the server's standard error."""
 
