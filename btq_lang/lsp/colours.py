@@ -24,11 +24,11 @@ _NO_TOKENS = Json('{"data": []}')
 @handlers.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, _LEGEND, _NO_TOKENS)
 async def full(server: Server, params: types.SemanticTokensParams) -> Json:
     if server.convert.path(params.text_document.uri) not in server.tokens:
-        server.answering += 1
+        server.schedule.answering += 1
         try:
             await _prepare_tokens(server, params.text_document)
         finally:
-            server.answering -= 1
+            server.schedule.answering -= 1
     return _full_report(*_new_tokens(server, params.text_document))
 
 

@@ -24,7 +24,7 @@ def did_open(server: Server, params: types.DidOpenTextDocumentParams) -> None:
         server.withdraw(path)
         server.convert.learn_uri(path, params.text_document.uri)
     server.versions[path] = params.text_document.version
-    server.check_soon(server.session.edit(path, params.text_document.text))
+    server.schedule.check_soon(server.session.edit(path, params.text_document.text))
 
 
 @handlers.feature(types.TEXT_DOCUMENT_DID_CHANGE)
@@ -33,10 +33,10 @@ def did_change(server: Server, params: types.DidChangeTextDocumentParams) -> Non
     if server.session.is_cpp(path):
         return
     server.versions[path] = params.text_document.version
-    server.check_soon(
+    server.schedule.check_soon(
         server.session.edit(path, server.convert.changed(server.session.lines(path), params.content_changes))
     )
-    server.last_keystroke = asyncio.get_running_loop().time()  # now: handling the edit may have taken long
+    server.schedule.last_keystroke = asyncio.get_running_loop().time()  # now: handling the edit may have taken long
 
 
 @handlers.feature(types.TEXT_DOCUMENT_DID_CLOSE)
@@ -48,7 +48,7 @@ def did_close(server: Server, params: types.DidCloseTextDocumentParams) -> None:
     workspace = server.session.workspace_of(path)
     if server.tokens.pop(path, None) is not None and workspace is not None:
         features.colours.forget(workspace, path, server.convert.encoding)
-    server.check_soon((path, *server.session.close(path)))
+    server.schedule.check_soon((path, *server.session.close(path)))
 
 
 @handlers.feature(
@@ -57,7 +57,7 @@ def did_close(server: Server, params: types.DidCloseTextDocumentParams) -> None:
 )
 async def document_diagnostic(server: Server, params: types.DocumentDiagnosticParams) -> Json:
     path = server.convert.path(params.text_document.uri)
-    await server.check(path)
+    await server.schedule.check(path)
     return server.report(path, params.previous_result_id)
 
 

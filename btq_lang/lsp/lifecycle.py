@@ -89,18 +89,18 @@ async def _ask_settings(server: Server) -> None:
 
 async def _first_check(server: Server) -> None:
     """Check all files of the folders, after the open ones; with progress if there are many."""
-    server.check_soon(server.session.paths())
+    server.schedule.check_soon(server.session.paths())
     await asyncio.sleep(_TO_OPEN)
     paths = server.session.paths() if server.session.has_read else server.session.reload()
     server.scanned.set()
     if server.pulls:
-        server.check_soon(paths)
+        server.schedule.check_soon(paths)
         return
     async with checking(server, len(paths)) as report_done:
-        server.check_soon(paths)
-        while server.task is not None and not server.task.done():
-            report_done(len(paths) - len(server.waiting))
-            await asyncio.wait((server.task,), timeout=0.2)
+        server.schedule.check_soon(paths)
+        while server.schedule.task is not None and not server.schedule.task.done():
+            report_done(len(paths) - len(server.schedule.waiting))
+            await asyncio.wait((server.schedule.task,), timeout=0.2)
 
 
 _TO_OPEN = 0.02  # seconds, in which an editor opens its visible files: these are checked first

@@ -193,7 +193,7 @@ class Logs:
             return
         by_path = {absolute(os.path.join(root, each.file)): each for each in missions if each.runs}
         self._server.session.show(root, ProjectVerdicts(root, by_path))
-        self._server.check_soon(self._server.session.paths())
+        self._server.schedule.check_soon(self._server.session.paths())
         self._server.refresh()
         self._server.protocol.notify_plain(JUDGED, {})
         _forget_others(summary, root)
