@@ -54,22 +54,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):  # a program that calls this may have put something else there
             stream.reconfigure(errors="readable")
-    given = list(sys.argv[1:] if arguments is None else arguments)
-    if given in (["--version"], ["-V"]):
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    if words in (["--version"], ["-V"]):
         from btq_lang.util.version import __version__
 
         print(f"btq {__version__}")
         return CLEAN
-    if given[:1] == ["check"] and not any(word.startswith("-") for word in given[1:]):
-        return _plain_check(given[1:])
-    if given[:1] == ["explain"]:  # `->` is a node, not an option
-        given[1:] = [f" {word}" if word in _SYMBOLS_LIKE_OPTIONS else word for word in given[1:]]
+    if words[:1] == ["check"] and not any(word.startswith("-") for word in words[1:]):
+        return _plain_check(words[1:])
+    if words[:1] == ["explain"]:  # `->` is a node, not an option
+        words[1:] = [f" {word}" if word in _SYMBOLS_LIKE_OPTIONS else word for word in words[1:]]
     # argparse would take the path in `--add-ignore FILE` as the reason, and change all files of the folder.
-    given = ["--add-ignore=" if word == "--add-ignore" else word for word in given]
+    words = ["--add-ignore=" if word == "--add-ignore" else word for word in words]
     from btq_lang.commands.arguments import build_parser
 
     parser = build_parser()
-    options, unknown = parser.parse_known_args(given)
+    options, unknown = parser.parse_known_args(words)
     try:
         name, command = options.command, options.parser
     except AttributeError:
@@ -86,9 +86,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _serve(options)
     run, record = _command(name)
     if getattr(options, "config", None) is not None:
-        from btq_lang.commands.configuring import configured
-
-        run = configured(run, options.config)
+        run = _configured(run, options.config)
     return _finish(name, run, record(**{field: getattr(options, field) for field in record.__match_args__}))
 
 
@@ -125,6 +123,25 @@ def _serve(options: Namespace) -> NoReturn:
 
     # Standard output was the editor's and is closed: it must not be flushed.
     raise SystemExit(serve(ServerOptions(options.tcp, options.log)))
+
+
+def _configured(run: Callable[[Any, CommandOutput], int], config: str) -> Callable[[Any, CommandOutput], int]:
+    """The function that runs a command with one project file for all files, instead of the nearest one above each."""
+    from btq_lang.projects.options import refuse
+    from btq_lang.workspace.loader import absolute, find_project, read, use_project_file
+
+    def run_configured(options: Any, messages: CommandOutput) -> int:
+        text, problem = read(absolute(config))
+        if text is None:
+            refuse(f"--config {config}: {problem.message if problem else 'cannot be read'}")
+        use_project_file(absolute(config))
+        try:
+            refuse(*(f"--config {mistake}" for mistake in find_project(".").problems[:1]))
+            return run(options, messages)
+        finally:
+            use_project_file(None)
+
+    return run_configured
 
 
 def _finish(name: str, run: Callable[[Any, CommandOutput], int], options: object) -> int:

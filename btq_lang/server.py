@@ -26,8 +26,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser("btq-lsp", description=_DESCRIPTION, formatter_class=formatter)
     add_server_options(parser)
     parser.add_argument("-V", "--version", action="version", version=f"btq-lsp {__version__}")
-    given = parser.parse_args(arguments)
-    return serve(ServerOptions(given.tcp, given.log))
+    options = parser.parse_args(arguments)
+    return serve(ServerOptions(options.tcp, options.log))
 
 
 def serve(options: ServerOptions) -> int:

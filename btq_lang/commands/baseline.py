@@ -48,14 +48,14 @@ def compared(
     problems: list[LoadProblem] = []
     new = [*findings]
     for path, files in checked.items():
-        known, problem = _read(path, options.update_baseline)
+        baseline, problem = _read(path, options.update_baseline)
         if problem is None and options.update_baseline and is_whole:
-            mine = Counter(_identity(each) for each in findings if _may_be_known(each, files))
-            known, problem = _updated(path, known, mine, files, messages)
+            mine = Counter(_identity(finding) for finding in findings if _may_be_known(finding, files))
+            baseline, problem = _updated(path, baseline, mine, files, messages)
         if problem is not None:
             problems.append(problem)
         else:
-            new = _without(known, new, files)
+            new = _without(baseline, new, files)
     return new, len(findings) - len(new), tuple(problems)
 
 
@@ -74,57 +74,57 @@ def update_problem(options: CheckOptions) -> str | None:
 
 
 def _read(path: str, may_be_absent: bool) -> tuple[Known, LoadProblem | None]:
-    known: Known = Counter()
+    baseline: Known = Counter()
     if not os.path.exists(path):
         message = "does not exist; `btq check --update-baseline` creates it"
-        return known, None if may_be_absent else LoadProblem(path, message)
+        return baseline, None if may_be_absent else LoadProblem(path, message)
     text, problem = read(path)
     try:
         document = json.loads(text or "")
         if document["format"] != 1 or document["tool"] != "btq":
             raise ValueError
-        for each in document["findings"]:
-            there = absolute(os.path.join(os.path.dirname(path), each["path"]))
-            known[there, str(each["rule"]), str(each["fingerprint"])] += int(each["count"])
+        for entry in document["findings"]:
+            there = absolute(os.path.join(os.path.dirname(path), entry["path"]))
+            baseline[there, str(entry["rule"]), str(entry["fingerprint"])] += int(entry["count"])
     except (ValueError, TypeError, KeyError, RecursionError):
-        return known, problem or LoadProblem(path, "this is not a baseline that `btq check --update-baseline` wrote")
-    return known, None
+        return baseline, problem or LoadProblem(path, "this is not a baseline that `btq check --update-baseline` wrote")
+    return baseline, None
 
 
 def _updated(
-    path: str, known: Known, mine: Known, files: set[str], messages: CommandOutput
+    path: str, before: Known, checked: Known, files: set[str], messages: CommandOutput
 ) -> tuple[Known, LoadProblem | None]:
-    """The baseline after an update; files that were not checked keep their findings as long as they are there."""
-    others = {key: count for key, count in known.items() if key[0] not in files and os.path.exists(key[0])}
-    after = Counter(others) + mine
-    added, gone = (after - known).total(), (known - after).total()
+    """The baseline after an update; files that were not checked keep their findings as long as they exist."""
+    others = {key: count for key, count in before.items() if key[0] not in files and os.path.exists(key[0])}
+    after = Counter(others) + checked
+    added, gone = (after - before).total(), (before - after).total()
     try:
         if added or gone or not os.path.exists(path):
             write_whole(path, _text(after, os.path.dirname(path)))
     except OSError as error:
-        return known, LoadProblem(path, f"cannot be written: {error.strerror}")
+        return before, LoadProblem(path, f"cannot be written: {error.strerror}")
     messages.remark(f"{shown(path)}: {added} added, {gone} removed, {after.total() - added} kept")
     return after, None
 
 
-def _text(known: Known, folder: str) -> str:
+def _text(baseline: Known, folder: str) -> str:
     """The file, with a line for each finding, so that changes of several people can be merged."""
     lines = []
-    for (path, rule, text), count in known.items():
+    for (path, rule, text), count in baseline.items():
         there = os.path.relpath(path, folder).replace(os.sep, "/")
         lines.append(json.dumps({"path": there, "rule": rule, "fingerprint": text, "count": count}))
     findings = ",".join(f"\n    {line}" for line in sorted(lines)) + ("\n  " if lines else "")
     return f'{{\n  "format": 1,\n  "tool": "btq",\n  "findings": [{findings}]\n}}\n'
 
 
-def _without(known: Known, findings: Iterable[Finding], files: set[str]) -> list[Finding]:
+def _without(baseline: Known, findings: Iterable[Finding], files: set[str]) -> list[Finding]:
     """The findings that are not known, in order; of equal ones the first are known."""
-    left = known.copy()
-    new = [each for each in findings if not (_may_be_known(each, files) and _take(left, _identity(each)))]
+    left = baseline.copy()
+    new = [finding for finding in findings if not (_may_be_known(finding, files) and _take(left, _identity(finding)))]
     moved: Counter[tuple[str, str]] = Counter()
     for (path, rule, text), count in left.items():
         moved[rule, text] += 0 if os.path.exists(path) else count
-    return [each for each in new if not (_may_be_known(each, files) and _take(moved, _identity(each)[1:]))]
+    return [finding for finding in new if not (_may_be_known(finding, files) and _take(moved, _identity(finding)[1:]))]
 
 
 def _take(left: Counter[Key], key: Key) -> bool:

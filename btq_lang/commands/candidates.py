@@ -28,27 +28,29 @@ def candidates(requested: Sequence[str], logs: Sequence[str], problems: list[str
     """
     sides = {side.mission: side for side in side_files_beside(logs)}
     there = [mission for mission in sides if os.path.isfile(mission)]
-    found = (
-        [] if requested else [each for side in sides.values() if side.mission not in there for each in _restored(side)]
+    missions = (
+        []
+        if requested
+        else [mission for side in sides.values() if side.mission not in there for mission in _restored(side)]
     )
     home = find_project(".")
     groups, unreadable = Files().groups(requested or [*there, home.project.root])
     # A mission of a broken project elsewhere was not requested.
-    elsewhere = {each.path for each in unreadable if is_project_file(each.path) and each.path != home.path}
+    elsewhere = {problem.path for problem in unreadable if is_project_file(problem.path) and problem.path != home.path}
     broken = elsewhere if not requested else set()
-    problems += [str(each) for each in unreadable if each.path not in broken]
+    problems += [str(problem) for problem in unreadable if problem.path not in broken]
     for group in groups:
         for path in group.given if group.project_file not in broken else ():
             side = side_of(path, sides)
             if path.endswith(".xml") and side is not None and (built := [*_restored(side)]):
-                found += built
+                missions += built
             elif requested or path not in group.workspace.included_files:
-                found.append(candidate(group.workspace, path, side))
-    if not found and not problems and not requested:
+                missions.append(candidate(group.workspace, path, side))
+    if not missions and not problems and not requested:
         return _of_logs(logs, problems)
-    if not found and not problems:
+    if not missions and not problems:
         problems.append(NO_MISSION)
-    return found
+    return missions
 
 
 def strict_problem(is_strict: bool, missions: Sequence[Candidate]) -> list[str]:
@@ -63,10 +65,10 @@ def _of_logs(logs: Sequence[str], problems: list[str]) -> Sequence[Candidate]:
     treeless: list[str] = []
     for log in logs:
         try:
-            own_trees.add(found := trees(log), log)
+            own_trees.add(logged_trees := trees(log), log)
         except (NotALog, OSError):
             continue  # judging it reports that
-        treeless += [] if found else [log]
+        treeless += [] if logged_trees else [log]
     beside = dict.fromkeys(path for log in treeless for path in _xml_beside(log))
     groups, unreadable = Files().groups([*beside]) if beside else ((), ())
     problems += map(str, unreadable)

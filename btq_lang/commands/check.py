@@ -38,8 +38,8 @@ def run(options: CheckOptions, messages: CommandOutput) -> int:
     if options.show_settings:
         from btq_lang.commands.show_settings import show_settings
 
-        given = {"select": _rules(options.select), "ignore": _rules(options.ignore), "baseline": options.baseline}
-        return show_settings(options.paths, given, messages)
+        settings = {"select": _rules(options.select), "ignore": _rules(options.ignore), "baseline": options.baseline}
+        return show_settings(options.paths, settings, messages)
     files = Files()
     code, watched = _check(options, files, messages)
     if options.watch:
@@ -79,10 +79,10 @@ def _check(options: CheckOptions, files: Files, messages: CommandOutput) -> tupl
     others = tuple(path for path in options.paths if _is_other(path))
     refused: tuple[LoadProblem, ...] = ()
     if others:
-        from btq_lang.commands.other_files import sorted_out
+        from btq_lang.commands.project_files import named_project_files
 
-        files.project_files, refused = sorted_out(others)
-    no_trees = {*files.project_files, *(each.path for each in refused)}
+        files.project_files, refused = named_project_files(others)
+    no_trees = {*files.project_files, *(problem.path for problem in refused)}
     trees = [path for path in options.paths if not path.endswith(YAML_SUFFIXES) and absolute(path) not in no_trees]
     named = (*options.nav2_params, *(path for path in options.paths if path.endswith(YAML_SUFFIXES)))
     files.nav2_params = tuple(dict.fromkeys(map(absolute, named)))
@@ -117,7 +117,7 @@ def _check(options: CheckOptions, files: Files, messages: CommandOutput) -> tupl
     except Refused as reason:
         messages.remark(f"btq check: {reason}")
         code = 2
-    return code, (*_watched(groups), *files.project_files, *(each.path for each in files.parameter_files))
+    return code, (*_watched(groups), *files.project_files, *(file.path for file in files.parameter_files))
 
 
 def _show_files(
@@ -125,7 +125,7 @@ def _show_files(
 ) -> None:
     """`--show-files`: print what would be checked."""
     missions = (path for group in groups for path in (*group.given, *group.cpp))
-    for path in sorted({*missions, *files.project_files, *(each.path for each in parameter_files)}):
+    for path in sorted({*missions, *files.project_files, *(file.path for file in parameter_files)}):
         messages.result(shown(path))
 
 
@@ -156,26 +156,28 @@ def _report(
     findings, checked = _findings(groups, texts, options)
     every = groups
     if any(group.project.external for group in groups) and not (options.since or options.add_ignore is not None):
-        from btq_lang.commands.external_trees import unused_external  # few projects have any
+        from btq_lang.commands.project_files import unused_external  # few projects have any
 
-        of_project = [each for each in unused_external(groups, options.paths) if _is_wanted(each.diagnostic, options)]
-        findings = sorted([*findings, *of_project], key=lambda each: (each.path, each.diagnostic.span))
-        texts.update((each.path, each.text) for each in of_project)
+        of_project = [
+            finding for finding in unused_external(groups, options.paths) if _is_wanted(finding.diagnostic, options)
+        ]
+        findings = sorted([*findings, *of_project], key=lambda finding: (finding.path, finding.diagnostic.span))
+        texts.update((finding.path, finding.text) for finding in of_project)
     if parameter_files:
         from btq_lang.projects.nav2_check import as_groups, nav2_findings
 
         more, others = nav2_findings(
             parameter_files, files, checked, lambda project: _selecting(project, options), options.target
         )
-        findings += [each for each in more if _is_wanted(each.diagnostic, options)]
-        findings.sort(key=lambda each: (each.path, each.diagnostic.span))
-        texts, checked = {**others, **texts}, (*checked, *(each.path for each in parameter_files))
+        findings += [finding for finding in more if _is_wanted(finding.diagnostic, options)]
+        findings.sort(key=lambda finding: (finding.path, finding.diagnostic.span))
+        texts, checked = {**others, **texts}, (*checked, *(file.path for file in parameter_files))
         every = (*groups, *as_groups(parameter_files))
-    known = 0
+    hidden = 0
     if _has_baseline(every, options):
         from btq_lang.commands.baseline import compared
 
-        findings, known, trouble = compared(findings, every, options, messages, is_whole=not problems)
+        findings, hidden, trouble = compared(findings, every, options, messages, is_whole=not problems)
         messages.problems(trouble)
         problems += trouble
     if options.add_ignore is not None:
@@ -186,11 +188,11 @@ def _report(
         findings = together(findings)
     why_empty = empty or (f"nothing has changed since {options.since}" if options.since else None)
     checked += files.project_files
-    report = Report(tuple(findings), texts, checked, problems, why_empty, known, options.quiet)
+    report = Report(tuple(findings), texts, checked, problems, why_empty, hidden, options.quiet)
     write_report(report, options, mended, messages)
     if empty and form_of(options, os.environ) not in FOR_PEOPLE:  # those have it in their summary
         messages.remark(f"btq check: {empty}")
-    mistakes = [each for each in problems if each.path in files.project_files]
+    mistakes = [problem for problem in problems if problem.path in files.project_files]
     if len(mistakes) < len(problems) or empty:
         return 2
     fails = mistakes or any(finding.diagnostic.effective_severity in _FAILS for finding in findings)
@@ -229,7 +231,7 @@ def _chosen(
             why = "the version of the engine changes no parameter of Nav2; name a distribution, such as nav2-lyrical"
             raise Refused(f"--target {options.target}: {why}")
         groups = moving(groups, options.target)
-        if not (is_comparable(groups, options.target) or any(each.distribution for each in parameter_files)):
+        if not (is_comparable(groups, options.target) or any(file.distribution for file in parameter_files)):
             what = 'write `nodes = ["nav2-jazzy"]` into btq.toml'
             raise Refused(f"--target needs to know what the trees are for: {what}")
     if options.since:
@@ -271,20 +273,20 @@ def _findings(
     of_file: dict[str, list[tuple[Factory | None, tuple[Diagnostic, ...]]]] = {}
     groups = tuple(groups)
     for group in groups:
-        for path, found in _found(group, options.jobs):
+        for path, diagnostics in _diagnostics_of(group, options.jobs):
             if path in group.damaged:  # the bytes that cannot be decoded are already reported
-                found = tuple(diagnostic for diagnostic in found if diagnostic.rule not in UNREADABLE)
-            of_file.setdefault(path, []).append((group.workspace.factory, found))
+                diagnostics = tuple(diagnostic for diagnostic in diagnostics if diagnostic.rule not in UNREADABLE)
+            of_file.setdefault(path, []).append((group.workspace.factory, diagnostics))
     for group in groups:
         for path in group.cpp:  # the same in every factory
             of_file[path] = [(None, check(group.workspace, path))]
     if len(groups) > 1:  # projects and factories
         of_file = {path: of_file[path] for path in sorted(of_file)}
     findings = [
-        Finding(path, texts[path], each)
-        for path, found_in_each in of_file.items()
-        for each in merged(found_in_each)
-        if _is_wanted(each, options) and not is_reported_beside(each, of_file)
+        Finding(path, texts[path], diagnostic)
+        for path, by_factory in of_file.items()
+        for diagnostic in merged(by_factory)
+        if _is_wanted(diagnostic, options) and not is_reported_beside(diagnostic, of_file)
     ]
     return findings, tuple(of_file)
 
@@ -307,7 +309,7 @@ def _show_fixes(
     return 2 if has_problems else int(is_changed and not options.exit_zero)
 
 
-def _found(group: FileGroup, jobs: int) -> Iterator[tuple[str, tuple[Diagnostic, ...]]]:
+def _diagnostics_of(group: FileGroup, jobs: int) -> Iterator[tuple[str, tuple[Diagnostic, ...]]]:
     """The diagnostics of each requested file, in order; many files are checked in parallel."""
     if len(group.given) == 1:  # the usual case needs no progress
         yield group.given[0], check(group.workspace, group.given[0])
@@ -322,9 +324,9 @@ def _found(group: FileGroup, jobs: int) -> Iterator[tuple[str, tuple[Diagnostic,
             results = check_all(group.workspace, group.given, workers)
         else:
             results = check_each(group.workspace, group.given)
-        for path, found in zip(group.given, results, strict=True):
+        for path, diagnostics in zip(group.given, results, strict=True):
             progress.step()
-            yield path, found
+            yield path, diagnostics
 
 
 def _configured(workspace: Workspace, options: CheckOptions) -> Workspace:
@@ -339,8 +341,8 @@ def _selecting(project: Project, options: CheckOptions) -> Project:
     return replace(project, select=select or project.select, ignore=project.ignore + ignore)
 
 
-def _rules(given: Iterable[str]) -> tuple[str, ...]:
-    return tuple(rule.strip() for words in given for rule in words.split(",") if rule.strip())
+def _rules(options: Iterable[str]) -> tuple[str, ...]:
+    return tuple(rule.strip() for words in options for rule in words.split(",") if rule.strip())
 
 
 def _is_wanted(diagnostic: Diagnostic, options: CheckOptions) -> bool:

@@ -1,4 +1,4 @@
-"""`btq completion`: the completion script of a shell."""
+"""`btq completion`: the completion script of a shell; a module of its own, as each command is one."""
 
 from __future__ import annotations
 

@@ -139,7 +139,7 @@ def _pairs(old: Collection[str], new: Collection[str]) -> list[tuple[str, str]]:
     pairs = []
     for name in old:
         stem, ending = os.path.splitext(name)
-        other = (f"{stem}{each}" for each in (SUFFIXES if ending == ".xml" else (".xml",)))
+        other = (f"{stem}{suffix}" for suffix in (SUFFIXES if ending == ".xml" else (".xml",)))
         pairs.append((name, name if name in new else next(filter(came.__contains__, other), name)))
         came.discard(pairs[-1][1])
     return sorted([*pairs, *zip(came, came, strict=True)])
@@ -151,13 +151,15 @@ def _sides(path: str) -> dict[str, Side]:
     """
     if not os.path.isdir(path):
         return {"": _side_in(Disk(), path)}
-    found: dict[str, Side] = {}
+    sides: dict[str, Side] = {}
     for group in _groups([path, *_xml_below(path)]):
-        for each in group.given:
-            built = _built_in(Disk(), each)
-            side = Side(shown(each), group.workspace, (each,), shown)
-            found[each.removeprefix(f"{path}/")] = _by_itself(built, os.path.isfile) if built is not None else side
-    return found
+        for path_below in group.given:
+            built = _built_in(Disk(), path_below)
+            side = Side(shown(path_below), group.workspace, (path_below,), shown)
+            sides[path_below.removeprefix(f"{path}/")] = (
+                _by_itself(built, os.path.isfile) if built is not None else side
+            )
+    return sides
 
 
 def _side_in(files: Disk | Commit, path: str, with_includes: bool = True) -> Side:
@@ -184,14 +186,14 @@ def _built_in(files: Disk | Commit, path: str) -> Side | None:
     if built is None:
         return None
     manual_edits = tuple(
-        UnmergedEdit(each.guard, each.sum, f"{each.happened}; {ADVICE}", DiskPlace(xml, each.span))
-        for xml, each in built.manual_edits
+        UnmergedEdit(edit.guard, edit.sum, f"{edit.happened}; {ADVICE}", DiskPlace(xml, edit.span))
+        for xml, edit in built.manual_edits
     )
     return Side(files.shown(path), built.workspace, built.workspace.closure(built.path), built.shown, manual_edits)
 
 
 def _xml_below(folder: str) -> tuple[str, ...]:
-    """The XML files below a folder to compare: without those built from a .btq file that is there."""
+    """The XML files below a folder to compare, without those built from an existing .btq file."""
     project = find_project(folder).project
     paths, problems = collect([folder], project, (".xml", *SUFFIXES))
     refuse(*problems)
@@ -213,16 +215,16 @@ def _of_revisions(paths: Sequence[str], revision: str) -> Iterator[MissionCompar
     if STDIN in paths:
         raise Refused("standard input has no revisions: git show REV:FILE | btq diff - FILE")
     for path in map(absolute, paths or ["."]):
-        known = revisions(revision, path)
-        if not os.path.isdir(path) and not known.had_folder(path):
-            sides = _revised(known.old, path, True), _revised(known.new, path, True)
+        pair = revisions(revision, path)
+        if not os.path.isdir(path) and not pair.had_folder(path):
+            sides = _revised(pair.old, path, True), _revised(pair.new, path, True)
             if sides == (NOWHERE, NOWHERE):
-                where = known.new.name if known.new is not None else "here"
-                raise Refused(f"{shown(path)}: no such file in {known.old.name} or {where}")
+                where = pair.new.name if pair.new is not None else "here"
+                raise Refused(f"{shown(path)}: no such file in {pair.old.name} or {where}")
             yield without_made_models(compared(*sides))
             continue
-        for before, after in known.changed(path):
-            yield compared(_revised(known.old, before, False), _revised(known.new, after, False))
+        for before, after in pair.changed(path):
+            yield compared(_revised(pair.old, before, False), _revised(pair.new, after, False))
 
 
 def _revised(commit: Commit | None, path: str | None, with_includes: bool) -> Side:

@@ -146,9 +146,9 @@ def _attribute(kind: AttributeKind) -> str:
 
 def _ports(name: str) -> Iterator[str]:
     """The pages of ports with this name, of nodes of the engine."""
-    found = [(kind, port) for kind in BUILTINS.values() for port in kind.ports if port.name == name]
-    if found and name not in RESERVED_ATTRIBUTES:
-        lines = [f"{f'{kind.tag}:':<24} {port.type:<13} {port.doc}" for kind, port in found]
+    ports = [(kind, port) for kind in BUILTINS.values() for port in kind.ports if port.name == name]
+    if ports and name not in RESERVED_ATTRIBUTES:
+        lines = [f"{f'{kind.tag}:':<24} {port.type:<13} {port.doc}" for kind, port in ports]
         yield "\n".join((f"# {name} (port)", "", *lines))
 
 
@@ -184,7 +184,9 @@ def _unit(name: str) -> Iterator[str]:
         one = in_si(f"1 {name}")
         same = "" if unit.symbol == name or si_symbol(unit) == name else f", the same as {unit.symbol}"
         value = "" if one in (f"1 {name}", "1") else f" 1 {name} is {one}{same}."
-        others = [each.symbol for each in symbols() if each.dimension == unit.dimension and each.symbol != unit.symbol]
+        others = [
+            other.symbol for other in symbols() if other.dimension == unit.dimension and other.symbol != unit.symbol
+        ]
         beside = f"\n\ncompares with: {', '.join(others)}" if others else ""
         yield f"# {name} (unit)\n\nMeasures {dimension_name(unit)}.{value}{beside}"
 
@@ -201,9 +203,9 @@ def _verdicts() -> Iterator[str]:
 def _likely(name: str) -> tuple[str, ...]:
     """Names similar to a name, or else names that contain it, of the kind that it has the form of."""
     kind = _nodes if name[:1].isupper() else _rules if "-" in name else _names
-    parts = [each for each in kind() if len(name) > 2 and name.casefold() in each.casefold()]
+    parts = [known_name for known_name in kind() if len(name) > 2 and name.casefold() in known_name.casefold()]
     close = ELSEWHERE.get(name) or near(name, kind()) or near(name, _names())
-    return close or tuple(sorted(parts, key=lambda each: (len(each), each))[:5]) or _units(name)
+    return close or tuple(sorted(parts, key=lambda known_name: (len(known_name), known_name))[:5]) or _units(name)
 
 
 def _units(name: str) -> tuple[str, ...]:
@@ -233,7 +235,7 @@ def _lists() -> dict[str, Callable[[], Iterable[str]]]:
         "qualities": lambda: (f"{quality.id:<58} {quality.name}" for quality in qualities()),
         "words": lambda: (f"{one.words:<20} {one.part:<22} {one.brief}" for one in PHRASES),
         "signs": lambda: (f"{sign:<12} {form:<38} {meaning}" for sign, form, meaning in SIGNS),
-        "attributes": lambda: (f"{each.name:<20} {each.doc}" for each in RESERVED_ATTRIBUTES.values()),
+        "attributes": lambda: (f"{attribute.name:<20} {attribute.doc}" for attribute in RESERVED_ATTRIBUTES.values()),
         "verdicts": _verdicts,
         "units": lambda: (f"{measured:<22} {' '.join(units)}" for measured, units in by_dimension.items()),
     }

@@ -23,23 +23,25 @@ _ROUNDS: Final = 10  # of fixing: a fix may enable another
 
 def fix(groups: Iterable[FileGroup], is_wanted: Callable[[Diagnostic], bool]) -> tuple[tuple[FileGroup, ...], int]:
     """The groups with the safe fixes of the requested files applied, and how many these are; nothing is written."""
-    done: list[FileGroup] = []
+    fixed_groups: list[FileGroup] = []
     count = 0
     finished: dict[str, File] = {}  # of earlier groups: a file may be in several factories
     for group in groups:
         workspace = _with_files(group.workspace, finished) if finished else group.workspace
         writable = tuple(path for path in group.given if path not in group.damaged and path not in finished)
         for _ in range(_ROUNDS):
-            each = zip(writable, check_each(workspace, writable), strict=True)
-            texts, applied = fixed(workspace, {path: tuple(filter(is_wanted, found)) for path, found in each})
+            checked = zip(writable, check_each(workspace, writable), strict=True)
+            texts, applied = fixed(
+                workspace, {path: tuple(filter(is_wanted, diagnostics)) for path, diagnostics in checked}
+            )
             if not applied:
                 break
             count += applied
             for path, text in texts.items():
                 workspace = with_source(workspace, path, text)
         finished.update((path, workspace.files[path]) for path in group.given)
-        done.append(replace(group, workspace=workspace))
-    return tuple(done), count
+        fixed_groups.append(replace(group, workspace=workspace))
+    return tuple(fixed_groups), count
 
 
 def write_fixes(
@@ -47,7 +49,7 @@ def write_fixes(
 ) -> tuple[tuple[FileGroup, ...], tuple[LoadProblem, ...]]:
     """Write what differs, and the new text of standard input to standard output; returns the groups as they
     are then."""
-    done: list[FileGroup] = []
+    written: list[FileGroup] = []
     trouble: list[LoadProblem] = []
     finished: dict[str, File] = {}
     for old, new in zip(before, after, strict=True):
@@ -66,8 +68,8 @@ def write_fixes(
                     trouble.append(LoadProblem(path, f"cannot be written: {error.strerror}"))
                     files[path] = old.workspace.files[path]  # the file on the disk still has its findings
             finished[path] = files[path]
-        done.append(replace(new, workspace=_with_files(new.workspace, files)) if trouble else new)
-    return tuple(done), tuple(trouble)
+        written.append(replace(new, workspace=_with_files(new.workspace, files)) if trouble else new)
+    return tuple(written), tuple(trouble)
 
 
 def show_fixes(
@@ -89,8 +91,8 @@ def show_fixes(
 
 def _with_files(workspace: Workspace, files: Mapping[str, File]) -> Workspace:
     """The workspace with other files in the place of those of the same paths."""
-    known = {path: files.get(path, file) for path, file in workspace.files.items()}
-    return Workspace(known, workspace.project, workspace.factory)
+    replaced = {path: files.get(path, file) for path, file in workspace.files.items()}
+    return Workspace(replaced, workspace.project, workspace.factory)
 
 
 def text_diff(path: str, old: str, new: str, *, is_coloured: bool = False) -> Iterator[str]:

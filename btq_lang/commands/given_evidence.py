@@ -27,19 +27,19 @@ if TYPE_CHECKING:
     from btq_lang.workspace.config import Project
 
 
-def verdicts_for(given: Sequence[str], groups: Sequence[FileGroup], problems: list[str]) -> VerdictsOf | None:
+def verdicts_for(evidence: Sequence[str], groups: Sequence[FileGroup], problems: list[str]) -> VerdictsOf | None:
     """A function from the path of a mission to the verdicts on it; None: there is no evidence.
 
     Args:
-        given: files that `btq verify --format json` wrote, stores, and logs; none: the logs of the project, if there
+        evidence: files that `btq verify --format json` wrote, stores, and logs; none: the logs of the project, if there
             are any, else its store.
         problems: errors are appended.
     """
-    given = evidence_paths(given, groups)
-    if not given:
+    evidence = evidence_paths(evidence, groups)
+    if not evidence:
         return None
-    documents = [path for path in given if path.endswith(".json")]
-    logs = [path for path in given if path not in documents]
+    documents = [path for path in evidence if path.endswith(".json")]
+    logs = [path for path in evidence if path not in documents]
     stores = [path for path in logs if is_store(path)]
     logs = [path for path in logs if path not in stores]
     by_mission: dict[str, list[RequirementVerdict]] = {}
@@ -57,10 +57,10 @@ def verdicts_for(given: Sequence[str], groups: Sequence[FileGroup], problems: li
     return lambda mission: by_mission.get(mission) or by_mission.get(name_of(mission), [])
 
 
-def evidence_paths(given: Sequence[str], groups: Sequence[FileGroup]) -> Sequence[str]:
-    """The paths of the evidence that counts; `given`: as of `verdicts_for`."""
-    if given:
-        return given
+def evidence_paths(evidence: Sequence[str], groups: Sequence[FileGroup]) -> Sequence[str]:
+    """The paths of the evidence that counts; `evidence`: as of `verdicts_for`."""
+    if evidence:
+        return evidence
     project = _project(groups)
     logs = [path for path in logs_of(project) if os.path.exists(path)]
     store = store_of(project)
@@ -112,10 +112,10 @@ def _stored(store: str, problems: list[str]) -> Sequence[tuple[str, Sequence[Req
 
 
 def _judged(
-    given: Sequence[str], groups: Sequence[FileGroup], problems: list[str]
+    log_paths: Sequence[str], groups: Sequence[FileGroup], problems: list[str]
 ) -> Iterator[tuple[str, Sequence[RequirementVerdict]]]:
     project = _project(groups)
-    logs, wrong = logs_below(given, project)
+    logs, wrong = logs_below(log_paths, project)
     sides = {side.mission: side for side in side_files_beside(logs)}
     missions = [
         candidate(group.workspace, path, side_of(path, sides))

@@ -47,23 +47,23 @@ def run(options: GraphOptions, messages: CommandOutput) -> int:
     """Draw the trees of one file; of a file with errors, all valid parts."""
     refuse(usage_problem(options.paths) or form_problem(options.format, options.output, FORMATS))
     groups, problems = Files().groups(options.paths, options.stdin_filename)
-    given = [(group.workspace, path) for group in groups for path in group.given]
-    if len(given) > 1:
-        problems += (LoadProblem(given[1][1], "expected one file to draw, found more"),)
+    requested = [(group.workspace, path) for group in groups for path in group.given]
+    if len(requested) > 1:
+        problems += (LoadProblem(requested[1][1], "expected one file to draw, found more"),)
     messages.problems(problems)
     refuse(no_mission_below(options.paths, groups))
-    if problems or not given:
+    if problems or not requested:
         return 2
-    ((workspace, path),) = given
+    ((workspace, path),) = requested
     drawn = _figures(options, groups, workspace, path)
     if not drawn:
         raise Refused(f"{shown(path)} has no trees")
     form = form_of(options.format, options.output, FORMATS)
     write_output(messages, options.output, draw(drawn, form, options.direction))
-    unread = [each for each in check(workspace, path) if each.rule in UNREADABLE]
+    unread = [diagnostic for diagnostic in check(workspace, path) if diagnostic.rule in UNREADABLE]
     if unread:
         text = workspace.files[path].source
-        report = Report(tuple([Finding(path, text, each) for each in unread]), {path: text}, (path,))
+        report = Report(tuple([Finding(path, text, diagnostic) for diagnostic in unread]), {path: text}, (path,))
         messages.add("".join(render("concise", with_paths(report, shown))), "remark")
         messages.remark("btq graph: the picture shows only what could be read")
     return int(bool(unread))

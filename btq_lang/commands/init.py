@@ -75,7 +75,7 @@ class InitOptions(Record):
     """The options of `btq init`.
 
     Attributes:
-        from_xml: write only a project file, for the XML that is there.
+        from_xml: write only a project file, for existing XML.
         convert: write .btq files beside the XML, too.
     """
 

@@ -12,8 +12,7 @@ from typing import Final
 from urllib.parse import urlsplit
 
 from btq_lang.commands.candidates import candidates, strict_problem
-from btq_lang.commands.live_lines import Lines
-from btq_lang.commands.live_screen import Screen, is_screen
+from btq_lang.commands.live_screen import Lines, Screen, is_screen
 from btq_lang.commands.output import form_of, form_problem, is_coloured
 from btq_lang.commands.stored import name_problem, opened, with_store
 from btq_lang.commands.verdict_events import events_problem
@@ -70,10 +69,10 @@ def stopped_by_signals() -> Iterator[Event]:
         restore()
 
     def restore() -> None:
-        for each, handler in before.items():
-            signal.signal(each, handler)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
-    before = {each: signal.signal(each, raise_it) for each in (signal.SIGINT, signal.SIGTERM)}
+    before = {number: signal.signal(number, raise_it) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
         yield stop
     finally:

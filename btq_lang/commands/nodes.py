@@ -53,24 +53,24 @@ def run(options: NodesOptions, messages: CommandOutput) -> int:
     if problems:
         return 2
     try:
-        found = read_nodes(files, distributions_of(project))
+        cpp_nodes = read_nodes(files, distributions_of(project))
     except GrammarMissing as error:
         raise Refused(MISSING) from error
     sources = " ".join(options.paths)
-    write_output(messages, options.output, _written(found, form, sources))
-    remarks = findings(found, files) | {path: nodes for path, (_, nodes) in exported.items() if nodes}
+    write_output(messages, options.output, _written(cpp_nodes, form, sources))
+    remarks = findings(cpp_nodes, files) | {path: nodes for path, (_, nodes) in exported.items() if nodes}
     texts = files | {path: text for path, (text, _) in exported.items()}
     for path in sorted(remarks):
         lines = LineIndex(texts[path])
-        for each in remarks[path]:
-            line, column = lines.position(each.span.start)
-            what = f"{each.effective_severity.value}[{each.rule}] {each.message}"
+        for remark in remarks[path]:
+            line, column = lines.position(remark.span.start)
+            what = f"{remark.effective_severity.value}[{remark.rule}] {remark.message}"
             messages.remark(f"{path}:{line + 1}:{column + 1}: {what}")
-    is_empty = bool(files) and not found.nodes and not remarks
+    is_empty = bool(files) and not cpp_nodes.nodes and not remarks
     if is_empty:
         messages.remark(f"btq nodes: {nothing_registered(files)}")
-    ports = sum(len(node.ports) for node in found.nodes)
-    counts = counted(len(found.nodes), "node"), counted(ports, "port"), counted(len(files), "file")
+    ports = sum(len(node.ports) for node in cpp_nodes.nodes)
+    counts = counted(len(cpp_nodes.nodes), "node"), counted(ports, "port"), counted(len(files), "file")
     messages.remark("{} with {} in {}".format(*counts))
     return int(bool(remarks) or is_empty)
 
@@ -79,14 +79,14 @@ def _texts(paths: Sequence[str], project: Project) -> tuple[dict[str, str], dict
     """The C++ files below some paths, as they are shown, those of pluginlib, and what cannot be read; folders are left
     out as in a pattern of `nodes` in the project file."""
     problems: list[LoadProblem] = []
-    found: dict[str, None] = {}
+    candidates: dict[str, None] = {}
     for top in map(absolute, paths):
         below, unreachable = collect([top], project, (*CPP_SUFFIXES, ".xml"))
         problems += unreachable
-        found.update(dict.fromkeys(below if top in below else without_tests(below, top)))
+        candidates.update(dict.fromkeys(below if top in below else without_tests(below, top)))
     texts = {}
     exported: dict[str, Exported] = {}
-    for path in found:
+    for path in candidates:
         text, problem = read(path)
         if path.endswith(".xml"):
             if text is not None and (nodes := exported_nodes(text)) is not None:
@@ -107,14 +107,14 @@ def _is_ours(path: str) -> bool:
     return path == "-" or not os.path.lexists(target) or MADE_BY in head(target)
 
 
-def _written(found: CppNodes, form: str, sources: str) -> str:
+def _written(cpp_nodes: CppNodes, form: str, sources: str) -> str:
     if form == "html":
         from btq_lang.projects.node_writers import as_html
 
-        return as_html(found, sources)
+        return as_html(cpp_nodes, sources)
     from btq_lang.projects.node_writers import as_btq, as_xml
 
-    return (as_btq if form == "btq" else as_xml)(found.nodes, sources)
+    return (as_btq if form == "btq" else as_xml)(cpp_nodes.nodes, sources)
 
 
 def exported_nodes(text: str) -> tuple[Diagnostic, ...] | None:
@@ -131,13 +131,13 @@ def exported_nodes(text: str) -> tuple[Diagnostic, ...] | None:
 
 
 def _nodes(element: Element) -> Iterator[Diagnostic]:
-    for each in element.elements:
-        base = each.get("base_class_type") or ""
-        if each.tag == "class" and base.startswith("BT::") and base.removeprefix("BT::") in ENGINE:
-            name = each.get("type") or ""
+    for child in element.elements:
+        base = child.get("base_class_type") or ""
+        if child.tag == "class" and base.startswith("BT::") and base.removeprefix("BT::") in ENGINE:
+            name = child.get("type") or ""
             message = f"exports `{name}`, a {base}, to pluginlib; under which ID trees have it cannot be seen"
-            yield Diagnostic(UNSEEN, Span(each.start, each.end), message)
-        yield from _nodes(each)
+            yield Diagnostic(UNSEEN, Span(child.start, child.end), message)
+        yield from _nodes(child)
 
 
 _ROOTS: Final = ("library", "class_libraries")

@@ -57,8 +57,8 @@ def write_report(report: Report, options: CheckOptions, mended: int, messages: C
     width = terminal_width() if stream.isatty() and not options.output_file else 120
     colour = options.color == "always" if options.output_file else is_coloured(options.color, stream.isatty())
     pieces = _pieces(_named(report, form), form, options.statistics, colour, width)
-    is_told = mended and form in FOR_PEOPLE and not options.quiet
-    last = f"Fixed {counted(mended, 'problem')}\n" if is_told else ""
+    is_shown = mended and form in FOR_PEOPLE and not options.quiet
+    last = f"Fixed {counted(mended, 'problem')}\n" if is_shown else ""
     if options.output_file or (form not in FOR_PEOPLE and stream is sys.stdout):
         write_output(messages, options.output_file, "".join((*pieces, last)), form)
     else:

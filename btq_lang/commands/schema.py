@@ -63,10 +63,14 @@ def _write_xsd(options: SchemaOptions, messages: CommandOutput) -> int:
     # A schema is of version 4, also for files that are not.
     groups = tuple(replace(group, workspace=_of_version_4(group.workspace)) for group in groups)
     checked = [(group, path, check(group.workspace, path)) for group in groups for path in group.given]
-    unknown = frozenset().union(*(unknown_nodes(group.workspace.files[path], found) for group, path, found in checked))
+    unknown = frozenset().union(
+        *(unknown_nodes(group.workspace.files[path], diagnostics) for group, path, diagnostics in checked)
+    )
     text = xsd([group.workspace for group in groups], target, unknown)
     write_output(messages, options.output, text)
-    unread = [path for _, path, found in checked if any(each.rule in UNREADABLE for each in found)]
+    unread = [
+        path for _, path, diagnostics in checked if any(diagnostic.rule in UNREADABLE for diagnostic in diagnostics)
+    ]
     for path in unread:
         messages.remark(f"btq schema: {shown(path)} has errors, so nodes may be missing; run btq check")
     return int(bool(unread))
@@ -85,12 +89,12 @@ def _target(groups: Iterable[FileGroup], paths: Sequence[str]) -> str:
     return next(version for version in reversed(engine_lines()) if version in targets or version == engine_lines()[0])
 
 
-def unknown_nodes(file: File, found: Iterable[Diagnostic]) -> frozenset[str]:
+def unknown_nodes(file: File, diagnostics: Iterable[Diagnostic]) -> frozenset[str]:
     """The names in a file that the checks call unknown nodes."""
     return frozenset(
-        file.source[each.span.start : each.span.end].strip("\"'")
-        for each in found
-        if each.rule in _UNKNOWN and each.effective_severity in (Severity.ERROR, Severity.WARNING)
+        file.source[diagnostic.span.start : diagnostic.span.end].strip("\"'")
+        for diagnostic in diagnostics
+        if diagnostic.rule in _UNKNOWN and diagnostic.effective_severity in (Severity.ERROR, Severity.WARNING)
     )
 
 

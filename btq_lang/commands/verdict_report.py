@@ -119,7 +119,9 @@ def progress_to_editor(logs: int) -> Callable[[int, int], None]:
 
 def write_summary(path: str, report: VerdictReport) -> None:
     """Write the summary, whole or not at all, with few violations of each clause."""
-    missions = (replace(each, requirements=tuple(map(_shortened, each.requirements))) for each in report.missions)
+    missions = (
+        replace(mission, requirements=tuple(map(_shortened, mission.requirements))) for mission in report.missions
+    )
     write_file(path, render(replace(report, missions=tuple(missions))))
 
 
@@ -131,7 +133,7 @@ def _with_few_violations(clause: ClauseVerdict) -> ClauseVerdict:
     if len(clause.violations) <= _VIOLATIONS:
         return clause
     worst = worst_violation(clause)
-    others = [each for each in clause.violations if each is not worst]
+    others = [violation for violation in clause.violations if violation is not worst]
     return replace(clause, violations=(worst, *others[: _VIOLATIONS - 1]))
 
 

@@ -63,7 +63,7 @@ async def document_diagnostic(server: Server, params: types.DocumentDiagnosticPa
 
 @handlers.feature(types.WORKSPACE_DIAGNOSTIC)
 async def workspace_diagnostic(server: Server, params: types.WorkspaceDiagnosticParams) -> Json:
-    known = {server.convert.path(one.uri): one.value for one in params.previous_result_ids}
+    result_ids = {server.convert.path(previous.uri): previous.value for previous in params.previous_result_ids}
     if not server.pulls_all:
         server.pulls_all = True
         server.publish_projects()
@@ -71,21 +71,23 @@ async def workspace_diagnostic(server: Server, params: types.WorkspaceDiagnostic
     paths = server.session.paths() if server.session.is_on("checkClosedFiles") else ()
     # Diagnostics of files that are deleted, or no longer wanted, disappear only after an empty report, also for
     # files whose result id the editor has forgotten, as VS Code does when a document is closed.
-    gone = (known.keys() | server.shown) - set(paths) - server.session.open.keys()
+    gone = (result_ids.keys() | server.shown) - set(paths) - server.session.open.keys()
     items = [_about(server.convert.uri(path), None, EMPTY_REPORT) for path in sorted(gone)]
-    spelt = [
-        one.uri for one in params.previous_result_ids if server.convert.uri(server.convert.path(one.uri)) != one.uri
+    other_uris = [
+        previous.uri
+        for previous in params.previous_result_ids
+        if server.convert.uri(server.convert.path(previous.uri)) != previous.uri
     ]
-    items += [_about(uri, None, EMPTY_REPORT) for uri in spelt]  # the file's URI has changed since then
+    items += [_about(uri, None, EMPTY_REPORT) for uri in other_uris]  # the file's URI has changed since then
     async with checking(
-        server, 0 if known else len(paths)
+        server, 0 if result_ids else len(paths)
     ) as report_done:  # an editor with results asks for changes only
-        for done, path in enumerate(paths, 1):
-            report = server.report(path, known.get(path))
+        for number, path in enumerate(paths, 1):
+            report = server.report(path, result_ids.get(path))
             items.append(_about(server.convert.uri(path), server.versions.get(path), report))
             server.session.let_go()
-            if done % BATCH == 0:
-                report_done(done)
+            if number % BATCH == 0:
+                report_done(number)
                 if params.partial_result_token is not None:
                     token = json.dumps(params.partial_result_token)
                     server.protocol.notify_plain(types.PROGRESS, Json(f'{{"token": {token}, "value": {_all(items)}}}'))

@@ -125,7 +125,7 @@ class Server(LanguageServer):
         self.versions: dict[str, int] = {}
         self.published: dict[str, tuple[int | None, int | None]] = {}  # hashes of what was published, and versions
         self.pulls_all = False  # the editor pulls workspace diagnostics
-        self.shown: set[str] = set()  # the files of which a pulling editor may still show diagnostics
+        self.shown: set[str] = set()  # files whose diagnostics a pulling editor may still show
         self.tokens: dict[str, tuple[str, Colours]] = {}
         self.count = 0
         self.schedule = CheckSchedule(self)
@@ -328,8 +328,8 @@ class Server(LanguageServer):
         if path in self.session.projects:
             return self.convert.problems(*self.session.projects[path])
         if path in self.session.parameters:
-            named, found = self.session.parameters[path]
-            return self.convert.findings(named, path, found)
+            named, diagnostics = self.session.parameters[path]
+            return self.convert.findings(named, path, diagnostics)
         workspace = self.session.workspace_of(path)
         if workspace is None or not self.session.knows(path):
             return None
@@ -364,18 +364,18 @@ class Server(LanguageServer):
     def publish(self, path: str) -> None:
         """Publish the diagnostics of a file, unless they are already published."""
         version = self.versions.get(path)
-        found = (
+        diagnostics = (
             self.diagnostics_of(path) if path in self.session.open or self.session.is_on("checkClosedFiles") else None
         )
-        if found is None:
+        if diagnostics is None:
             self.withdraw(path)
             self.session.forget(path)
             return
-        known = self.published.get(path)
-        now = self.published[path] = hash(found) if found != NO_ITEMS else None, version
-        if now != known and (found != NO_ITEMS or known is not None or path in self.session.open):
+        before = self.published.get(path)
+        current = self.published[path] = hash(diagnostics) if diagnostics != NO_ITEMS else None, version
+        if current != before and (diagnostics != NO_ITEMS or before is not None or path in self.session.open):
             name = json.dumps({"uri": self.convert.uri(path), **({"version": version} if version is not None else {})})
-            params = Json(f'{name[:-1]}, "diagnostics": {found}}}')
+            params = Json(f'{name[:-1]}, "diagnostics": {diagnostics}}}')
             self.protocol.notify_plain(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS, params)
 
     def publish_projects(self) -> None:

@@ -77,13 +77,13 @@ async def _register_watchers(server: Server) -> None:
     # If a folder is deleted as a whole, an editor reports only the folder.
     watchers.append(types.FileSystemWatcher("**/*", types.WatchKind.Delete))
     options = types.DidChangeWatchedFilesRegistrationOptions(watchers)
-    wanted = types.Registration("watch", types.WORKSPACE_DID_CHANGE_WATCHED_FILES, options)
-    await server.client_register_capability_async(types.RegistrationParams([wanted]))
+    registration = types.Registration("watch", types.WORKSPACE_DID_CHANGE_WATCHED_FILES, options)
+    await server.client_register_capability_async(types.RegistrationParams([registration]))
 
 
 async def _ask_settings(server: Server) -> None:
-    wanted = types.ConfigurationParams([types.ConfigurationItem(section="btq")])
-    answer = await server.workspace_configuration_async(wanted)
+    params = types.ConfigurationParams([types.ConfigurationItem(section="btq")])
+    answer = await server.workspace_configuration_async(params)
     server.session.settle(answer[0] if answer else None)
 
 

@@ -1,4 +1,4 @@
-"""What logs show of the open projects' requirements: a process of its own judges the logs, and its summary is loaded.
+"""Verdicts on the open projects' requirements: a process of its own judges the logs, and its summary is loaded.
 
 One invariant: the server never reads a log.  It looks at names, sizes and times of the logs that `[evidence]` names, in
 a thread; when these have changed, and then rest, `btq verify --summary` reads the logs, one project at a time.
@@ -62,7 +62,7 @@ def register(server: Server) -> None:
         """The runs in the logs that people look for: the `run`, and what it is."""
         from btq_lang.ide.runs import runs_to_show  # few projects have logs
 
-        return [{"run": run, "said": said} for run, said in runs_to_show(*judged(document))]
+        return [{"run": run, "said": description} for run, description in runs_to_show(*judged(document))]
 
     @server.command(RUN)
     async def run(document: types.TextDocumentIdentifier, number: int) -> dict[str, object]:
@@ -73,10 +73,10 @@ def register(server: Server) -> None:
         where = logged_run(workspace, path, evidence, number)
         if where is None:
             raise RequestRefused(f"the logs have no run {number} of this mission")
-        found = await logs.read_run(evidence.root, where)
-        if isinstance(found, str):
-            raise RequestRefused(found)
-        drawn = run_on_picture(workspace, path, where, found)
+        run_steps = await logs.read_run(evidence.root, where)
+        if isinstance(run_steps, str):
+            raise RequestRefused(run_steps)
+        drawn = run_on_picture(workspace, path, where, run_steps)
         if drawn is None:
             raise RequestRefused("this run is of an earlier text: the trees have been edited since, or are not saved")
         return drawn
@@ -107,7 +107,7 @@ class Logs:
                 self._process.terminate()
 
     def saved(self, path: str) -> None:
-        """Note that a file has been saved: if the summary says nothing of the new text, the logs are read again."""
+        """Note that a file has been saved: if the summary does not fit the new text, the logs are read again."""
         session = self._server.session
         workspace = session.workspace_of(path)
         if workspace is None or workspace.project.root not in self._shown:
@@ -126,8 +126,8 @@ class Logs:
         """A run as `btq verify --run` prints it, or why there is none."""
         log, number = os.path.join(root, run.log), str(run.number_in_log)
         process = await _started(root, ("verify", "--no-store", log, "--mission", run.mission, "--run", number))
-        printed, said = await process.communicate()
-        return json.loads(printed) if process.returncode == 0 else said.decode(errors="replace").strip()
+        output, errors = await process.communicate()
+        return json.loads(output) if process.returncode == 0 else errors.decode(errors="replace").strip()
 
     async def _watch(self) -> None:
         while True:
@@ -142,7 +142,11 @@ class Logs:
 
     def _projects(self) -> Sequence[Project]:
         projects = (workspace.project for workspace in self._server.session.workspaces())
-        return [*{each.root: each for each in projects if each.evidence is not None and each.evidence.logs}.values()]
+        return [
+            *{
+                project.root: project for project in projects if project.evidence is not None and project.evidence.logs
+            }.values()
+        ]
 
     async def _look(self, project: Project) -> None:
         root = project.root
@@ -161,7 +165,7 @@ class Logs:
 
     def _missions(self, root: str) -> set[str]:
         workspaces = self._server.session.workspaces()
-        return {path for each in workspaces if each.project.root == root for path in each.files}
+        return {path for workspace in workspaces if workspace.project.root == root for path in workspace.files}
 
     async def _judge(self, root: str, summary: str) -> None:
         """Have the logs judged, with progress in the editor."""
@@ -170,16 +174,16 @@ class Logs:
         self._process = process
         assert process.stdout is not None, "it is a pipe"
         assert process.stderr is not None, "likewise"
-        said = asyncio.ensure_future(process.stderr.read())
+        errors = asyncio.ensure_future(process.stderr.read())
         async with progress(self._server, "judging logs") as report:
             async for line in process.stdout:
                 now = json.loads(line)
                 message = f"{now['done']} of {now['of']} logs, {now['runs']} runs"
                 report(100 * now["done"] // max(now["of"], 1), message)
         if await process.wait() == _TROUBLE:
-            logging.getLogger(__name__).warning((await said).decode(errors="replace").strip())
+            logging.getLogger(__name__).warning((await errors).decode(errors="replace").strip())
         else:
-            await said
+            await errors
 
     def _show(self, root: str, summary: str) -> None:
         from btq_lang.evidence.written_verdicts import NotVerdicts, read_verdicts  # few projects have logs
@@ -191,7 +195,7 @@ class Logs:
         except NotVerdicts as error:
             logging.getLogger(__name__).warning("%s: %s", summary, error)
             return
-        by_path = {absolute(os.path.join(root, each.file)): each for each in missions if each.runs}
+        by_path = {absolute(os.path.join(root, mission.file)): mission for mission in missions if mission.runs}
         self._server.session.show(root, ProjectVerdicts(root, by_path))
         self._server.schedule.check_soon(self._server.session.paths())
         self._server.refresh()
@@ -209,7 +213,7 @@ async def _started(folder: str, words: Sequence[str]) -> Process:
 
 
 def _state(project: Project) -> str:
-    """A digest of what is judged: the logs with their sizes and times, and what the project says of them."""
+    """A digest of what is judged: the logs with their sizes and times, and the project's settings for them."""
     from btq_lang.projects.files import logs_of
     from btq_lang.workspace.loader import stamp
 
@@ -244,10 +248,10 @@ def _cache() -> str:
 def _forget_others(summary: str, root: str) -> None:
     """Remove older summaries of a project."""
     folder, name = os.path.split(summary)
-    for each in os.listdir(folder):
-        if each.startswith(_digest(root)) and each != name:
+    for entry in os.listdir(folder):
+        if entry.startswith(_digest(root)) and entry != name:
             with suppress(OSError):
-                os.remove(os.path.join(folder, each))
+                os.remove(os.path.join(folder, entry))
 
 
 PAUSE = 5  # seconds between two looks at the logs

@@ -124,7 +124,7 @@ def _links(
         from btq_lang.catalog.nav2 import FILES  # as all of the catalog, after the start
 
         targets = feature(workspace, path, offset)
-        if any(target.path in FILES.values() for target in targets):  # the code says more than the table
+        if any(target.path in FILES.values() for target in targets):  # the code has more than the table
             workspace = server.session.with_code_of_nav2(workspace)
             targets = feature(workspace, path, offset)
         return workspace, targets

@@ -41,7 +41,7 @@ class BuildOptions(Record):
         is_verbatim: exactly the content of the file, without repairs and additions.
         is_check: write nothing, compare.
         is_forced: overwrite XML that btq did not write.
-        is_verbose: tell of every clause whether and how it is enforced.
+        is_verbose: report for every clause whether and how it is enforced.
         report: the format of errors.
         is_coloured: errors are coloured.
     """
@@ -139,7 +139,7 @@ def _version_problem(groups: tuple[FileGroup, ...], options: BuildOptions) -> st
 def _planned(
     groups: tuple[FileGroup, ...], options: BuildOptions, messages: CommandOutput
 ) -> list[MissionOutput] | None:
-    """What is to be written; None: a message says why nothing is written."""
+    """The files to write; None: there are none, and a message says why."""
     empty = [path for group in groups for path in without_tree(group.workspace, group.given)]
     for path in empty:
         messages.remark(f"btq build: {shown(path)} has no tree to run")
@@ -159,7 +159,7 @@ def _sources(groups: tuple[FileGroup, ...]) -> tuple[str, ...]:
 
 
 def _stale(groups: tuple[FileGroup, ...], options: BuildOptions) -> list[str]:
-    """What an earlier build left beside missions."""
+    """The files that an earlier build left beside missions."""
     return [] if options.output else stale_outputs(os.path.dirname(path) for path in _sources(groups))
 
 
@@ -196,7 +196,7 @@ def _has_errors(groups: tuple[FileGroup, ...], options: BuildOptions, messages: 
 
 
 def _remarks(remarks: Collection[Remark], word: str, groups: tuple[FileGroup, ...], messages: CommandOutput) -> int:
-    """Tell an export's remarks; returns how many."""
+    """Report an export's remarks; returns how many."""
     for remark in remarks:
         file = next(group.workspace.files[remark.path] for group in groups if remark.path in group.workspace.files)
         line, column = file.lines.position(remark.span.start)
@@ -208,40 +208,48 @@ def _remarks(remarks: Collection[Remark], word: str, groups: tuple[FileGroup, ..
 def _clauses(
     planned: list[Enforcement], groups: tuple[FileGroup, ...], is_verbose: bool, messages: CommandOutput
 ) -> None:
-    """Tell how the clauses of requirements are covered, with a line for each one demanded to be enforced that is not,
-    or that has a remark.
+    """Report how the clauses of requirements are covered, with a line for each clause that has a remark, or that is
+    demanded to be enforced and is not.
     """
     clauses: dict[object, ClauseEnforcement] = {}
-    for each in (each for done in planned for applied in done.clauses for each in applied):
-        key = each.requirement, each.clause, each.place.path, each.place.span, id(each.node and each.node.node)
-        if key not in clauses or each.way == "enforced":  # one file may enforce what another cannot
-            clauses[key] = each
-    for each in clauses.values():
-        if not is_verbose and (not each.asked or (each.way == "enforced" and not each.why)):
+    for clause in (clause for enforcement in planned for applied in enforcement.clauses for clause in applied):
+        key = (
+            clause.requirement,
+            clause.clause,
+            clause.place.path,
+            clause.place.span,
+            id(clause.node and clause.node.node),
+        )
+        if key not in clauses or clause.way == "enforced":  # one file may enforce what another cannot
+            clauses[key] = clause
+    for clause in clauses.values():
+        if not is_verbose and (not clause.asked or (clause.way == "enforced" and not clause.why)):
             continue
-        where = f" at {each.subject}" if each.subject else ""
-        way = "not enforced, monitored" if each.asked and each.way == "monitored" else each.way
-        why = f": {each.why}" if each.why else ""
-        remark = Remark(*_absolute(each.place, groups), f"{each.requirement}, `{each.clause}`{where}{why}")
+        where = f" at {clause.subject}" if clause.subject else ""
+        way = "not enforced, monitored" if clause.asked and clause.way == "monitored" else clause.way
+        why = f": {clause.why}" if clause.why else ""
+        remark = Remark(*_absolute(clause.place, groups), f"{clause.requirement}, `{clause.clause}`{where}{why}")
         _remarks((remark,), way, groups, messages)
-    known = {(each.requirement, each.clause, each.place.path, each.place.span) for each in clauses.values()}
+    with_nodes = {
+        (clause.requirement, clause.clause, clause.place.path, clause.place.span) for clause in clauses.values()
+    }
     loose = {  # without those whose node another file has
-        found: Remark(*_absolute(claim.place, groups), f"{requirement.name}, `{claim.text}` applies to no node")
-        for done in planned
-        for requirement, claim in done.loose
-        if (found := (requirement.name, claim.text, claim.place.path, claim.place.span)) not in known
+        clause_key: Remark(*_absolute(claim.place, groups), f"{requirement.name}, `{claim.text}` applies to no node")
+        for enforcement in planned
+        for requirement, claim in enforcement.loose
+        if (clause_key := (requirement.name, claim.text, claim.place.path, claim.place.span)) not in with_nodes
     }
     _remarks(loose.values(), "not checked", groups, messages)
     if clauses:
-        ways = [each.way for each in clauses.values()]
+        ways = [clause.way for clause in clauses.values()]
         counted = [f"{ways.count(way)} {way}" for way in ("enforced", "monitored", "reviewed") if way in ways]
         counted += [f"{len(loose)} without a node"] if loose else []
         messages.remark(f"clauses of requirements: {', '.join(counted)}")
 
 
 def _guesses(exports: list[Export], messages: CommandOutput) -> None:
-    """Tell which nodes got a guessed category in the models, because the mission does not declare it."""
-    guessed = {name: category for each in exports for name, category in each.guessed.items()}
+    """Report which nodes got a guessed category in the models, because the mission does not declare it."""
+    guessed = {name: category for export in exports for name, category in export.guessed.items()}
     shown = [f"{name} ({category})" for name, category in sorted(guessed.items())[:_GUESSES_SHOWN]]
     if len(guessed) > len(shown):
         shown.append(f"{len(guessed) - len(shown)} more")
@@ -259,9 +267,9 @@ def _absolute(place: Place, groups: tuple[FileGroup, ...]) -> tuple[str, Span]:
 
 def _same_place(planned: list[MissionOutput]) -> Iterator[str]:
     """Messages for two files that would be written to one place: `a.btq` and `a.qualitybtcpp`."""
-    known: dict[str, str] = {}
+    path_at: dict[str, str] = {}
     for output in planned:
-        other = known.setdefault(output.place, output.path)
+        other = path_at.setdefault(output.place, output.path)
         if other != output.path:
             yield f"{shown(other)} and {shown(output.path)} would both be written to {shown(output.place)}"
 
@@ -276,12 +284,12 @@ def _targets(output: MissionOutput) -> Iterator[_Target]:
 
 
 def _old_text(path: str) -> str | None:
-    """The text of a file, empty if it cannot be read: then it is not one that btq wrote."""
+    """The text of a file; empty: it cannot be read, so btq did not write it; None: there is no file."""
     return (read(path)[0] or "") if os.path.exists(path) else None
 
 
 def _compare(targets: list[_Target], options: BuildOptions, stale: list[str], messages: CommandOutput) -> int:
-    """`--check`: tell which files a build would change or remove."""
+    """`--check`: report which files a build would change or remove."""
     for path in stale:
         messages.result(f"stale: {shown(path)}")
     outdated = [target for target in targets if target.text != target.old]
@@ -355,17 +363,17 @@ def stale_outputs(folders: Iterable[str]) -> list[str]:
 
     Subfolders are not searched, nor are targets of `-o`, which have no missions beside them.
     """
-    found: list[str] = []
+    stale: list[str] = []
     for folder in sorted(set(folders)):
         for xml in sorted(glob.glob(os.path.join(glob.escape(folder), "*.xml"))):
             stem = os.path.splitext(xml)[0]
             if any(os.path.exists(stem + suffix) for suffix in SUFFIXES) or not is_generated(read(xml)[0] or ""):
                 continue
-            found.append(xml)
+            stale.append(xml)
             side = side_path(xml)
             if os.path.exists(side) and is_side_file(read(side)[0] or ""):
-                found.append(side)
-    return found
+                stale.append(side)
+    return stale
 
 
 _GUESSES_SHOWN: Final = 8

@@ -105,7 +105,7 @@ class Files:
         overlay: texts that replace files on the disk, by path: standard input, an editor's buffers.
         stdin: the path assigned to standard input, once it was read.
         folders: the bases of paths that are shown: the current folder, or an editor's folders.
-        nav2_params: parameter files of Nav2 besides those that projects name.
+        nav2_params: more parameter files of Nav2 than those that projects name.
         project_files: those whose mistakes are requested, and not only reported with their missions.
         parameter_files: all parameter files that were read for the last request.
     """
@@ -219,14 +219,14 @@ class Files:
     def _pools(self, tops: Mapping[str, str], home: FoundProject) -> dict[str, tuple[str, ...]]:
         """The pools of XML files, each with all files in it that may be missions."""
         folders = {(os.path.dirname(path), top) for path, top in tops.items()}
-        pools = {home.project.root} if home.path else {pool_of(*each) for each in folders}
+        pools = {home.project.root} if home.path else {pool_of(*folder) for folder in folders}
         suffixes = (*SUFFIXES, *XML_SUFFIXES)
         return {pool: collect([pool], home.project, suffixes)[0] for pool in sorted(pools)}
 
     def _declared(self, home: FoundProject) -> tuple[tuple[Factory, ...], list[LoadProblem]]:
         """The factories of a project with their files and C++ sources."""
         factories, problems = self._factories(home)
-        if home.project.cpp or any(each.cpp_files for each in factories):
+        if home.project.cpp or any(factory.cpp_files for factory in factories):
             sources = self._sources[home.path or ""] = self.cpp.read(home, factories)
             factories = tuple(map(sources.declared_in, factories))
             problems += sources.problems
@@ -268,7 +268,7 @@ class Files:
         from btq_lang.workspace.factories import Factory  # few projects have any
 
         root = home.project.root
-        named = {absolute(os.path.join(root, each.nav2)) for each in home.project.factories if each.nav2}
+        named = {absolute(os.path.join(root, factory.nav2)) for factory in home.project.factories if factory.nav2}
         for path in self.nav2_params:
             if path not in named:
                 yield Factory(os.path.basename(path), nav2=path)
@@ -302,14 +302,14 @@ class Files:
 
     @cached_property
     def xml(self) -> XmlBelow:
-        """What is known of XML below folders."""
+        """The XML below folders."""
         from btq_lang.projects.xml_below import XmlBelow  # many projects have no XML
 
         return XmlBelow()
 
     @cached_property
     def cpp(self) -> CppFiles:
-        """What is known of C++ sources."""
+        """The C++ sources."""
         from btq_lang.projects.cpp_files import CppFiles  # few projects name any
 
         return CppFiles()

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Refused(Exception):
-    """What a command line asks for is wrong or cannot be done; each argument says why."""
+    """A command line is wrong, or cannot be obeyed; each argument is a reason."""
 
 
 def refuse(*problems: object) -> None:
@@ -29,7 +29,7 @@ class CheckOptions(Record):
 
     paths: Sequence[str] = (".",)
     stdin_filename: str | None = None
-    output_format: str | None = None  # reporting.py says what that means
+    output_format: str | None = None  # None: see `form_of` of reporting.py
     output_file: str | None = None
     statistics: bool = False
     exit_zero: bool = False

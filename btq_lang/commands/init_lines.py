@@ -1,12 +1,13 @@
-"""The lines of a first project file that name nodes: those of Nav2 by distribution, and C++ that registers others.
+"""The parts of a first project file that name nodes and what loads them: the nodes of Nav2 by distribution, C++ that
+registers others, and factories for the parameter files of Nav2.
 
-One invariant: at most one line has the key, and what is not written says why.
+One invariant: what makes something unknown, or needs a distribution that is not known, is a comment that says why.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Container, Iterator, Mapping, Sequence
 from importlib.util import find_spec
 
 from btq_lang.catalog.name_kinds import Kind
@@ -37,11 +38,11 @@ class NodesLines(Record):
 
 
 def nodes_for(workspace: Workspace, packages: Packages, trouble: Callable[[str], str]) -> tuple[NodesLines, ...]:
-    """What a project file may name.
+    """The patterns that a project file may name.
 
     Args:
-        packages: what they say of the engine, and which sources and parameter files they have.
-        trouble: what is unknown only with a line in the project file; empty if nothing is.
+        packages: their engine, their sources and their parameter files.
+        trouble: the first problem that only a line in the project file causes; empty: none.
     """
     of_nav2 = _of_nav2(workspace, packages)
     is_read = find_spec("tree_sitter_cpp") is not None
@@ -60,19 +61,19 @@ def nodes_for(workspace: Workspace, packages: Packages, trouble: Callable[[str],
 
 def nodes_lines(named: tuple[NodesLines, ...]) -> str:
     """The lines of the project file."""
-    written = [each for each in named if not each.obstacle]
-    left_out = [each for each in named if each.obstacle]
+    written = [lines for lines in named if not lines.obstacle]
+    left_out = [lines for lines in named if lines.obstacle]
     if written:
-        others = "".join(f"# {_listed(each)} may be added: {_reason(each)}\n" for each in left_out)
+        others = "".join(f"# {_listed(lines)} may be added: {_reason(lines)}\n" for lines in left_out)
         return f"nodes = [{_listed(*written)}]  # {written[0].why}\n{others}"
     if len(left_out) == 1:
         return f"# nodes = [{_listed(*left_out)}]  # {_reason(left_out[0])}\n"
-    reasons = "".join(f"#     {_reason(each)}\n" for each in left_out)
+    reasons = "".join(f"#     {_reason(lines)}\n" for lines in left_out)
     return f"# nodes = [{_listed(*left_out)}]\n{reasons}" if left_out else ""
 
 
 def _listed(*named: NodesLines) -> str:
-    return ", ".join(json.dumps(pattern, ensure_ascii=False) for each in named for pattern in each.patterns)
+    return ", ".join(json.dumps(pattern, ensure_ascii=False) for lines in named for pattern in lines.patterns)
 
 
 def _reason(left_out: NodesLines) -> str:
@@ -83,9 +84,11 @@ def _of_nav2(workspace: Workspace, packages: Packages) -> NodesLines | None:
     """Nav2's nodes, if XML uses any."""
     used = _used(workspace)
     if not any(used.values()):
-        return None  # a `Wait` alone may be anybody's
-    fitting = [each for each in _of_engine(workspace, packages.engines, used) if _has(each, used)]
-    named = [each for each in fitting if each in packages.parameters.values()]
+        return None  # a `Wait` alone may be any project's
+    fitting = [
+        distribution for distribution in _of_engine(workspace, packages.engines, used) if _has(distribution, used)
+    ]
+    named = [distribution for distribution in fitting if distribution in packages.parameters.values()]
     if len(fitting) == 1 or len(named) == 1:
         why = "the only distribution of Nav2 with the nodes and ports of the trees"
         if len(fitting) > 1:
@@ -105,10 +108,10 @@ def _of_engine(workspace: Workspace, engines: tuple[str, ...], used: Mapping[str
     project = replace(workspace.project, engines=engines or VERSIONS, names_all=engines == VERSIONS)
     users = [file for file in workspace.files.values() if not file.said(Kind.MODEL).isdisjoint(used)]
     signs = [file.origin.signs for file in users if file.origin is not None]
-    wanted = {is_before_4((written_for(project, None, each) or (VERSION_3,))[-1]) for each in signs}
-    for each in DISTRIBUTIONS:
-        if wanted <= {is_before_4(ENGINES[each])}:
-            yield each
+    wanted = {is_before_4((written_for(project, None, file_signs) or (VERSION_3,))[-1]) for file_signs in signs}
+    for distribution in DISTRIBUTIONS:
+        if wanted <= {is_before_4(ENGINES[distribution])}:
+            yield distribution
 
 
 def _used(workspace: Workspace) -> Mapping[str, set[str]]:
@@ -118,8 +121,8 @@ def _used(workspace: Workspace) -> Mapping[str, set[str]]:
         for facts in file.facts.values():
             for use in facts.summary.uses:
                 if use.kind is Kind.MODEL and use.node is not None and ports_of(use.name) is not None:
-                    given = (pair.key.text for pair in use.node.attributes)
-                    used.setdefault(use.name, set()).update(filter(is_port_name, given))
+                    ports = (pair.key.text for pair in use.node.attributes)
+                    used.setdefault(use.name, set()).update(filter(is_port_name, ports))
     return {name: ports for name, ports in used.items() if ports <= (ports_of(name) or set())}
 
 
@@ -129,3 +132,42 @@ def _has(distribution: str, used: Mapping[str, set[str]]) -> bool:
         name in models and ports <= {port.id.text for port in models[name].ports if port.id is not None}
         for name, ports in used.items()
     )
+
+
+def navigator_tables(
+    packages: Packages,
+    taken: Collection[str],
+    goals: Sequence[str],
+    fits: Callable[[str | None], bool],
+    trouble: Callable[[str], str],
+) -> str:
+    """The tables, one for each parameter file.
+
+    Args:
+        taken: the names of other factories.
+        goals: patterns of trees that programs name, which may be for goals.
+        fits: whether the distribution that a file is for is known and that of the project.
+        trouble: the first problem that only some tables in the project file cause; empty: none.
+    """
+    written = comments = ""
+    names: list[str] = []
+    for path, distribution in packages.parameters.items():
+        names.append(free_name("navigator", (*taken, *names)))
+        table = f"name = {json.dumps(names[-1])}\nnav2 = {json.dumps(path, ensure_ascii=False)}\n"
+        heading = "[[factory]]  # what bt_navigator loads"
+        load = f"# load = {json.dumps(goals, ensure_ascii=False)}  # {_FOR_GOALS}\n" if goals else ""
+        obstacle = "" if fits(distribution) else "name its distribution in `nodes` first"
+        obstacle = obstacle or trouble(f"{written}\n{heading}\n{table}")
+        if obstacle:
+            comments += f"\n# {heading}; {obstacle}\n" + "".join(f"# {line}\n" for line in table.splitlines()) + load
+        else:
+            written += f"\n{heading}\n{table}{load}"
+    return written + comments
+
+
+def free_name(name: str, taken: Container[str]) -> str:
+    """A name for a factory that no other has."""
+    return next(free for free in (name, *(f"{name}{number}" for number in range(2, 10_000))) if free not in taken)
+
+
+_FOR_GOALS = "Python or a launch file names them: keep what is for goals"
