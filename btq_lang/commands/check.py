@@ -16,7 +16,7 @@ from btq_lang.projects.files import STDIN, FileGroup, Files, no_mission_below, u
 from btq_lang.projects.messages import CommandOutput
 from btq_lang.projects.options import CheckOptions, Refused, refuse
 from btq_lang.render import Finding, Report
-from btq_lang.util.record import replace
+from btq_lang.util.record import Record, replace
 from btq_lang.util.text import counted
 from btq_lang.workspace.config import Project, unknown_rule
 from btq_lang.workspace.factories import Factory, merged
@@ -135,6 +135,20 @@ def _is_other(path: str) -> bool:
     return bool(os.path.splitext(path)[1]) and not path.endswith(kinds) and not os.path.isdir(path)
 
 
+class _Checked(Record):
+    """What a check found.
+
+    Attributes:
+        findings: in the order of files and places.
+        texts: of the files that findings name, and others.
+        paths: the checked files.
+    """
+
+    findings: list[Finding]
+    texts: Mapping[str, str]
+    paths: tuple[str, ...]
+
+
 def _report(
     groups: tuple[FileGroup, ...],
     parameter_files: tuple[ParameterFile, ...],
@@ -145,39 +159,21 @@ def _report(
     empty: str | None,
     messages: CommandOutput,
 ) -> int:
-    """Check, leave out what is known, and write the report; returns the exit code.
+    """Check, leave out what is in the baseline, and write the report; returns the exit code.
 
     Args:
         problems: what could not be read or written.
         mended: the number of fixes that were applied.
         empty: why there is nothing to check.
     """
-    texts = {path: file.source for group in groups for path, file in group.workspace.files.items()}
-    findings, checked = _findings(groups, texts, options)
-    every = groups
-    if any(group.project.external for group in groups) and not (options.since or options.add_ignore is not None):
-        from btq_lang.commands.project_files import unused_external  # few projects have any
-
-        of_project = [
-            finding for finding in unused_external(groups, options.paths) if _is_wanted(finding.diagnostic, options)
-        ]
-        findings = sorted([*findings, *of_project], key=lambda finding: (finding.path, finding.diagnostic.span))
-        texts.update((finding.path, finding.text) for finding in of_project)
-    if parameter_files:
-        from btq_lang.projects.nav2_check import as_groups, nav2_findings
-
-        more, others = nav2_findings(
-            parameter_files, files, checked, lambda project: _selecting(project, options), options.target
-        )
-        findings += [finding for finding in more if _is_wanted(finding.diagnostic, options)]
-        findings.sort(key=lambda finding: (finding.path, finding.diagnostic.span))
-        texts, checked = {**others, **texts}, (*checked, *(file.path for file in parameter_files))
-        every = (*groups, *as_groups(parameter_files))
+    checked = _checked(groups, parameter_files, options, files)
+    findings = checked.findings
     hidden = 0
-    if _has_baseline(every, options):
+    if _has_baseline((*groups, *parameter_files), options):
         from btq_lang.commands.baseline import compared
 
-        findings, hidden, trouble = compared(findings, every, options, messages, is_whole=not problems)
+        all_groups = (*groups, *_as_groups(parameter_files))
+        findings, hidden, trouble = compared(findings, all_groups, options, messages, is_whole=not problems)
         messages.problems(trouble)
         problems += trouble
     if options.add_ignore is not None:
@@ -187,8 +183,8 @@ def _report(
 
         findings = together(findings)
     why_empty = empty or (f"nothing has changed since {options.since}" if options.since else None)
-    checked += files.project_files
-    report = Report(tuple(findings), texts, checked, problems, why_empty, hidden, options.quiet)
+    paths = (*checked.paths, *files.project_files)
+    report = Report(tuple(findings), checked.texts, paths, problems, why_empty, hidden, options.quiet)
     write_report(report, options, mended, messages)
     if empty and form_of(options, os.environ) not in FOR_PEOPLE:  # those have it in their summary
         messages.remark(f"btq check: {empty}")
@@ -197,6 +193,39 @@ def _report(
         return 2
     fails = mistakes or any(finding.diagnostic.effective_severity in _FAILS for finding in findings)
     return int(bool(fails) and not options.exit_zero)
+
+
+def _checked(
+    groups: tuple[FileGroup, ...], parameter_files: tuple[ParameterFile, ...], options: CheckOptions, files: Files
+) -> _Checked:
+    """Check missions, project files and parameter files of Nav2."""
+    texts = {path: file.source for group in groups for path, file in group.workspace.files.items()}
+    findings, paths = _findings(groups, texts, options)
+    is_whole = not options.since and options.add_ignore is None
+    if is_whole and any(group.project.external for group in groups):
+        from btq_lang.commands.project_files import unused_external  # few projects have any
+
+        hints = [hint for hint in unused_external(groups, options.paths) if _is_wanted(hint.diagnostic, options)]
+        findings = sorted([*findings, *hints], key=lambda finding: (finding.path, finding.diagnostic.span))
+        texts.update((hint.path, hint.text) for hint in hints)
+    if parameter_files:
+        from btq_lang.projects.nav2_check import nav2_findings
+
+        of_parameters, more_texts = nav2_findings(
+            parameter_files, files, paths, lambda project: _selecting(project, options), options.target
+        )
+        findings += [finding for finding in of_parameters if _is_wanted(finding.diagnostic, options)]
+        findings.sort(key=lambda finding: (finding.path, finding.diagnostic.span))
+        texts = {**more_texts, **texts}
+        paths += tuple(file.path for file in parameter_files)
+    return _Checked(findings, texts, paths)
+
+
+def _as_groups(parameter_files: tuple[ParameterFile, ...]) -> tuple[FileGroup, ...]:
+    """Parameter files as groups without any tree: a baseline looks at the paths of groups."""
+    return tuple(
+        FileGroup(Workspace({}, file.project), (file.path,), (), (), file.project_file) for file in parameter_files
+    )
 
 
 def _parameter_files(files: Files, options: CheckOptions) -> tuple[ParameterFile, ...]:

@@ -217,8 +217,8 @@ def _state(project: Project) -> str:
     from btq_lang.projects.files import logs_of
     from btq_lang.workspace.loader import stamp
 
-    found = [f"{path} {stamp(path)}" for log in logs_of(project) for path in _files(log) if stamp(path) is not None]
-    return _digest(repr(project.evidence), *found)
+    stamped = [f"{path} {stamp(path)}" for log in logs_of(project) for path in _files(log) if stamp(path) is not None]
+    return _digest(repr(project.evidence), *stamped)
 
 
 def _files(path: str) -> Sequence[str]:

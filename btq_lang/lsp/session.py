@@ -166,14 +166,14 @@ class Session:
 
     def _read_projects(self, problems: Iterable[LoadProblem]) -> None:
         """Store the problems of project files, those of missions and open ones."""
-        found = {path: find_project(path, self.open) for path in self.open if is_project_file(path)}
-        of_open = [problem for home in found.values() for problem in home.problems]
-        by_path: dict[str, dict[LoadProblem, None]] = {path: {} for path in found}
+        homes = {path: find_project(path, self.open) for path in self.open if is_project_file(path)}
+        of_open = [problem for home in homes.values() for problem in home.problems]
+        by_path: dict[str, dict[LoadProblem, None]] = {path: {} for path in homes}
         for problem in (*problems, *of_open):
             if is_project_file(problem.path):
                 by_path.setdefault(problem.path, {})[problem] = None
         texts = {path: self.open[path] if path in self.open else read(path)[0] or "" for path in by_path}
-        self.projects = {path: (texts[path], tuple(found)) for path, found in by_path.items()}
+        self.projects = {path: (texts[path], tuple(of_file)) for path, of_file in by_path.items()}
 
     def _read_parameters(self, severities: Severities) -> None:
         """Store the findings in parameter files."""
@@ -182,11 +182,13 @@ class Session:
             return
         from btq_lang.projects.nav2_check import nav2_findings  # few projects are for Nav2
 
-        read = self._files.parameter_files
-        found, texts = nav2_findings(read, self._files, (), lambda project: _with_severities(project, severities))
+        files = self._files.parameter_files
+        all_findings, texts = nav2_findings(
+            files, self._files, (), lambda project: _with_severities(project, severities)
+        )
         workspace = Workspace.of(texts)
-        for file in read:
-            placed = (finding.diagnostic for finding in found if finding.path == file.path)
+        for file in files:
+            placed = (finding.diagnostic for finding in all_findings if finding.path == file.path)
             self.parameters[file.path] = workspace, FileFindings.placed(placed)
 
     def with_code_of_nav2(self, workspace: Workspace) -> Workspace:

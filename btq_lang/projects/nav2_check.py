@@ -6,7 +6,6 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.nav2 import PACKAGED
-from btq_lang.projects.files import FileGroup
 from btq_lang.projects.nav2_factory import ParameterFile, findings_of, in_distribution
 from btq_lang.render import Finding
 from btq_lang.util.record import replace
@@ -44,13 +43,6 @@ def requested(files: Files, options: CheckOptions) -> tuple[ParameterFile, ...]:
             file for file in wanted_files if has_changed((*file.used, file.project_file or ""), options.since)
         )
     return wanted_files
-
-
-def as_groups(parameter_files: Iterable[ParameterFile]) -> tuple[FileGroup, ...]:
-    """Parameter files as groups without any tree, for what looks at the paths of groups."""
-    return tuple(
-        FileGroup(Workspace({}, file.project), (file.path,), (), (), file.project_file) for file in parameter_files
-    )
 
 
 def nav2_findings(
