@@ -58,21 +58,11 @@ def init_from_xml(top: str, converts: bool, messages: CommandOutput) -> int:
         raise Refused(f"no BehaviorTree.CPP XML below {top}; nothing was written")
     factories = [*_factories(workspace, folder, messages)]
     packages = packages_of(folder)
-    excluded: list[str] = []
-    if converts:
-        from btq_lang.projects.import_files import ImportOptions, import_files
-
-        files = [shown(path) for path in workspace.files if not path.endswith(GROOT_SUFFIX)]
-        overlay = {target: f"engine = {json.dumps(packages.engines)}\n"} if packages.engines else {}
-        imported = import_files(ImportOptions(files), overlay)
-        messages.extend(imported.messages)
-        if imported.code:
-            return imported.code
-        trees, models = _by_kind(workspace)
-        excluded = [f"/{pattern}.xml" for pattern in patterns(folder, trees, models)]
+    if converts and (code := _convert(workspace, target, packages, messages)):
+        return code
     engine = _engine_line(workspace, packages) if not converts else _ENGINES
     ending = ".btq" if converts else ".xml"
-    rest = _EXCLUDED.format(json.dumps(excluded, ensure_ascii=False)) if excluded else ""
+    rest = _excluded_line(workspace, folder) if converts else ""
     rest += "".join(f"\n{factory.written(ending)}" for factory in factories)
 
     def trouble(project: str, before: str) -> str:
@@ -94,14 +84,33 @@ def init_from_xml(top: str, converts: bool, messages: CommandOutput) -> int:
         lambda distribution: _names_distribution(nodes) or _fits(distribution, named, packages.engines),
         lambda tables: trouble(text + tables, text),
     )
+    text += navigators
     try:
-        write_whole(target, f"{_HEAD}{text}{navigators}")
+        write_whole(target, f"{_HEAD}{text}")
     except OSError as error:
         raise Refused(f"{shown(target)}: {error.strerror}") from error
-    count = f"{text}{navigators}".count("\n[[factory]]")
+    count = text.count("\n[[factory]]")
     how_many = f"{count or 'no'} factor{'y' if count == 1 else 'ies'}"
     messages.result(f"Wrote {shown(target)} with {how_many}. Next: btq check {shlex.quote(top)}")
     return 0
+
+
+def _convert(workspace: Workspace, target: str, packages: Packages, messages: CommandOutput) -> int:
+    """Write .btq files beside the XML; returns the exit code."""
+    from btq_lang.projects.import_files import ImportOptions, import_files
+
+    files = [shown(path) for path in workspace.files if not path.endswith(GROOT_SUFFIX)]
+    overlay = {target: f"engine = {json.dumps(packages.engines)}\n"} if packages.engines else {}
+    result = import_files(ImportOptions(files), overlay)
+    messages.extend(result.messages)
+    return result.code
+
+
+def _excluded_line(workspace: Workspace, folder: str) -> str:
+    """The line that leaves out converted XML."""
+    trees, models = _by_kind(workspace)
+    excluded = [f"/{pattern}.xml" for pattern in patterns(folder, trees, models)]
+    return _EXCLUDED.format(json.dumps(excluded, ensure_ascii=False)) if excluded else ""
 
 
 def _names_distribution(nodes: str) -> bool:
