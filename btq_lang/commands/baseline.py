@@ -48,14 +48,14 @@ def compared(
     problems: list[LoadProblem] = []
     new = [*findings]
     for path, files in checked.items():
-        baseline, problem = _read(path, options.update_baseline)
+        baseline, problem = _read_baseline(path, options.update_baseline)
         if problem is None and options.update_baseline and is_whole:
             mine = Counter(_identity(finding) for finding in findings if _may_be_known(finding, files))
-            baseline, problem = _updated(path, baseline, mine, files, messages)
+            baseline, problem = _updated_baseline(path, baseline, mine, files, messages)
         if problem is not None:
             problems.append(problem)
         else:
-            new = _without(baseline, new, files)
+            new = _new_findings(baseline, new, files)
     return new, len(findings) - len(new), tuple(problems)
 
 
@@ -73,7 +73,7 @@ def update_problem(options: CheckOptions) -> str | None:
     return f"--update-baseline needs all findings; leave out {some[0]}" if some else None
 
 
-def _read(path: str, may_be_absent: bool) -> tuple[Known, LoadProblem | None]:
+def _read_baseline(path: str, may_be_absent: bool) -> tuple[Known, LoadProblem | None]:
     baseline: Known = Counter()
     if not os.path.exists(path):
         message = "does not exist; `btq check --update-baseline` creates it"
@@ -84,14 +84,14 @@ def _read(path: str, may_be_absent: bool) -> tuple[Known, LoadProblem | None]:
         if document["format"] != 1 or document["tool"] != "btq":
             raise ValueError
         for entry in document["findings"]:
-            there = absolute(os.path.join(os.path.dirname(path), entry["path"]))
-            baseline[there, str(entry["rule"]), str(entry["fingerprint"])] += int(entry["count"])
+            full_path = absolute(os.path.join(os.path.dirname(path), entry["path"]))
+            baseline[full_path, str(entry["rule"]), str(entry["fingerprint"])] += int(entry["count"])
     except (ValueError, TypeError, KeyError, RecursionError):
         return baseline, problem or LoadProblem(path, "this is not a baseline that `btq check --update-baseline` wrote")
     return baseline, None
 
 
-def _updated(
+def _updated_baseline(
     path: str, before: Known, checked: Known, files: set[str], messages: CommandOutput
 ) -> tuple[Known, LoadProblem | None]:
     """The baseline after an update; files that were not checked keep their findings as long as they exist."""
@@ -111,18 +111,20 @@ def _text(baseline: Known, folder: str) -> str:
     """The file, with a line for each finding, so that changes of several people can be merged."""
     lines = []
     for (path, rule, text), count in baseline.items():
-        there = os.path.relpath(path, folder).replace(os.sep, "/")
-        lines.append(json.dumps({"path": there, "rule": rule, "fingerprint": text, "count": count}))
+        relative_path = os.path.relpath(path, folder).replace(os.sep, "/")
+        lines.append(json.dumps({"path": relative_path, "rule": rule, "fingerprint": text, "count": count}))
     findings = ",".join(f"\n    {line}" for line in sorted(lines)) + ("\n  " if lines else "")
     return f'{{\n  "format": 1,\n  "tool": "btq",\n  "findings": [{findings}]\n}}\n'
 
 
-def _without(baseline: Known, findings: Iterable[Finding], files: set[str]) -> list[Finding]:
+def _new_findings(baseline: Known, findings: Iterable[Finding], files: set[str]) -> list[Finding]:
     """The findings that are not known, in order; of equal ones the first are known."""
-    left = baseline.copy()
-    new = [finding for finding in findings if not (_may_be_known(finding, files) and _take(left, _identity(finding)))]
+    remaining = baseline.copy()
+    new = [
+        finding for finding in findings if not (_may_be_known(finding, files) and _take(remaining, _identity(finding)))
+    ]
     moved: Counter[tuple[str, str]] = Counter()
-    for (path, rule, text), count in left.items():
+    for (path, rule, text), count in remaining.items():
         moved[rule, text] += 0 if os.path.exists(path) else count
     return [finding for finding in new if not (_may_be_known(finding, files) and _take(moved, _identity(finding)[1:]))]
 

@@ -27,14 +27,16 @@ def candidates(requested: Sequence[str], logs: Sequence[str], problems: list[str
     folder's project, else the trees in the logs.
     """
     sides = {side.mission: side for side in side_files_beside(logs)}
-    there = [mission for mission in sides if os.path.isfile(mission)]
+    existing = [mission for mission in sides if os.path.isfile(mission)]
     missions = (
         []
         if requested
-        else [mission for side in sides.values() if side.mission not in there for mission in _restored(side)]
+        else [
+            mission for side in sides.values() if side.mission not in existing for mission in _missions_as_built(side)
+        ]
     )
     home = find_project(".")
-    groups, unreadable = Files().groups(requested or [*there, home.project.root])
+    groups, unreadable = Files().groups(requested or [*existing, home.project.root])
     # A mission of a broken project elsewhere was not requested.
     elsewhere = {problem.path for problem in unreadable if is_project_file(problem.path) and problem.path != home.path}
     broken = elsewhere if not requested else set()
@@ -42,7 +44,7 @@ def candidates(requested: Sequence[str], logs: Sequence[str], problems: list[str
     for group in groups:
         for path in group.given if group.project_file not in broken else ():
             side = side_of(path, sides)
-            if path.endswith(".xml") and side is not None and (built := [*_restored(side)]):
+            if path.endswith(".xml") and side is not None and (built := [*_missions_as_built(side)]):
                 missions += built
             elif requested or path not in group.workspace.included_files:
                 missions.append(candidate(group.workspace, path, side))
@@ -81,8 +83,8 @@ def _of_logs(logs: Sequence[str], problems: list[str]) -> Sequence[Candidate]:
 def _xml_beside(log: str) -> Sequence[str]:
     """The XML file beside a log that has its name, else all."""
     folder, name = os.path.split(absolute(log))
-    own = os.path.join(folder, f"{os.path.splitext(name)[0]}.xml")
-    return [own] if os.path.isfile(own) else sorted(glob(os.path.join(escape(folder), "*.xml")))
+    same_named = os.path.join(folder, f"{os.path.splitext(name)[0]}.xml")
+    return [same_named] if os.path.isfile(same_named) else sorted(glob(os.path.join(escape(folder), "*.xml")))
 
 
 def side_of(path: str, sides: Mapping[str, SideFile]) -> SideFile | None:
@@ -100,7 +102,7 @@ def name_of(path: str) -> str:
     return os.path.splitext(os.path.basename(path))[0]
 
 
-def _restored(side: SideFile) -> Iterator[Candidate]:
+def _missions_as_built(side: SideFile) -> Iterator[Candidate]:
     """The mission as built, if only the XML and the side file are available."""
     built = as_built(xml_path(side.path), Disk())
     if built is not None:

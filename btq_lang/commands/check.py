@@ -38,7 +38,11 @@ def run(options: CheckOptions, messages: CommandOutput) -> int:
     if options.show_settings:
         from btq_lang.commands.show_settings import show_settings
 
-        settings = {"select": _rules(options.select), "ignore": _rules(options.ignore), "baseline": options.baseline}
+        settings = {
+            "select": _rule_names(options.select),
+            "ignore": _rule_names(options.ignore),
+            "baseline": options.baseline,
+        }
         return show_settings(options.paths, settings, messages)
     files = Files()
     code, watched = _check(options, files, messages)
@@ -55,7 +59,7 @@ def _usage_problem(options: CheckOptions) -> str | None:
         return "--watch cannot watch standard input"
     if options.jobs < 0:
         return f"--jobs {options.jobs}: expected a number of processes, or 0 to let btq choose"
-    rules = _rules(options.select) + _rules(options.ignore)
+    rules = _rule_names(options.select) + _rule_names(options.ignore)
     unknown = next(filter(None, map(unknown_rule, rules)), None)
     return usage_problem(options.paths) or unknown or report_problem(options) or _writing_problem(options)
 
@@ -94,7 +98,7 @@ def _check(options: CheckOptions, files: Files, messages: CommandOutput) -> tupl
         if options.update_baseline and not _has_baseline((*groups, *files.parameter_files), options):
             raise Refused("no baseline to update; name it with --baseline, or in btq.toml")
         parameter_files = _parameter_files(files, options)
-        groups = _chosen(groups, parameter_files, options)
+        groups = _groups_to_check(groups, parameter_files, options)
         if options.show_files:
             messages.problems(problems)
             _show_files(groups, parameter_files, files, messages)
@@ -108,9 +112,9 @@ def _check(options: CheckOptions, files: Files, messages: CommandOutput) -> tupl
                 from btq_lang.commands.fixing import fix, write_fixes
 
                 after, mended = fix(groups, lambda diagnostic: _is_wanted(diagnostic, options))
-                groups, trouble = write_fixes(groups, after, files.stdin, messages)
-                problems += trouble
-                mended = 0 if trouble else mended  # fixes that could not be written do not count
+                groups, write_problems = write_fixes(groups, after, files.stdin, messages)
+                problems += write_problems
+                mended = 0 if write_problems else mended  # fixes that could not be written do not count
             messages.problems(problems)
             why_empty = None if parameter_files else empty
             code = _report(groups, parameter_files, options, files, problems, mended, why_empty, messages)
@@ -173,9 +177,9 @@ def _report(
         from btq_lang.commands.baseline import compared
 
         all_groups = (*groups, *_as_groups(parameter_files))
-        findings, hidden, trouble = compared(findings, all_groups, options, messages, is_whole=not problems)
-        messages.problems(trouble)
-        problems += trouble
+        findings, hidden, baseline_problems = compared(findings, all_groups, options, messages, is_whole=not problems)
+        messages.problems(baseline_problems)
+        problems += baseline_problems
     if options.add_ignore is not None:
         return _add_ignores(groups, findings, options, files, messages)
     if options.target is not None:
@@ -245,7 +249,7 @@ def _parameter_files(files: Files, options: CheckOptions) -> tuple[ParameterFile
         raise Refused(f"--since: {reason}") from reason
 
 
-def _chosen(
+def _groups_to_check(
     groups: tuple[FileGroup, ...], parameter_files: tuple[ParameterFile, ...], options: CheckOptions
 ) -> tuple[FileGroup, ...]:
     """The groups for the target, with only what has changed.
@@ -288,11 +292,11 @@ def _add_ignores(
     """`--add-ignore`: write the comments and check again."""
     from btq_lang.commands.ignoring import add_ignores  # as all here only where it is needed
 
-    count, trouble = add_ignores(groups, findings, options.add_ignore or "")
-    messages.problems(trouble)
+    count, write_problems = add_ignores(groups, findings, options.add_ignore or "")
+    messages.problems(write_problems)
     messages.remark(f"Added {counted(count, 'comment')}")
     code, _ = _check(replace(options, add_ignore=None), files, messages)  # --add-ignore watches nothing
-    return 2 if trouble else code
+    return 2 if write_problems else code
 
 
 def _findings(
@@ -366,11 +370,11 @@ def _configured(workspace: Workspace, options: CheckOptions) -> Workspace:
 
 
 def _selecting(project: Project, options: CheckOptions) -> Project:
-    select, ignore = _rules(options.select), _rules(options.ignore)
+    select, ignore = _rule_names(options.select), _rule_names(options.ignore)
     return replace(project, select=select or project.select, ignore=project.ignore + ignore)
 
 
-def _rules(options: Iterable[str]) -> tuple[str, ...]:
+def _rule_names(options: Iterable[str]) -> tuple[str, ...]:
     return tuple(rule.strip() for words in options for rule in words.split(",") if rule.strip())
 
 

@@ -81,8 +81,8 @@ def _warn(side: Side, messages: CommandOutput) -> None:
 
 
 def _first_error(file: File) -> str | None:
-    own = file.origin.diagnostics if file.origin is not None else file.parsed.diagnostics
-    for diagnostic in own:
+    diagnostics = file.origin.diagnostics if file.origin is not None else file.parsed.diagnostics
+    for diagnostic in diagnostics:
         if diagnostic.effective_severity is Severity.ERROR:
             line, column = file.source_lines.position(diagnostic.span.start)
             return f"{line + 1}:{column + 1}: {diagnostic.message}"
@@ -108,8 +108,8 @@ def _of_paths(paths: Sequence[str], stdin_filename: str | None) -> Iterator[Miss
         # As in `diff`: a file and a folder compare with the file of that name in the folder.
         old = f"{old}/{os.path.basename(new)}" if os.path.isdir(old) else old
         new = f"{new}/{os.path.basename(old)}" if os.path.isdir(new) else new
-    sides = [{} if path is None else _sides(path) for path in (old, new)]
-    for before, after in _pairs(*sides):
+    sides = [{} if path is None else _sides_by_name(path) for path in (old, new)]
+    for before, after in _paired_paths(*sides):
         yield without_made_models(compared(sides[0].get(before, NOWHERE), sides[1].get(after, NOWHERE)))
 
 
@@ -133,7 +133,7 @@ def _with_stdin(paths: Sequence[str], stdin_filename: str | None) -> MissionComp
     return without_made_models(compared(*map(side, paths)))
 
 
-def _pairs(old: Collection[str], new: Collection[str]) -> list[tuple[str, str]]:
+def _paired_paths(old: Collection[str], new: Collection[str]) -> list[tuple[str, str]]:
     """Pairs of files with equal names, or of an XML file and the .btq file that builds it."""
     came = set(new) - set(old)
     pairs = []
@@ -145,7 +145,7 @@ def _pairs(old: Collection[str], new: Collection[str]) -> list[tuple[str, str]]:
     return sorted([*pairs, *zip(came, came, strict=True)])
 
 
-def _sides(path: str) -> dict[str, Side]:
+def _sides_by_name(path: str) -> dict[str, Side]:
     """The mission of a file, with all its includes; or the missions of a folder, each without includes, by their names
     in it.
     """
@@ -217,17 +217,17 @@ def _of_revisions(paths: Sequence[str], revision: str) -> Iterator[MissionCompar
     for path in map(absolute, paths or ["."]):
         pair = revisions(revision, path)
         if not os.path.isdir(path) and not pair.had_folder(path):
-            sides = _revised(pair.old, path, True), _revised(pair.new, path, True)
+            sides = _side_in_revision(pair.old, path, True), _side_in_revision(pair.new, path, True)
             if sides == (NOWHERE, NOWHERE):
                 where = pair.new.name if pair.new is not None else "here"
                 raise Refused(f"{shown(path)}: no such file in {pair.old.name} or {where}")
             yield without_made_models(compared(*sides))
             continue
         for before, after in pair.changed(path):
-            yield compared(_revised(pair.old, before, False), _revised(pair.new, after, False))
+            yield compared(_side_in_revision(pair.old, before, False), _side_in_revision(pair.new, after, False))
 
 
-def _revised(commit: Commit | None, path: str | None, with_includes: bool) -> Side:
+def _side_in_revision(commit: Commit | None, path: str | None, with_includes: bool) -> Side:
     """A file in a commit; None: in the working tree."""
     if path is None or (commit is None and not os.path.exists(path)):
         return NOWHERE

@@ -58,8 +58,8 @@ def run(options: ExplainOptions, messages: CommandOutput) -> int:
 
 def _pages(name: str) -> Iterator[str]:
     foreign = foreign_name(name)
-    own = [*_own_pages(name)]
-    yield from own if own or foreign is None else _foreign(name, foreign)
+    own_pages = [*_own_pages(name)]
+    yield from own_pages if own_pages or foreign is None else _foreign(name, foreign)
 
 
 def _own_pages(name: str) -> Iterator[str]:
@@ -205,10 +205,12 @@ def _likely(name: str) -> tuple[str, ...]:
     kind = _nodes if name[:1].isupper() else _rules if "-" in name else _names
     parts = [known_name for known_name in kind() if len(name) > 2 and name.casefold() in known_name.casefold()]
     close = ELSEWHERE.get(name) or near(name, kind()) or near(name, _names())
-    return close or tuple(sorted(parts, key=lambda known_name: (len(known_name), known_name))[:5]) or _units(name)
+    return (
+        close or tuple(sorted(parts, key=lambda known_name: (len(known_name), known_name))[:5]) or _likely_units(name)
+    )
 
 
-def _units(name: str) -> tuple[str, ...]:
+def _likely_units(name: str) -> tuple[str, ...]:
     """The units that a name begins with; without more in common, a unit is a wild guess."""
     return tuple(unit for unit in nearest_units(name) if name.casefold().startswith(unit.casefold()))
 

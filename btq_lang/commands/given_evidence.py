@@ -45,12 +45,12 @@ def verdicts_for(evidence: Sequence[str], groups: Sequence[FileGroup], problems:
     by_mission: dict[str, list[RequirementVerdict]] = {}
     missions = {key for group in groups for path in group.given for key in (path, name_of(path))}
     for path in documents:
-        _read(path, missions, by_mission, problems)
+        _add_document(path, missions, by_mission, problems)
     for store in stores:
-        for name, verdicts in _stored(store, problems):
+        for name, verdicts in _verdicts_in_store(store, problems):
             by_mission.setdefault(name, []).extend(verdicts)
     if logs:
-        for file, verdicts in _judged(logs, groups, problems):
+        for file, verdicts in _verdicts_by_logs(logs, groups, problems):
             by_mission.setdefault(file, []).extend(verdicts)
     if problems and not by_mission:
         return None
@@ -67,7 +67,9 @@ def evidence_paths(evidence: Sequence[str], groups: Sequence[FileGroup]) -> Sequ
     return logs or ([store] if store is not None and is_store(store) else [])
 
 
-def _read(path: str, missions: set[str], by_mission: dict[str, list[RequirementVerdict]], problems: list[str]) -> None:
+def _add_document(
+    path: str, missions: set[str], by_mission: dict[str, list[RequirementVerdict]], problems: list[str]
+) -> None:
     """Add the verdicts of a file, by the path of the mission and, for a file written elsewhere, by its name."""
     text, problem = read(absolute(path))
     if text is None or problem is not None:
@@ -98,7 +100,7 @@ def is_store(path: str) -> bool:
     return "://" in path or bool(glob(os.path.join(escape(path), "*", ABOUT)))
 
 
-def _stored(store: str, problems: list[str]) -> Sequence[tuple[str, Sequence[RequirementVerdict]]]:
+def _verdicts_in_store(store: str, problems: list[str]) -> Sequence[tuple[str, Sequence[RequirementVerdict]]]:
     """The verdicts of the runs in a store, by the name of the mission."""
     from btq_lang.evidence.store.engine import NoEngine, asked  # which needs DuckDB
     from btq_lang.evidence.store.summary import summary
@@ -111,11 +113,11 @@ def _stored(store: str, problems: list[str]) -> Sequence[tuple[str, Sequence[Req
     return [(mission.name, mission.requirements) for mission in report.missions]
 
 
-def _judged(
+def _verdicts_by_logs(
     log_paths: Sequence[str], groups: Sequence[FileGroup], problems: list[str]
 ) -> Iterator[tuple[str, Sequence[RequirementVerdict]]]:
     project = _project(groups)
-    logs, wrong = logs_below(log_paths, project)
+    logs, log_problems = logs_below(log_paths, project)
     sides = {side.mission: side for side in side_files_beside(logs)}
     missions = [
         candidate(group.workspace, path, side_of(path, sides))
@@ -123,9 +125,9 @@ def _judged(
         for path in group.given
         if path not in group.workspace.included_files
     ]
-    declared = signal_sources(missions, wrong)
-    problems += wrong
-    if wrong:
+    declared = signal_sources(missions, log_problems)
+    problems += log_problems
+    if log_problems:
         return
     with Progress(len(logs), "read") as progress:
         verification = judged(

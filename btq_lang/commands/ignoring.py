@@ -42,7 +42,7 @@ def add_ignores(
                 continue
             seen.add(path)
             file = group.workspace.files[path]
-            added = _added(file, diagnostics, reason)
+            added = _comments_for(file, diagnostics, reason)
             if not _is_silent(group.workspace, file, added):
                 added = [comment for comment in added if _is_silent(group.workspace, file, [comment])]
                 if not _is_silent(group.workspace, file, added):
@@ -66,7 +66,7 @@ def ignore_problem(options: CheckOptions) -> str | None:
     return f"--add-ignore cannot be used together with {some[0]}" if some else None
 
 
-def _added(file: File, diagnostics: Iterable[Diagnostic], reason: str) -> list[Added]:
+def _comments_for(file: File, diagnostics: Iterable[Diagnostic], reason: str) -> list[Added]:
     of_line: dict[int, list[Diagnostic]] = {}
     added: list[Added] = []
     for diagnostic in diagnostics:

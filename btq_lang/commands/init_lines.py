@@ -52,7 +52,7 @@ def nodes_for(workspace: Workspace, packages: Packages, trouble: Callable[[str],
     if not trouble(nodes_lines(both)):
         return both
     if of_nav2 is not None and not of_nav2.obstacle and (unfit := trouble(nodes_lines(named))):
-        named = (_open(f"{of_nav2.patterns[0]} does not fit, {unfit}"),)
+        named = (_of_unknown_distribution(f"{of_nav2.patterns[0]} does not fit, {unfit}"),)
     obstacle = sources.obstacle or trouble(nodes_lines((*named, sources)))
     if obstacle and not sources.obstacle and named and named[0].obstacle:
         obstacle = "name the distribution first"
@@ -64,15 +64,15 @@ def nodes_lines(named: tuple[NodesLines, ...]) -> str:
     written = [lines for lines in named if not lines.obstacle]
     left_out = [lines for lines in named if lines.obstacle]
     if written:
-        others = "".join(f"# {_listed(lines)} may be added: {_reason(lines)}\n" for lines in left_out)
-        return f"nodes = [{_listed(*written)}]  # {written[0].why}\n{others}"
+        others = "".join(f"# {_as_list(lines)} may be added: {_reason(lines)}\n" for lines in left_out)
+        return f"nodes = [{_as_list(*written)}]  # {written[0].why}\n{others}"
     if len(left_out) == 1:
-        return f"# nodes = [{_listed(*left_out)}]  # {_reason(left_out[0])}\n"
+        return f"# nodes = [{_as_list(*left_out)}]  # {_reason(left_out[0])}\n"
     reasons = "".join(f"#     {_reason(lines)}\n" for lines in left_out)
-    return f"# nodes = [{_listed(*left_out)}]\n{reasons}" if left_out else ""
+    return f"# nodes = [{_as_list(*left_out)}]\n{reasons}" if left_out else ""
 
 
-def _listed(*named: NodesLines) -> str:
+def _as_list(*named: NodesLines) -> str:
     return ", ".join(json.dumps(pattern, ensure_ascii=False) for lines in named for pattern in lines.patterns)
 
 
@@ -82,11 +82,11 @@ def _reason(left_out: NodesLines) -> str:
 
 def _of_nav2(workspace: Workspace, packages: Packages) -> NodesLines | None:
     """Nav2's nodes, if XML uses any."""
-    used = _used(workspace)
+    used = _used_nodes(workspace)
     if not any(used.values()):
         return None  # a `Wait` alone may be any project's
     fitting = [
-        distribution for distribution in _of_engine(workspace, packages.engines, used) if _has(distribution, used)
+        distribution for distribution in _of_engine(workspace, packages.engines, used) if _has_nodes(distribution, used)
     ]
     named = [distribution for distribution in fitting if distribution in packages.parameters.values()]
     if len(fitting) == 1 or len(named) == 1:
@@ -94,10 +94,12 @@ def _of_nav2(workspace: Workspace, packages: Packages) -> NodesLines | None:
         if len(fitting) > 1:
             fitting, why = named, "the distribution of Nav2 for which the parameters of bt_navigator are"
         return NodesLines((f"nav2-{fitting[0]}",), why)
-    return _open(f"they fit {', '.join(fitting)}" if fitting else "no distribution has all of these nodes and ports")
+    return _of_unknown_distribution(
+        f"they fit {', '.join(fitting)}" if fitting else "no distribution has all of these nodes and ports"
+    )
 
 
-def _open(which: str) -> NodesLines:
+def _of_unknown_distribution(which: str) -> NodesLines:
     """Nav2's nodes, of a distribution that a person must name."""
     return NodesLines((OF_NAV2,), "the trees use nodes of Nav2", f"name yours: {which}")
 
@@ -114,7 +116,7 @@ def _of_engine(workspace: Workspace, engines: tuple[str, ...], used: Mapping[str
             yield distribution
 
 
-def _used(workspace: Workspace) -> Mapping[str, set[str]]:
+def _used_nodes(workspace: Workspace) -> Mapping[str, set[str]]:
     """The nodes of Nav2 in XML, each with the ports that have values; one that has other ports is the project's own."""
     used: dict[str, set[str]] = {}
     for file in workspace.files.values():
@@ -126,7 +128,7 @@ def _used(workspace: Workspace) -> Mapping[str, set[str]]:
     return {name: ports for name, ports in used.items() if ports <= (ports_of(name) or set())}
 
 
-def _has(distribution: str, used: Mapping[str, set[str]]) -> bool:
+def _has_nodes(distribution: str, used: Mapping[str, set[str]]) -> bool:
     models = models_of(distribution)
     return all(
         name in models and ports <= {port.id.text for port in models[name].ports if port.id is not None}

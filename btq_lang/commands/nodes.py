@@ -41,7 +41,7 @@ def run(options: NodesOptions, messages: CommandOutput) -> int:
     """Write the nodes, and say on standard error what cannot be seen or is wrong."""
     form = options.format or os.path.splitext(options.output or "")[1].lower().removeprefix(".") or FORMATS[0]
     project = find_project(options.paths[0]).project
-    files, exported, problems = _texts(options.paths, project)
+    files, exported, problems = _cpp_texts(options.paths, project)
     if form not in FORMATS:
         problems.append(f"btq nodes: cannot write {options.output}; choose one of {', '.join(FORMATS)} with --format")
     elif form != "html" and options.output and not _is_ours(options.output):
@@ -57,7 +57,7 @@ def run(options: NodesOptions, messages: CommandOutput) -> int:
     except GrammarMissing as error:
         raise Refused(MISSING) from error
     sources = " ".join(options.paths)
-    write_output(messages, options.output, _written(cpp_nodes, form, sources))
+    write_output(messages, options.output, _as_text(cpp_nodes, form, sources))
     remarks = findings(cpp_nodes, files) | {path: nodes for path, (_, nodes) in exported.items() if nodes}
     texts = files | {path: text for path, (text, _) in exported.items()}
     for path in sorted(remarks):
@@ -75,7 +75,7 @@ def run(options: NodesOptions, messages: CommandOutput) -> int:
     return int(bool(remarks) or is_empty)
 
 
-def _texts(paths: Sequence[str], project: Project) -> tuple[dict[str, str], dict[str, Exported], list[str]]:
+def _cpp_texts(paths: Sequence[str], project: Project) -> tuple[dict[str, str], dict[str, Exported], list[str]]:
     """The C++ files below some paths, as they are shown, those of pluginlib, and what cannot be read; folders are left
     out as in a pattern of `nodes` in the project file."""
     problems: list[LoadProblem] = []
@@ -107,7 +107,7 @@ def _is_ours(path: str) -> bool:
     return path == "-" or not os.path.lexists(target) or MADE_BY in head(target)
 
 
-def _written(cpp_nodes: CppNodes, form: str, sources: str) -> str:
+def _as_text(cpp_nodes: CppNodes, form: str, sources: str) -> str:
     if form == "html":
         from btq_lang.projects.node_writers import as_html
 
@@ -127,17 +127,17 @@ def exported_nodes(text: str) -> tuple[Diagnostic, ...] | None:
     document = reader.read(text).document
     if document is None or document.root.tag not in _ROOTS:
         return None
-    return tuple(_nodes(document.root))
+    return tuple(_exported_classes(document.root))
 
 
-def _nodes(element: Element) -> Iterator[Diagnostic]:
+def _exported_classes(element: Element) -> Iterator[Diagnostic]:
     for child in element.elements:
         base = child.get("base_class_type") or ""
         if child.tag == "class" and base.startswith("BT::") and base.removeprefix("BT::") in ENGINE:
             name = child.get("type") or ""
             message = f"exports `{name}`, a {base}, to pluginlib; under which ID trees have it cannot be seen"
             yield Diagnostic(UNSEEN, Span(child.start, child.end), message)
-        yield from _nodes(child)
+        yield from _exported_classes(child)
 
 
 _ROOTS: Final = ("library", "class_libraries")

@@ -43,10 +43,10 @@ class Packages(Record):
 
 def packages_of(folder: str) -> Packages:
     """The facts in the packages below a folder; if they name no engine, that of the package around it."""
-    texts = _texts(folder, (*_MANIFESTS, *CPP_SUFFIXES, *YAML_SUFFIXES, *_PROGRAMS))
+    texts = _texts_below(folder, (*_MANIFESTS, *CPP_SUFFIXES, *YAML_SUFFIXES, *_PROGRAMS))
     depends_on = _engine_among(texts)
     if not depends_on and (above := pool_of(folder, folder)) != folder:
-        depends_on = _engine_among(_texts(above, _MANIFESTS))
+        depends_on = _engine_among(_texts_below(above, _MANIFESTS))
     below = {posixpath.relpath(path, folder): text for path, text in texts.items()}
     cpp = {path: text for path, text in below.items() if path.endswith(CPP_SUFFIXES) and not _is_of_tests(path)}
     sources = [path for path, text in cpp.items() if _REGISTERS(text) or _PORTS(text)]
@@ -66,7 +66,7 @@ def _distribution(text: str) -> str | None:
         return None
 
 
-def _texts(folder: str, suffixes: tuple[str, ...]) -> dict[str, str]:
+def _texts_below(folder: str, suffixes: tuple[str, ...]) -> dict[str, str]:
     """The files below a folder whose names end with one of the suffixes, with their texts."""
     paths, _ = collect((folder,), Project(), suffixes)
     return {path: read(path)[0] or "" for path in paths}

@@ -148,7 +148,7 @@ class _Mission:
         values = {"file": self.path, "line": str(line), "column": str(column)}
         try:
             if self._on_click:
-                subprocess.Popen([_filled(word, values) for word in self._on_click], stdin=subprocess.DEVNULL)
+                subprocess.Popen([_with_values(word, values) for word in self._on_click], stdin=subprocess.DEVNULL)
         except OSError as error:
             return {"trouble": f"{self._on_click[0]}: {error.strerror}"}
         return {"said": place}
@@ -211,7 +211,7 @@ class _Mission:
         return "; ".join(map(str, problems))
 
 
-def _filled(word: str, values: dict[str, str]) -> str:
+def _with_values(word: str, values: dict[str, str]) -> str:
     """`+{line}` with the line filled in; all other braces stay, because editor commands may contain them."""
     for name, value in values.items():
         word = word.replace(f"{{{name}}}", value)

@@ -25,13 +25,13 @@ CHECKED = (*SUFFIXES, *XML_SUFFIXES, *YAML_SUFFIXES)
 def named_project_files(paths: Iterable[str]) -> tuple[tuple[str, ...], tuple[LoadProblem, ...]]:
     """The project files among some paths that are no missions, and why the others are not checked."""
     named = tuple(map(absolute, paths))
-    reasons = ((path, _reason(path)) for path in named)
+    reasons = ((path, _why_unchecked(path)) for path in named)
     problems = tuple(LoadProblem(path, reason) for path, reason in reasons if reason is not None)
     refused = {problem.path for problem in problems}
     return tuple(path for path in named if is_project_file(path) and path not in refused), problems
 
 
-def _reason(path: str) -> str | None:
+def _why_unchecked(path: str) -> str | None:
     """Why a file is not checked, if it is neither a project file nor a mission."""
     text, problem = read(path)
     if text is None or is_xml(path, text):

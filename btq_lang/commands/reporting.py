@@ -56,7 +56,7 @@ def write_report(report: Report, options: CheckOptions, mended: int, messages: C
     stream = sys.stderr if options.fix and STDIN in options.paths else sys.stdout
     width = terminal_width() if stream.isatty() and not options.output_file else 120
     colour = options.color == "always" if options.output_file else is_coloured(options.color, stream.isatty())
-    pieces = _pieces(_named(report, form), form, options.statistics, colour, width)
+    pieces = _pieces(_with_shown_paths(report, form), form, options.statistics, colour, width)
     is_shown = mended and form in FOR_PEOPLE and not options.quiet
     last = f"Fixed {counted(mended, 'problem')}\n" if is_shown else ""
     if options.output_file or (form not in FOR_PEOPLE and stream is sys.stdout):
@@ -74,7 +74,7 @@ def _pieces(report: Report, form: str, is_counted: bool, colour: bool, width: in
     return render(form, report, colour=colour, width=width)
 
 
-def _named(report: Report, form: str) -> Report:
+def _with_shown_paths(report: Report, form: str) -> Report:
     """The report with paths relative to the current folder, or, for GitLab, to its checkout."""
     checkout = os.environ.get("CI_PROJECT_DIR") if form == "gitlab" else None
     if not checkout:

@@ -58,16 +58,16 @@ def store_problem(options: VerifyOptions, is_summary: bool) -> str | None:
     """
     if problem := name_problem(options):
         return problem
-    given = given_options(options, (*_OF_LOGS, *_OF_KEEPING, *_OF_SUMMARY))
+    given_names = given_options(options, (*_OF_LOGS, *_OF_KEEPING, *_OF_SUMMARY))
     if options.store is None:
-        wrong = [name for name in given if name not in _OF_LOGS]
+        misplaced = [name for name in given_names if name not in _OF_LOGS]
         where = "a store; leave out --no-store" if options.no_store else "--store DIR"
-        return f"{wrong[0]} goes with {where}" if wrong else None
+        return f"{misplaced[0]} goes with {where}" if misplaced else None
     if not is_summary:
-        wrong = [name for name in given if name in _OF_SUMMARY]
-        return f"{wrong[0]} goes with --store DIR and no log" if wrong else None
-    if wrong := [name for name in given if name not in _OF_SUMMARY]:
-        return f"{wrong[0]} goes with logs; without any, --store DIR prints what is kept there"
+        misplaced = [name for name in given_names if name in _OF_SUMMARY]
+        return f"{misplaced[0]} goes with --store DIR and no log" if misplaced else None
+    if misplaced := [name for name in given_names if name not in _OF_SUMMARY]:
+        return f"{misplaced[0]} goes with logs; without any, --store DIR prints what is kept there"
     if form_of(options.format, options.output, FORMATS) == "html":
         return "a page is made of logs; choose another format for a store"
     return form_problem(options.format, options.output, FORMATS)

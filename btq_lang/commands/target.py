@@ -55,10 +55,10 @@ def together(findings: Iterable[Finding]) -> list[Finding]:
             else (number,)
         )
         groups.setdefault((finding.path, diagnostic.rule, *same), []).append(finding)
-    return [_joined(group) if len(group) > 1 else group[0] for group in groups.values()]
+    return [_merged_finding(group) if len(group) > 1 else group[0] for group in groups.values()]
 
 
-def _joined(group: list[Finding]) -> Finding:
+def _merged_finding(group: list[Finding]) -> Finding:
     first, *others = (finding.diagnostic for finding in group)
     joined = replace(
         first,

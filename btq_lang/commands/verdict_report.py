@@ -77,8 +77,8 @@ def print_report(
         width=terminal_width() if to_terminal else None,
     )
     write_output(messages, options.output, text, form)
-    wrong = report.verdicts - {SATISFIED} if options.strict else report.verdicts & {VIOLATED}
-    return int(bool(wrong) and not options.exit_zero)
+    failing = report.verdicts - {SATISFIED} if options.strict else report.verdicts & {VIOLATED}
+    return int(bool(failing) and not options.exit_zero)
 
 
 def write(report: VerdictReport, missions: Sequence[Candidate], form: str, **options: Any) -> str:

@@ -45,7 +45,7 @@ def run(options: VerifyOptions, messages: CommandOutput) -> int:
     if is_summary and options.store is not None:
         return summarise(options, options.store, messages)
     problems: list[str] = []
-    logs, missions, samples = _given(options, problems)
+    logs, missions, samples = _inputs(options, problems)
     if options.events is not None and (problem := overwrites(options.events, [*options.logs, *logs])):
         problems.append(problem)
     if options.run is not None and not problems:
@@ -68,7 +68,7 @@ def run(options: VerifyOptions, messages: CommandOutput) -> int:
     return finish(options, verification, missions, logs, messages)
 
 
-def _given(
+def _inputs(
     options: VerifyOptions, problems: list[str]
 ) -> tuple[Sequence[str], Sequence[Candidate], dict[str, SampleSeries]]:
     """The logs, missions and samples of a command line; errors are appended to the problems."""
@@ -85,8 +85,8 @@ def _given(
         no_log = "no log given; name one, or set `logs` in [evidence] of btq.toml"
         problems += map(str, home.problems) if home.problems else [no_log]
         return (), (), {}
-    logs, wrong = logs_below(requested, project)
-    problems += wrong
+    logs, log_problems = logs_below(requested, project)
+    problems += log_problems
     samples: dict[str, SampleSeries] = {}
     if options.signals is not None and is_special(options.signals):
         problems.append(f"{shown(options.signals)}: {IS_SPECIAL}")

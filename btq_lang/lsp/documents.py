@@ -71,37 +71,39 @@ async def workspace_diagnostic(server: Server, params: types.WorkspaceDiagnostic
     paths = server.session.paths() if server.session.is_on("checkClosedFiles") else ()
     # Diagnostics of files that are deleted, or no longer wanted, disappear only after an empty report, also for
     # files whose result id the editor has forgotten, as VS Code does when a document is closed.
-    gone = (result_ids.keys() | server.shown) - set(paths) - server.session.open.keys()
-    items = [_about(server.convert.uri(path), None, EMPTY_REPORT) for path in sorted(gone)]
+    gone_paths = (result_ids.keys() | server.shown) - set(paths) - server.session.open.keys()
+    items = [_report_of(server.convert.uri(path), None, EMPTY_REPORT) for path in sorted(gone_paths)]
     other_uris = [
         previous.uri
         for previous in params.previous_result_ids
         if server.convert.uri(server.convert.path(previous.uri)) != previous.uri
     ]
-    items += [_about(uri, None, EMPTY_REPORT) for uri in other_uris]  # the file's URI has changed since then
+    items += [_report_of(uri, None, EMPTY_REPORT) for uri in other_uris]  # the file's URI has changed since then
     async with checking(
         server, 0 if result_ids else len(paths)
     ) as report_done:  # an editor with results asks for changes only
         for number, path in enumerate(paths, 1):
             report = server.report(path, result_ids.get(path))
-            items.append(_about(server.convert.uri(path), server.versions.get(path), report))
+            items.append(_report_of(server.convert.uri(path), server.versions.get(path), report))
             server.session.let_go()
             if number % BATCH == 0:
                 report_done(number)
                 if params.partial_result_token is not None:
                     token = json.dumps(params.partial_result_token)
-                    server.protocol.notify_plain(types.PROGRESS, Json(f'{{"token": {token}, "value": {_all(items)}}}'))
+                    server.protocol.notify_plain(
+                        types.PROGRESS, Json(f'{{"token": {token}, "value": {_all_reports(items)}}}')
+                    )
                     items = []
             await asyncio.sleep(0)  # the editor may have cancelled, or changed something
-    return _all(items)
+    return _all_reports(items)
 
 
-def _about(uri: str, version: int | None, report: Json) -> str:
+def _report_of(uri: str, version: int | None, report: Json) -> str:
     """A report for a file."""
     return f'{{"uri": {json.dumps(uri)}, "version": {json.dumps(version)}, {report[1:]}'
 
 
-def _all(items: list[str]) -> Json:
+def _all_reports(items: list[str]) -> Json:
     return Json(f'{{"items": [{", ".join(items)}]}}')
 
 

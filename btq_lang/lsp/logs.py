@@ -48,7 +48,7 @@ def register(server: Server) -> None:
     def did_save(params: types.DidSaveTextDocumentParams) -> None:
         logs.saved(server.convert.path(params.text_document.uri))
 
-    def judged(document: types.TextDocumentIdentifier) -> tuple[Workspace, str, ProjectVerdicts]:
+    def mission_with_verdicts(document: types.TextDocumentIdentifier) -> tuple[Workspace, str, ProjectVerdicts]:
         with suppress(UnknownDocument):
             workspace, path = server.at(document, reads=True)
             if (evidence := server.session.evidence(workspace)) is not None:
@@ -62,14 +62,16 @@ def register(server: Server) -> None:
         """The runs in the logs that people look for: the `run`, and what it is."""
         from btq_lang.ide.runs import runs_to_show  # few projects have logs
 
-        return [{"run": run, "said": description} for run, description in runs_to_show(*judged(document))]
+        return [
+            {"run": run, "said": description} for run, description in runs_to_show(*mission_with_verdicts(document))
+        ]
 
     @server.command(RUN)
     async def run(document: types.TextDocumentIdentifier, number: int) -> dict[str, object]:
         """A run of the logs, step by step, with the keys of nodes as in the picture."""
         from btq_lang.ide.runs import logged_run, run_on_picture  # as above
 
-        workspace, path, evidence = judged(document)
+        workspace, path, evidence = mission_with_verdicts(document)
         where = logged_run(workspace, path, evidence, number)
         if where is None:
             raise RequestRefused(f"the logs have no run {number} of this mission")
@@ -125,7 +127,7 @@ class Logs:
     async def read_run(self, root: str, run: LoggedRun) -> dict[str, Any] | str:
         """A run as `btq verify --run` prints it, or why there is none."""
         log, number = os.path.join(root, run.log), str(run.number_in_log)
-        process = await _started(root, ("verify", "--no-store", log, "--mission", run.mission, "--run", number))
+        process = await _start_btq(root, ("verify", "--no-store", log, "--mission", run.mission, "--run", number))
         output, errors = await process.communicate()
         return json.loads(output) if process.returncode == 0 else errors.decode(errors="replace").strip()
 
@@ -150,12 +152,12 @@ class Logs:
 
     async def _look(self, project: Project) -> None:
         root = project.root
-        there = await asyncio.to_thread(_state, project)
+        there = await asyncio.to_thread(_digest_of_logs, project)
         is_at_rest = there == self._before.get(root, there)
         self._before[root] = there
         if self._shown.get(root) == there or not is_at_rest:
             return
-        texts = await asyncio.to_thread(_texts, [*self._missions(root)])
+        texts = await asyncio.to_thread(_digest_of_files, [*self._missions(root)])
         summary = os.path.join(_cache(), f"{_digest(root)}-{_digest(there, texts)}.json")
         if not os.path.exists(summary) and there != _digest(repr(project.evidence)):
             await self._judge(root, summary)
@@ -170,7 +172,7 @@ class Logs:
     async def _judge(self, root: str, summary: str) -> None:
         """Have the logs judged, with progress in the editor."""
         os.makedirs(os.path.dirname(summary), exist_ok=True)
-        process = await _started(root, ("verify", "--no-store", "--summary", summary))
+        process = await _start_btq(root, ("verify", "--no-store", "--summary", summary))
         self._process = process
         assert process.stdout is not None, "it is a pipe"
         assert process.stderr is not None, "likewise"
@@ -203,7 +205,7 @@ class Logs:
         _forget_others(summary, root)
 
 
-async def _started(folder: str, words: Sequence[str]) -> Process:
+async def _start_btq(folder: str, words: Sequence[str]) -> Process:
     """A command of btq in a folder, by the Python and the package that run this server."""
     paths = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     program = (sys.executable, "-c", _COMMAND)
@@ -212,7 +214,7 @@ async def _started(folder: str, words: Sequence[str]) -> Process:
     )
 
 
-def _state(project: Project) -> str:
+def _digest_of_logs(project: Project) -> str:
     """A digest of what is judged: the logs with their sizes and times, and the project's settings for them."""
     from btq_lang.projects.files import logs_of
     from btq_lang.workspace.loader import stamp
@@ -228,7 +230,7 @@ def _files(path: str) -> Sequence[str]:
     return sorted(os.path.join(folder, name) for folder, _, names in os.walk(path) for name in names)
 
 
-def _texts(paths: Sequence[str]) -> str:
+def _digest_of_files(paths: Sequence[str]) -> str:
     """A digest of files as they are on the disk, which is what is judged."""
     from btq_lang.workspace.loader import read
 

@@ -116,10 +116,10 @@ def build_files(options: BuildOptions, files: Files) -> BuildResult:
         messages.remark("nothing was written")
         return BuildResult(1, messages, watched)
     for output in planned:
-        _remarks(output.done.export.repairs, "repaired", groups, messages)
-    _clauses([output.done for output in planned], groups, options.is_verbose, messages)
+        _add_remarks(output.done.export.repairs, "repaired", groups, messages)
+    _add_clauses([output.done for output in planned], groups, options.is_verbose, messages)
     if not options.is_check:
-        _guesses([output.done.export for output in planned], messages)
+        _add_guesses([output.done.export for output in planned], messages)
     if STDIN in options.paths:
         for output in planned:
             if output.path == files.stdin:
@@ -147,7 +147,7 @@ def _planned(
         return None
     places = OutputPlaces(absolute(options.output) if options.output else None, _sources(groups))
     planned = [output for group in groups for output in _outputs(group, places, options)]
-    number = sum(_remarks(output.done.export.problems, "error", groups, messages) for output in planned)
+    number = sum(_add_remarks(output.done.export.problems, "error", groups, messages) for output in planned)
     clashes = [*_same_place(planned)]
     for clash in clashes:
         messages.remark(f"btq build: {clash}")
@@ -195,7 +195,7 @@ def _has_errors(groups: tuple[FileGroup, ...], options: BuildOptions, messages: 
     return True
 
 
-def _remarks(remarks: Collection[Remark], word: str, groups: tuple[FileGroup, ...], messages: CommandOutput) -> int:
+def _add_remarks(remarks: Collection[Remark], word: str, groups: tuple[FileGroup, ...], messages: CommandOutput) -> int:
     """Report an export's remarks; returns how many."""
     for remark in remarks:
         file = next(group.workspace.files[remark.path] for group in groups if remark.path in group.workspace.files)
@@ -205,7 +205,7 @@ def _remarks(remarks: Collection[Remark], word: str, groups: tuple[FileGroup, ..
     return len(remarks)
 
 
-def _clauses(
+def _add_clauses(
     planned: list[Enforcement], groups: tuple[FileGroup, ...], is_verbose: bool, messages: CommandOutput
 ) -> None:
     """Report how the clauses of requirements are covered, with a line for each clause that has a remark, or that is
@@ -229,7 +229,7 @@ def _clauses(
         way = "not enforced, monitored" if clause.asked and clause.way == "monitored" else clause.way
         why = f": {clause.why}" if clause.why else ""
         remark = Remark(*_absolute(clause.place, groups), f"{clause.requirement}, `{clause.clause}`{where}{why}")
-        _remarks((remark,), way, groups, messages)
+        _add_remarks((remark,), way, groups, messages)
     with_nodes = {
         (clause.requirement, clause.clause, clause.place.path, clause.place.span) for clause in clauses.values()
     }
@@ -239,7 +239,7 @@ def _clauses(
         for requirement, claim in enforcement.loose
         if (clause_key := (requirement.name, claim.text, claim.place.path, claim.place.span)) not in with_nodes
     }
-    _remarks(loose.values(), "not checked", groups, messages)
+    _add_remarks(loose.values(), "not checked", groups, messages)
     if clauses:
         ways = [clause.way for clause in clauses.values()]
         counted = [f"{ways.count(way)} {way}" for way in ("enforced", "monitored", "reviewed") if way in ways]
@@ -247,7 +247,7 @@ def _clauses(
         messages.remark(f"clauses of requirements: {', '.join(counted)}")
 
 
-def _guesses(exports: list[Export], messages: CommandOutput) -> None:
+def _add_guesses(exports: list[Export], messages: CommandOutput) -> None:
     """Report which nodes got a guessed category in the models, because the mission does not declare it."""
     guessed = {name: category for export in exports for name, category in export.guessed.items()}
     shown = [f"{name} ({category})" for name, category in sorted(guessed.items())[:_GUESSES_SHOWN]]
@@ -323,7 +323,7 @@ def _put_all(targets: list[_Target], messages: CommandOutput) -> bool:
     """Write or remove all files, or none if that fails for one."""
     for number, target in enumerate(targets):
         try:
-            _put(target.path, target.text)
+            _write_or_remove(target.path, target.text)
         except OSError as error:
             what = "written" if target.text is not None else "removed"
             messages.problems([LoadProblem(target.path, f"cannot be {what}: {error.strerror}")])
@@ -332,7 +332,7 @@ def _put_all(targets: list[_Target], messages: CommandOutput) -> bool:
     return True
 
 
-def _put(path: str, text: str | None) -> None:
+def _write_or_remove(path: str, text: str | None) -> None:
     """Write a file, or remove it.
 
     Raises:
@@ -353,7 +353,7 @@ def _take_back(targets: list[_Target], messages: CommandOutput) -> None:
     """Restore the old contents of files, as far as possible."""
     for target in targets:
         try:
-            _put(target.path, target.old)
+            _write_or_remove(target.path, target.old)
         except OSError as error:
             messages.problems([LoadProblem(target.path, f"was changed and cannot be restored: {error.strerror}")])
 
