@@ -109,7 +109,7 @@ def _plain_check(paths: Sequence[str]) -> int:
 
 
 def _command(name: str) -> tuple[Callable[[Any, CommandOutput], int], Any]:
-    """The function that runs a command, and the record of its options, whose fields argparse has by the same names."""
+    """The function that runs a command, and the record of its options, whose fields have argparse's names."""
     from importlib import import_module
 
     module = import_module(f"btq_lang.commands.{_MODULES.get(name, name)}")
@@ -126,7 +126,7 @@ def _serve(options: Namespace) -> NoReturn:
 
 
 def _configured(run: Callable[[Any, CommandOutput], int], config: str) -> Callable[[Any, CommandOutput], int]:
-    """The function that runs a command with one project file for all files, instead of the nearest one above each."""
+    """A function that runs a command with one project file for all files, not with the nearest one above each."""
     from btq_lang.projects.options import refuse
     from btq_lang.workspace.loader import absolute, find_project, read, use_project_file
 

@@ -7,8 +7,8 @@ How to check, build or judge is unknown here; other packages do that.
 
     arguments.py the command line, and which module runs which command
     output.py, reporting.py   where output goes, and the report of a check
-    fixing.py, ignoring.py    what a check changes
-    baseline.py               which findings are known
+    fixing.py, ignoring.py    changes that a check makes
+    baseline.py               findings that are not reported
     check.py, format.py, build.py …   the commands
     shell/           completion scripts
 """

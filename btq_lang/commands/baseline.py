@@ -1,4 +1,4 @@
-"""`btq check --baseline`: findings that a team knows already, in a file, and what is new beside them.
+"""`btq check --baseline`: a file of findings that a team knows already, and the new findings.
 
     {"format": 1, "tool": "btq",
      "findings": [{"path": "missions/lab.btq", "rule": "unknown-node", "fingerprint": "5783b43235c1b533", "count": 2}]}
@@ -37,9 +37,9 @@ def compared(
     messages: CommandOutput,
     is_whole: bool,
 ) -> tuple[list[Finding], int, tuple[LoadProblem, ...]]:
-    """The findings that are not in the baseline of the command line, or else of the project of their file; the number
-    of the others; and what is wrong with baselines.  With `--update-baseline`, they are written first if `is_whole`:
-    all files could be read."""
+    """The findings that are not in the baseline, which the command line or else the project of their file names; the
+    number of the others; and problems with baselines.  With `--update-baseline`, the findings are written first if
+    `is_whole`: all files could be read."""
     checked: dict[str, set[str]] = {}
     for group in groups:
         path = absolute(options.baseline) if options.baseline else group.project.baseline
@@ -118,7 +118,7 @@ def _text(baseline: Known, folder: str) -> str:
 
 
 def _new_findings(baseline: Known, findings: Iterable[Finding], files: set[str]) -> list[Finding]:
-    """The findings that are not known, in order; of equal ones the first are known."""
+    """The findings that are not in the baseline, in order; of equal findings the first ones are in it."""
     remaining = baseline.copy()
     new = [
         finding for finding in findings if not (_may_be_known(finding, files) and _take(remaining, _identity(finding)))

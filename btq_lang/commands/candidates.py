@@ -56,7 +56,7 @@ def candidates(requested: Sequence[str], logs: Sequence[str], problems: list[str
 
 
 def strict_problem(is_strict: bool, missions: Sequence[Candidate]) -> list[str]:
-    """Why not every requirement can be satisfied: there is no mission."""
+    """The reason why not every requirement can be satisfied: there is no mission."""
     has_mission = any(not isinstance(mission, OwnTree) for mission in missions)
     return [] if has_mission or not is_strict else [f"--strict: {NO_MISSION}"]
 
@@ -98,7 +98,7 @@ def candidate(workspace: Workspace, path: str, side: SideFile | None) -> Candida
 
 
 def name_of(path: str) -> str:
-    """What a mission is called: its file's name without the suffix."""
+    """The name of a mission: that of its file without the suffix."""
     return os.path.splitext(os.path.basename(path))[0]
 
 

@@ -127,7 +127,7 @@ def _check(options: CheckOptions, files: Files, messages: CommandOutput) -> tupl
 def _show_files(
     groups: Iterable[FileGroup], parameter_files: Iterable[ParameterFile], files: Files, messages: CommandOutput
 ) -> None:
-    """`--show-files`: print what would be checked."""
+    """`--show-files`: print the files that a check would read."""
     missions = (path for group in groups for path in (*group.given, *group.cpp))
     for path in sorted({*missions, *files.project_files, *(file.path for file in parameter_files)}):
         messages.result(shown(path))
@@ -140,7 +140,7 @@ def _is_other(path: str) -> bool:
 
 
 class _Checked(Record):
-    """What a check found.
+    """The result of a check.
 
     Attributes:
         findings: in the order of files and places.
@@ -166,7 +166,7 @@ def _report(
     """Check, leave out what is in the baseline, and write the report; returns the exit code.
 
     Args:
-        problems: what could not be read or written.
+        problems: of reading and writing files.
         mended: the number of fixes that were applied.
         empty: why there is nothing to check.
     """
@@ -302,7 +302,7 @@ def _add_ignores(
 def _findings(
     groups: Iterable[FileGroup], texts: Mapping[str, str], options: CheckOptions
 ) -> tuple[list[Finding], tuple[str, ...]]:
-    """What is wrong with the requested files, and these files; a file of several factories is checked in each."""
+    """The findings in the requested files, and these files; a file of several factories is checked in each."""
     of_file: dict[str, list[tuple[Factory | None, tuple[Diagnostic, ...]]]] = {}
     groups = tuple(groups)
     for group in groups:

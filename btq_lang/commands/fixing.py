@@ -22,7 +22,7 @@ _ROUNDS: Final = 10  # of fixing: a fix may enable another
 
 
 def fix(groups: Iterable[FileGroup], is_wanted: Callable[[Diagnostic], bool]) -> tuple[tuple[FileGroup, ...], int]:
-    """The groups with the safe fixes of the requested files applied, and how many these are; nothing is written."""
+    """The groups with the safe fixes of the requested files applied, and the number of fixes; nothing is written."""
     fixed_groups: list[FileGroup] = []
     count = 0
     finished: dict[str, File] = {}  # of earlier groups: a file may be in several factories
@@ -47,8 +47,8 @@ def fix(groups: Iterable[FileGroup], is_wanted: Callable[[Diagnostic], bool]) ->
 def write_fixes(
     before: Iterable[FileGroup], after: Iterable[FileGroup], stdin: str | None, messages: CommandOutput
 ) -> tuple[tuple[FileGroup, ...], tuple[LoadProblem, ...]]:
-    """Write what differs, and the new text of standard input to standard output; returns the groups as they
-    are then."""
+    """Write files that differ, and the new text of standard input to standard output; returns the groups after
+    that."""
     written: list[FileGroup] = []
     trouble: list[LoadProblem] = []
     finished: dict[str, File] = {}
@@ -75,7 +75,7 @@ def write_fixes(
 def show_fixes(
     before: Iterable[FileGroup], after: Iterable[FileGroup], is_coloured: bool, messages: CommandOutput
 ) -> bool:
-    """Print what would be written as a unified diff; returns whether there is anything."""
+    """Print the changes as a unified diff; returns whether there are any."""
 
     is_changed = False
     seen: set[str] = set()
@@ -90,7 +90,7 @@ def show_fixes(
 
 
 def _with_files(workspace: Workspace, files: Mapping[str, File]) -> Workspace:
-    """The workspace with other files in the place of those of the same paths."""
+    """The workspace with some files replaced by others of the same paths."""
     replaced = {path: files.get(path, file) for path, file in workspace.files.items()}
     return Workspace(replaced, workspace.project, workspace.factory)
 

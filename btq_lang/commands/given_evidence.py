@@ -1,4 +1,4 @@
-"""The verdicts beside the requirements of an overview or a drawing: those of a file or a store, or judged by logs."""
+"""The verdicts that an overview or a drawing shows with requirements: those of a file or a store, or by logs."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ class GraphOptions(Record):
     Attributes:
         paths: the one file to draw.
         qualities: show qualities and requirements beside their nodes.
-        evidence: the paths of what shows whether requirements hold.
+        evidence: the paths of logs, stores and files of verdicts.
         direction: the position of the children, in DIRECTIONS.
     """
 
@@ -70,7 +70,7 @@ def run(options: GraphOptions, messages: CommandOutput) -> int:
 
 
 def _figures(options: GraphOptions, groups: Sequence[FileGroup], workspace: Workspace, path: str) -> Sequence[Figure]:
-    """The trees, with what logs show of their requirements if that is asked for."""
+    """The trees, with the verdicts on their requirements if evidence is given."""
     if not options.evidence:
         return figures(workspace, path, options.qualities)
     from btq_lang.commands.given_evidence import verdicts_for  # it imports the readers of logs

@@ -30,7 +30,7 @@ Added: TypeAlias = tuple[Edit, list[Diagnostic]]  # a comment, and what it silen
 def add_ignores(
     groups: Iterable[FileGroup], findings: Sequence[Finding], reason: str
 ) -> tuple[int, tuple[LoadProblem, ...]]:
-    """Write comments for the findings into their files; returns how many, and what could not be written."""
+    """Write comments for the findings into their files; returns their number, and problems of writing."""
     of_file = grouped((finding.path, finding.diagnostic) for finding in findings)
     count = 0
     trouble: list[LoadProblem] = []
@@ -86,7 +86,7 @@ def _comments_for(file: File, diagnostics: Iterable[Diagnostic], reason: str) ->
 
 
 def _is_silent(workspace: Workspace, file: File, added: Sequence[Added]) -> bool:
-    """Whether a check of a file with comments finds what it has found, but for what they silence."""
+    """Whether a check of a file with comments has the same findings, except those that the comments silence."""
     if not added or is_generated(file.source):
         return False
     text = apply_edits(file.source, (edit for edit, _ in added))

@@ -61,7 +61,7 @@ def verify_live(options: VerifyOptions, address: str, messages: CommandOutput) -
 
 @contextmanager
 def stopped_by_signals() -> Iterator[Event]:
-    """A flag that Ctrl+C and the signal to terminate raise; at the second, the process ends as it always does."""
+    """A flag that Ctrl+C and the signal to terminate raise; the second signal ends the process."""
     stop = Event()
 
     def raise_it(number: int, frame: FrameType | None) -> None:
@@ -80,7 +80,7 @@ def stopped_by_signals() -> Iterator[Event]:
 
 
 def _problem(options: VerifyOptions, address: str) -> str | None:
-    """What is wrong with the command line."""
+    """The usage error of the command line."""
     for option in given_options(options, [*_NOT_LIVE]):
         return f"{option} {_NOT_LIVE[option]}"
     if options.logs:

@@ -92,7 +92,7 @@ def _line(news: News) -> str:
 
 
 def drawn(watched: Watched, news: Sequence[str], columns: int, height: int, paint: Paint) -> Sequence[str]:
-    """The lines of the screen: what is watched, the verdicts, the last news, and how it ends."""
+    """The lines of the screen: the address and the mission, the verdicts, the last news, and how to end."""
     runs = ", ".join(f"{number} {outcome}" for outcome, number in watched.outcomes.items())
     head = [each for each in (watched.address, watched.mission, f"runs: {runs}" if runs else "") if each]
     top = [paint("message", printable(each)) for each in head]

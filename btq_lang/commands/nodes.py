@@ -38,7 +38,7 @@ class NodesOptions(Record):
 
 
 def run(options: NodesOptions, messages: CommandOutput) -> int:
-    """Write the nodes, and say on standard error what cannot be seen or is wrong."""
+    """Write the nodes, and remarks on what is wrong or cannot be seen."""
     form = options.format or os.path.splitext(options.output or "")[1].lower().removeprefix(".") or FORMATS[0]
     project = find_project(options.paths[0]).project
     files, exported, problems = _cpp_texts(options.paths, project)
@@ -76,8 +76,8 @@ def run(options: NodesOptions, messages: CommandOutput) -> int:
 
 
 def _cpp_texts(paths: Sequence[str], project: Project) -> tuple[dict[str, str], dict[str, Exported], list[str]]:
-    """The C++ files below some paths, as they are shown, those of pluginlib, and what cannot be read; folders are left
-    out as in a pattern of `nodes` in the project file."""
+    """The C++ files below some paths, by shown path, the XML of pluginlib, and files that cannot be read; folders are
+    left out as in a pattern of `nodes` in the project file."""
     problems: list[LoadProblem] = []
     candidates: dict[str, None] = {}
     for top in map(absolute, paths):

@@ -35,7 +35,7 @@ class PreviewOptions(Record):
     Attributes:
         port: on this machine; 0: a free one.
         open: show it in the browser.
-        evidence: the paths of what shows whether requirements hold; none: that of the project.
+        evidence: the paths of logs, stores and files of verdicts; none: those of the project.
         on_click: the command to run on a click on a node.
         follow: read the messages of an editor from standard input.
     """

@@ -51,7 +51,7 @@ def reads_store(options: VerifyOptions) -> bool:
 
 
 def store_problem(options: VerifyOptions, is_summary: bool) -> str | None:
-    """What is wrong with a command line about a store.
+    """The usage error of a command line about a store.
 
     Args:
         is_summary: the result of `reads_store`.

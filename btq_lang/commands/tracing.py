@@ -19,7 +19,7 @@ class TraceOptions(Record):
     """The options of `btq trace`.
 
     Attributes:
-        evidence: the paths of what shows whether requirements hold; none: that of the project.
+        evidence: the paths of logs, stores and files of verdicts; none: those of the project.
         bundle: show what is enforced in builds with `--bundle`.
     """
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def events_problem(path: str | None) -> str | None:
-    """What is wrong with the path of the file of the violations."""
+    """The usage error in the path of the file of the violations."""
     if path is None:
         return None
     if os.path.splitext(path)[1] != _MCAP:
@@ -32,7 +32,7 @@ def events_problem(path: str | None) -> str | None:
 
 
 def overwrites(path: str, logs: Iterable[str]) -> str | None:
-    """Why the file of the violations cannot be there: it is one of the logs, or would be read as one."""
+    """The reason why violations cannot be written to a path: the file is one of the logs, or would be read as one."""
     file = os.path.realpath(path)
     for log in map(os.path.realpath, logs):
         if file == log or file.startswith(os.path.join(log, "")):

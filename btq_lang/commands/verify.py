@@ -71,7 +71,7 @@ def run(options: VerifyOptions, messages: CommandOutput) -> int:
 def _inputs(
     options: VerifyOptions, problems: list[str]
 ) -> tuple[Sequence[str], Sequence[Candidate], dict[str, SampleSeries]]:
-    """The logs, missions and samples of a command line; errors are appended to the problems."""
+    """The logs, missions and samples of a command line; problems are appended."""
     problem = form_problem(options.format, options.output, FORMATS)
     if options.jobs < 1:
         problem = problem or f"--jobs {options.jobs}: expected a number of processes"

@@ -29,7 +29,7 @@ from btq_lang.workspace.loader import LoadProblem, absolute, read, shown, write_
 
 
 class BuildOptions(Record):
-    """What is built, and how.
+    """The missions to build, and how.
 
     Attributes:
         paths: files and folders, or `-` for standard input.
@@ -61,7 +61,7 @@ class BuildOptions(Record):
 
 
 class BuildResult(Record):
-    """What a build did.
+    """The result of a build.
 
     Attributes:
         code: the exit code.

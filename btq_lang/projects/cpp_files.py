@@ -41,7 +41,7 @@ MISSING = "C++ is read with tree-sitter; install it with pip install 'btq-lang[c
 
 
 class ProjectSources(Record):
-    """A project with what was read from its C++ sources.
+    """A project with the nodes of its C++ sources.
 
     Attributes:
         project: its `node_files` with the C++ sources of the whole project.
@@ -193,7 +193,7 @@ def _text(texts: dict[str, str], path: str) -> str:
 
 
 def _certain(node: CppNode) -> CppNode:
-    """A node with an empty default for each input without which it is not seen to fail, and without types that only
+    """A node with an empty default for each input that it may do without, and without types that only
     other files say: `_error_code_type` is what ROS calls the type of a message's field, whatever it is."""
     needed = {name for name, without in node.without if without == "fails"}
     needed.update(port.name for port in node.ports if port.direction == "output" or port.default is not None)

@@ -16,7 +16,7 @@ from btq_lang.workspace.loader import absolute, matching, package_folder, read, 
 if TYPE_CHECKING:
 
     class Known(Protocol):
-        """What is known of XML files."""
+        """Knows which XML files are missions."""
 
         def is_mission(self, path: str) -> bool:
             """Whether an XML file is the engine's."""

@@ -280,7 +280,7 @@ class Files:
         return self._load((), home, (whole,))[0].workspace.of_factory(whole)
 
     def workspace_of_nodes(self, home: FoundProject) -> Workspace:
-        """The workspace of what a project of the last request declares of nodes, without missions."""
+        """The workspace of the nodes that a project of the last request declares, without missions."""
         return self._load((), home, ())[0].workspace
 
     def _with_pools(

@@ -64,11 +64,11 @@ class Commit:
         return data.decode("utf-8", "replace").removeprefix("\ufeff")
 
     def is_file(self, path: str) -> bool:
-        """Whether it has a file."""
+        """Whether the commit has a file."""
         return self._kind(path) == "blob"
 
     def is_folder(self, path: str) -> bool:
-        """Whether it has a folder."""
+        """Whether the commit has a folder."""
         return self._kind(path) == "tree"
 
     def _kind(self, path: str) -> str:

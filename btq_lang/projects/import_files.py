@@ -33,7 +33,7 @@ from btq_lang.workspace.loader import LoadProblem, absolute, decoded, find_proje
 
 
 class ImportOptions(Record):
-    """What is imported, and how.
+    """The files to import, and how.
 
     Attributes:
         files: XML files and logs, or `-` for standard input.
@@ -55,7 +55,7 @@ class ImportOptions(Record):
 
 
 class ImportResult(Record):
-    """What an import did.
+    """The result of an import.
 
     Attributes:
         code: the exit code.

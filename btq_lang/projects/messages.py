@@ -1,4 +1,4 @@
-"""What a command prints, as data: a terminal or an editor shows it."""
+"""The output of a command as data, for a terminal or an editor."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class CommandOutput:
         self.add(f"{line}\n", "remark")
 
     def problems(self, problems: Iterable[LoadProblem]) -> None:
-        """Add what could not be read or written."""
+        """Add problems of reading and writing files."""
         for problem in problems:
             self.remark(f"btq: {problem}")
 

@@ -52,7 +52,7 @@ def nav2_findings(
     configured: Callable[[Project], Project],
     target: str | None = None,
 ) -> tuple[list[Finding], dict[str, str]]:
-    """What is wrong with parameter files, and with trees that are checked; and the texts of files that this names.
+    """The findings in parameter files and in checked trees, and the texts of the files that they name.
 
     Args:
         checked: the paths of those trees.

@@ -1,4 +1,4 @@
-"""The factories that a parameter file of Nav2 describes, and what is wrong with it.
+"""The factories that a parameter file of Nav2 describes, and the findings in it.
 
 bt_navigator has a factory for each navigator, so a tree that one of them creates by default, or for a goal that names
 it, sees what is read for that tree and nothing else.
@@ -133,7 +133,7 @@ def parameter_file(
 
 
 def in_distribution(file: ParameterFile, distribution: str | None) -> ParameterFile:
-    """A parameter file with what a distribution loads by it."""
+    """A parameter file with the trees that a distribution loads by it."""
     parameters, sources = file.parameters, file.sources
     if parameters is None:
         return file
@@ -174,7 +174,7 @@ def _for_goals(file: ParameterFile, parameters: Parameters, loads: Loads, sender
 def findings_of(
     file: ParameterFile, workspace_of: Callable[[Factory], Workspace], moved: ParameterFile | None = None
 ) -> Iterator[tuple[str, Diagnostic]]:
-    """All that is wrong with a parameter file and with what it loads, with the file that it is in.
+    """The findings in a parameter file and in what it loads, each with its file.
 
     What is wrong with trees that nodes name for goals is found by the checks of these nodes, but for that of `moved`.
 

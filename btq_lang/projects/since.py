@@ -78,7 +78,7 @@ class _Concerned:
         return False
 
     def _needed(self, path: str) -> Iterator[str]:
-        """What a file itself depends on; paths that are not there too."""
+        """The paths that a file itself depends on, existing or not."""
         workspace = self._workspace
         yield from workspace.scope(path).paths
         if workspace.factory is not None and workspace.factory.nav2:

@@ -17,7 +17,7 @@ from btq_lang.workspace.loader import absolute, head, read, stamp
 
 
 class XmlBelow:
-    """Looks at files, and remembers what they are until they change."""
+    """Classifies files, and remembers the result until they change."""
 
     def __init__(self) -> None:
         self._seen: dict[str, tuple[Hashable, frozenset[str] | None, bool]] = {}  # stamp, IDs, whether it is generated
