@@ -20,6 +20,6 @@ from btq_lang.lsp.editor import Server
 
 def register(server: Server) -> None:
     """Register all handlers with pygls."""
-    for group in (lifecycle, documents, navigation, colours, acting, hints, commands):
+    for group in (lifecycle, documents, navigation, colours, acting, hints, commands, logs):
         group.handlers.register(server)
-    logs.register(server)
+    logs.watch_logs(server)

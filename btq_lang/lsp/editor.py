@@ -134,6 +134,7 @@ class Server(LanguageServer):
         self._is_settled = False  # the first objects are frozen for the garbage collector
         self._failures: set[object] = set()  # the places of logged failures
         self.on_scanned: Callable[[], None] = lambda: None  # called when the folders have been read
+        self.on_saved: Callable[[str], None] = lambda path: None  # called when a file has been saved
         self.on_end: Callable[[], None] = lambda: None  # called when the server ends
         self.protocol.log_failure = self.log_failure
         self._watching: asyncio.Task[None] | None = None
@@ -297,7 +298,7 @@ class Server(LanguageServer):
                 requests have answers about XML.
 
         Raises:
-            Unknown: it is in no folder, or C++, or XML that is not the engine's or not to be read.
+            UnknownDocument: it is in no folder, or C++, or XML that is not the engine's or not to be read.
         """
         path = self.convert.path(document.uri)
         workspace = self.session.workspace_of(path)
@@ -313,7 +314,7 @@ class Server(LanguageServer):
         """The result of a feature at a position, and the workspace and path of its spans; `reads`: as in `at`.
 
         Raises:
-            Unknown: the document is, or no text is translated from this place of it.
+            UnknownDocument: the document is unknown, or no text is translated from this place of it.
         """
         workspace, path = self.at(place.text_document, reads=reads)
         offset = workspace.files[path].from_disk(self.convert.offset(workspace, path, place.position))

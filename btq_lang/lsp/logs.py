@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from lsprotocol import types
 
-from btq_lang.lsp.editor import RequestRefused, Server, UnknownDocument
+from btq_lang.lsp.editor import Handlers, RequestRefused, Server, UnknownDocument
 from btq_lang.lsp.progress import progress
 from btq_lang.util.version import __version__
 
@@ -36,52 +36,68 @@ RUN = "btq.server.run"
 JUDGED = "$/btq/judged"  # a notification: pictures and overviews that the editor shows are outdated
 
 
-def register(server: Server) -> None:
+handlers = Handlers()
+
+
+def watch_logs(server: Server) -> None:
+    """Have the logs of a server's projects judged from when it has read their folders."""
     logs = Logs(server)
-    server.on_scanned, server.on_end = logs.watch, logs.stop
+    server.on_scanned, server.on_saved, server.on_end = logs.watch, logs.saved, logs.stop
 
-    @server.feature(types.SHUTDOWN)
-    def shutdown(_: None) -> None:
-        logs.stop()
 
-    @server.feature(types.TEXT_DOCUMENT_DID_SAVE)
-    def did_save(params: types.DidSaveTextDocumentParams) -> None:
-        logs.saved(server.convert.path(params.text_document.uri))
+@handlers.feature(types.SHUTDOWN)
+def shutdown(server: Server, _: None) -> None:
+    server.on_end()
 
-    def mission_with_verdicts(document: types.TextDocumentIdentifier) -> tuple[Workspace, str, ProjectVerdicts]:
-        with suppress(UnknownDocument):
-            workspace, path = server.at(document, reads=True)
-            if (evidence := server.session.evidence(workspace)) is not None:
-                return workspace, path, evidence
-        raise RequestRefused(
-            "no logs of this mission have been judged; name them with `logs` in [evidence] of btq.toml"
-        )
 
-    @server.command(RUNS)
-    def runs(document: types.TextDocumentIdentifier) -> list[dict[str, object]]:
-        """The runs in the logs that people look for: the `run`, and what it is."""
-        from btq_lang.ide.runs import runs_to_show  # few projects have logs
+@handlers.feature(types.TEXT_DOCUMENT_DID_SAVE)
+def did_save(server: Server, params: types.DidSaveTextDocumentParams) -> None:
+    server.on_saved(server.convert.path(params.text_document.uri))
 
-        return [
-            {"run": run, "said": description} for run, description in runs_to_show(*mission_with_verdicts(document))
-        ]
 
-    @server.command(RUN)
-    async def run(document: types.TextDocumentIdentifier, number: int) -> dict[str, object]:
-        """A run of the logs, step by step, with the keys of nodes as in the picture."""
-        from btq_lang.ide.runs import logged_run, run_on_picture  # as above
+@handlers.command(RUNS)
+def runs(server: Server, document: types.TextDocumentIdentifier) -> list[dict[str, object]]:
+    """The runs in the logs that people look for: the `run`, and what it is."""
+    from btq_lang.ide.runs import runs_to_show  # few projects have logs
 
-        workspace, path, evidence = mission_with_verdicts(document)
-        where = logged_run(workspace, path, evidence, number)
-        if where is None:
-            raise RequestRefused(f"the logs have no run {number} of this mission")
-        run_steps = await logs.read_run(evidence.root, where)
-        if isinstance(run_steps, str):
-            raise RequestRefused(run_steps)
-        drawn = run_on_picture(workspace, path, where, run_steps)
-        if drawn is None:
-            raise RequestRefused("this run is of an earlier text: the trees have been edited since, or are not saved")
-        return drawn
+    shown_runs = runs_to_show(*_mission_with_verdicts(server, document))
+    return [{"run": run, "said": description} for run, description in shown_runs]
+
+
+@handlers.command(RUN)
+async def run(server: Server, document: types.TextDocumentIdentifier, number: int) -> dict[str, object]:
+    """A run of the logs, step by step, with the keys of nodes as in the picture."""
+    from btq_lang.ide.runs import logged_run, run_on_picture  # as above
+
+    workspace, path, evidence = _mission_with_verdicts(server, document)
+    where = logged_run(workspace, path, evidence, number)
+    if where is None:
+        raise RequestRefused(f"the logs have no run {number} of this mission")
+    run_steps = await _read_run(evidence.root, where)
+    if isinstance(run_steps, str):
+        raise RequestRefused(run_steps)
+    drawn = run_on_picture(workspace, path, where, run_steps)
+    if drawn is None:
+        raise RequestRefused("this run is of an earlier text: the trees have been edited since, or are not saved")
+    return drawn
+
+
+def _mission_with_verdicts(
+    server: Server, document: types.TextDocumentIdentifier
+) -> tuple[Workspace, str, ProjectVerdicts]:
+    with suppress(UnknownDocument):
+        workspace, path = server.at(document, reads=True)
+        if (evidence := server.session.evidence(workspace)) is not None:
+            return workspace, path, evidence
+    raise RequestRefused("no logs of this mission have been judged; name them with `logs` in [evidence] of btq.toml")
+
+
+async def _read_run(root: str, run: LoggedRun) -> dict[str, Any] | str:
+    """A run as `btq verify --run` prints it, or why there is none."""
+    log, number = os.path.join(root, run.log), str(run.number_in_log)
+    process = await _start_btq(root, ("verify", "--no-store", log, "--mission", run.mission, "--run", number))
+    output, errors = await process.communicate()
+    return json.loads(output) if process.returncode == 0 else errors.decode(errors="replace").strip()
 
 
 class Logs:
@@ -123,13 +139,6 @@ class Logs:
                 return
         del self._shown[workspace.project.root]
         self._saved.set()
-
-    async def read_run(self, root: str, run: LoggedRun) -> dict[str, Any] | str:
-        """A run as `btq verify --run` prints it, or why there is none."""
-        log, number = os.path.join(root, run.log), str(run.number_in_log)
-        process = await _start_btq(root, ("verify", "--no-store", log, "--mission", run.mission, "--run", number))
-        output, errors = await process.communicate()
-        return json.loads(output) if process.returncode == 0 else errors.decode(errors="replace").strip()
 
     async def _watch(self) -> None:
         while True:
