@@ -79,9 +79,8 @@ async def workspace_diagnostic(server: Server, params: types.WorkspaceDiagnostic
         if server.convert.uri(server.convert.path(previous.uri)) != previous.uri
     ]
     items += [_report_of(uri, None, EMPTY_REPORT) for uri in other_uris]  # the file's URI has changed since then
-    async with checking(
-        server, 0 if result_ids else len(paths)
-    ) as report_done:  # an editor with results asks for changes only
+    expected = 0 if result_ids else len(paths)  # an editor with results asks for changes only
+    async with checking(server, expected) as report_done:
         for number, path in enumerate(paths, 1):
             report = server.report(path, result_ids.get(path))
             items.append(_report_of(server.convert.uri(path), server.versions.get(path), report))
