@@ -91,9 +91,8 @@ def _is_named(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> 
 def _words(store: Store[Workspace], viewpoint: str, tree: str) -> frozenset[str]:
     """All words in the values of a tree's attributes: a program may read the name of an entry from any of them."""
     view = View(store, viewpoint)
-    definition = view.ask(inputs.definition, Kind.TREE, tree)
     words: set[str] = set()
-    for resolved in view.seen_in(*definition).given if definition is not None else ():
+    for resolved in view.nodes_of(tree).given:
         for pair in resolved.node.attributes:
             if pair.value is not None:
                 words.update(_WORD(pair.value.text) if pair.value.text not in ("=", "{=}") else (pair.key.text,))

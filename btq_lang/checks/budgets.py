@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from math import ceil, inf, log
 
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.checks.demanded import Demanded, Found, found_at, seconds, summed
+from btq_lang.checks.demanded import Demanded, PlacedDiagnostic, diagnostic_at, seconds, summed
 from btq_lang.diagnostics.model import Related
 from btq_lang.requirements.budget_parts import Budget, port_seconds
 from btq_lang.requirements.budgets import Budgets
@@ -16,7 +16,7 @@ from btq_lang.requirements.model import Applied, MissionRun, ResolvedClaim, Reso
 from btq_lang.workspace.resolved import ResolvedNode
 
 
-def budget_exceeded(demanded: Demanded) -> Iterator[Found]:
+def budget_exceeded(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
     """Children that may take longer than their parent is allowed to: in the worst case, or always."""
     for applied, claim, node, place in demanded.claims:
         most = claim.highest if VERBS[claim.verb].limits else None
@@ -39,10 +39,10 @@ def budget_exceeded(demanded: Demanded) -> Iterator[Found]:
             message = f"{node.shown} may take {seconds(allowed.high)}, more than `{most[1]}` allows: {what}{rest}"
         terms = together(allowed.terms)
         related = tuple(Related(term.node.place, _share(term)) for term in terms)
-        yield found_at(place, "budget-exceeded", message, related=related)
+        yield diagnostic_at(place, "budget-exceeded", message, related=related)
 
 
-def timeout_never_succeeds(demanded: Demanded) -> Iterator[Found]:
+def timeout_never_succeeds(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
     """A Timeout shorter than the shortest way to its child's success."""
     for node in demanded.tree.all:
         if node.flow != "timeout":
@@ -56,10 +56,10 @@ def timeout_never_succeeds(demanded: Demanded) -> Iterator[Found]:
             continue
         related = (Related(child.place, f"takes at least {seconds(success.low)}"),)
         message = f"{node.shown} can never succeed: {child.shown} takes at least {seconds(success.low)}"
-        yield found_at(node.place, "timeout-never-succeeds", message, related=related)
+        yield diagnostic_at(node.place, "timeout-never-succeeds", message, related=related)
 
 
-def odds_beyond_children(demanded: Demanded) -> Iterator[Found]:
+def odds_beyond_children(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
     """A node that must be in time, or succeed, more often than the demands on its children ensure.
 
     Limits without odds do not matter here: if a step is late now and then, the whole may still be in time.
@@ -81,10 +81,10 @@ def odds_beyond_children(demanded: Demanded) -> Iterator[Found]:
         )
         related = tuple(Related(part.place, f"fails in up to {_percent(share)}") for part, share in parts if share)
         notes = ("the failures of several steps add up (the union bound)",) if len(related) > 1 else ()
-        yield found_at(place, "odds-beyond-children", message, related=related, notes=notes)
+        yield diagnostic_at(place, "odds-beyond-children", message, related=related, notes=notes)
 
 
-def window_too_small(requirement: ResolvedRequirement) -> Iterator[Found]:
+def window_too_small(requirement: ResolvedRequirement) -> Iterator[PlacedDiagnostic]:
     """A window that is too small even without any failure.
 
     Of n experiments that all succeed, the probability is at least (1 - c)^(1/n) with confidence c (Clopper, Pearson,
@@ -102,7 +102,7 @@ def window_too_small(requirement: ResolvedRequirement) -> Iterator[Found]:
         f"{_percent(confidence)}: {reason}"
     )
     related = (Related(odds.place, "required probability"),)
-    yield found_at(window.place, "window-too-small", message, related=related)
+    yield diagnostic_at(window.place, "window-too-small", message, related=related)
 
 
 def _held_against(claim: ResolvedClaim, budget: Budget) -> Range | None:

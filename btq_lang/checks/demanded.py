@@ -21,7 +21,7 @@ from btq_lang.workspace.resolved import ResolvedNode, tree_nodes
 if TYPE_CHECKING:
     from btq_lang.btcpp.enforceability import Judge
 
-Found: TypeAlias = tuple[Place, Diagnostic]
+PlacedDiagnostic: TypeAlias = tuple[Place, Diagnostic]
 Guard: TypeAlias = tuple[tuple[ResolvedSignal, ...], tuple[str, ...], Place]
 
 
@@ -80,15 +80,15 @@ def reported_at(view: View, applied: Applied, claim: ResolvedClaim) -> Place | N
     return next((place for place in (applied.place, claim.place) if place.path == view.path), None)
 
 
-def found_at(
+def diagnostic_at(
     place: Place,
     rule: str,
     message: str,
     related: tuple[Related, ...] = (),
     notes: tuple[str, ...] = (),
     severity: Severity | None = None,
-) -> Found:
-    """A finding of a rule, with its place."""
+) -> PlacedDiagnostic:
+    """A diagnostic of a rule, with its place."""
     return place, Diagnostic(rule, place.span, message, related, notes, severity=severity)
 
 

@@ -21,7 +21,7 @@ from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
-    from btq_lang.checks.demanded import Found, Guard
+    from btq_lang.checks.demanded import Guard, PlacedDiagnostic
 
 ByItem: TypeAlias = "dict[int, list[Diagnostic]]"
 
@@ -54,7 +54,7 @@ def _in_item(store: Store[Workspace], viewpoint: str, facts: Facts) -> Sequence[
     return store.ask(demands_by_item, viewpoint).get(id(facts.item), ())
 
 
-def _of_trees(store: Store[Workspace], viewpoint: str) -> tuple[tuple[Found, ...], tuple[Guard, ...]]:
+def _of_trees(store: Store[Workspace], viewpoint: str) -> tuple[tuple[PlacedDiagnostic, ...], tuple[Guard, ...]]:
     """The findings and the guards of all trees in scope."""
     results = [store.ask(_of_tree, viewpoint, *tree) for tree in store.ask(inputs.trees, viewpoint)]
     return tuple(chain(*[findings for findings, _ in results])), tuple(chain(*[guards for _, guards in results]))
@@ -62,7 +62,7 @@ def _of_trees(store: Store[Workspace], viewpoint: str) -> tuple[tuple[Found, ...
 
 def _of_tree(
     store: Store[Workspace], viewpoint: str, path: str, facts: Facts
-) -> tuple[tuple[Found, ...], tuple[Guard, ...]]:
+) -> tuple[tuple[PlacedDiagnostic, ...], tuple[Guard, ...]]:
     """The findings about the nodes of a tree, and the claims about them for which the engine reads signals."""
     from btq_lang.checks import budgets, enforcement, limits, renewals, signals  # few files need them
     from btq_lang.checks.demanded import Demanded
@@ -86,13 +86,13 @@ def _of_tree(
     return _in_file(viewpoint, findings), tuple(signals.guards(demanded))
 
 
-def _of_requirements(store: Store[Workspace], viewpoint: str) -> tuple[Found, ...]:
+def _of_requirements(store: Store[Workspace], viewpoint: str) -> tuple[PlacedDiagnostic, ...]:
     """The findings about requirements that do not depend on nodes."""
     names = store.ask(inputs.names, viewpoint, Kind.REQUIREMENT)
     return tuple(chain(*[store.ask(_of_requirement, viewpoint, name) for name in names]))
 
 
-def _of_requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Found, ...]:
+def _of_requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple[PlacedDiagnostic, ...]:
     """The findings about a requirement that do not depend on nodes."""
     from btq_lang.checks import budgets, enforcement, limits  # as above
     from btq_lang.requirements.definitions import requirement
@@ -107,7 +107,7 @@ def _of_requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple
     return _in_file(viewpoint, findings)
 
 
-def _of_signals(store: Store[Workspace], viewpoint: str) -> tuple[Found, ...]:
+def _of_signals(store: Store[Workspace], viewpoint: str) -> tuple[PlacedDiagnostic, ...]:
     """What is wrong with signals, and with the guards that read them."""
     from btq_lang.checks.signals import of_signals  # as above
 
@@ -115,6 +115,6 @@ def _of_signals(store: Store[Workspace], viewpoint: str) -> tuple[Found, ...]:
     return _in_file(viewpoint, of_signals(View(store, viewpoint), guards))
 
 
-def _in_file(viewpoint: str, findings: Iterable[Found]) -> tuple[Found, ...]:
+def _in_file(viewpoint: str, findings: Iterable[PlacedDiagnostic]) -> tuple[PlacedDiagnostic, ...]:
     """The findings in the file that is checked."""
     return tuple([(place, diagnostic) for place, diagnostic in findings if place.path == viewpoint])

@@ -9,7 +9,7 @@ from typing import TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks import lookups
-from btq_lang.checks.demanded import Demanded, Found, found_at, judge_of, reported_at
+from btq_lang.checks.demanded import Demanded, PlacedDiagnostic, diagnostic_at, judge_of, reported_at
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
@@ -26,7 +26,7 @@ from btq_lang.workspace.workspace import Workspace
 Swallower: TypeAlias = tuple[ResolvedNode, str]  # the node that does not fail when something below it does, and why
 
 
-def not_enforced(demanded: Demanded) -> Iterator[Found]:
+def not_enforced(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
     """A claim about a node that no build enforces, or only a build into one file."""
     for applied, claim, node, place, why in demanded.hard:
         if place is None or _is_reported_otherwise(demanded, applied, claim, node, place):
@@ -46,7 +46,7 @@ def not_enforced(demanded: Demanded) -> Iterator[Found]:
             yield place, _diagnostic(applied, place, why, related, is_bundled=True)
 
 
-def not_enforced_between(view: View, name: str) -> Iterator[Found]:
+def not_enforced_between(view: View, name: str) -> Iterator[PlacedDiagnostic]:
     """A claim about no particular node that no build enforces."""
     for applied in view.ask(claimed_of_no_tree, name):
         judge = judge_of(view)
@@ -108,7 +108,7 @@ def _asking(store: Store[Workspace], viewpoint: str, name: str, node: ResolvedNo
     return frozenset([use.place.path for use in uses if use.requirement == name and use.target.node is node])
 
 
-def swallowed_failure(demanded: Demanded) -> Iterator[Found]:
+def swallowed_failure(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
     """A failure that never reaches the root, on whichever way the node is run."""
     for applied, claim, node, place in demanded.claims:
         requirement = applied.requirement
@@ -123,7 +123,7 @@ def swallowed_failure(demanded: Demanded) -> Iterator[Found]:
         message = f"when {node.shown} fails because of this, {above.shown} {reason}"
         related = (Related(above.place, "the failure stops here"), Related(node.place, "failing node"))
         notes = ("to stop the mission instead, write `on violation halt`",)
-        yield found_at(place, "swallowed-failure", message, related=related, notes=notes)
+        yield diagnostic_at(place, "swallowed-failure", message, related=related, notes=notes)
 
 
 def _above(store: Store[Workspace], viewpoint: str, tree: str | None) -> Swallower | None:

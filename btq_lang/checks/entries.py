@@ -21,7 +21,7 @@ from btq_lang.checks.engines import is_for_version_4
 from btq_lang.checks.pointers import is_on, pointed_at, remaps_all
 from btq_lang.checks.scripts import is_script
 from btq_lang.checks.strings import in_source
-from btq_lang.checks.view import View, port_of, ports_beside
+from btq_lang.checks.view import View, port_names, port_of
 from btq_lang.syntax.tree import Pair, Signal, Tree, Verbatim, Word
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
@@ -293,7 +293,7 @@ def _is_stranger(view: View, resolved: ResolvedNode) -> bool:
     """Whether the ports of a node are unknown: nothing declares it, or it has more than are declared."""
     if resolved.kind is not None or resolved.is_subtree or resolved.is_placeholder:
         return False
-    names = {port.id.text for port in ports_beside(view, resolved) if port.id is not None}
+    names = port_names(view, resolved)
     keys = [pair.key.text for pair in resolved.node.attributes]
     return resolved.of_model is None or any(is_port_name(name) and name not in names for name in keys)
 
@@ -315,7 +315,7 @@ def signal_entries(store: Store[Workspace], viewpoint: str) -> frozenset[Name]:
 def _use(view: View, resolved: ResolvedNode, pair: Pair) -> tuple[bool, bool, bool]:
     """Whether a port reads, writes and creates the entry that it is given."""
     if resolved.is_subtree:
-        unknown = resolved.node.id is None or not view.ask(lookups.is_defined, Kind.TREE, resolved.node.id.text)
+        unknown = resolved.id is None or not view.ask(lookups.is_defined, Kind.TREE, resolved.id.text)
         return unknown, unknown, unknown
     port = port_of(view, resolved, pair.key.text)
     return port is None or port.direction != "output", port is None or port.direction != "input", True

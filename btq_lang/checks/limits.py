@@ -8,7 +8,7 @@ from math import prod
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import Dimension
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.checks.demanded import Demanded, Found, found_at, seconds
+from btq_lang.checks.demanded import Demanded, PlacedDiagnostic, diagnostic_at, seconds
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Place, Related
 from btq_lang.diagnostics.rules import Severity
@@ -29,7 +29,7 @@ from btq_lang.workspace import inputs
 from btq_lang.workspace.resolved import ResolvedNode
 
 
-def limit_too_small(demanded: Demanded) -> Iterator[Found]:
+def limit_too_small(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
     """A limit below one millisecond: the engine counts whole milliseconds, and 0 means no limit."""
     for applied, claim, _, place in demanded.claims:
         most = claim.highest if VERBS[claim.verb].limits and applied.requirement.is_enforceable else None
@@ -39,10 +39,10 @@ def limit_too_small(demanded: Demanded) -> Iterator[Found]:
             f"the engine cannot enforce `{most[1]}`: it counts whole milliseconds, and 0 disables the limit; "
             "write at least 1 ms"
         )
-        yield found_at(place, "limit-too-small", message)
+        yield diagnostic_at(place, "limit-too-small", message)
 
 
-def limit_on_synchronous_node(demanded: Demanded) -> Iterator[Found]:
+def limit_on_synchronous_node(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
     """A limit on a node that completes within one tick: the time is not checked while it runs."""
     for applied, claim, node, place in demanded.claims:
         most = claim.highest if VERBS[claim.verb].limits and applied.requirement.is_enforceable else None
@@ -54,10 +54,10 @@ def limit_on_synchronous_node(demanded: Demanded) -> Iterator[Found]:
             "remove `on violation`, or limit a node that returns RUNNING",
         )
         related = (Related(node.place, "never returns RUNNING"),)
-        yield found_at(place, "limit-on-synchronous-node", message, related=related, notes=notes)
+        yield diagnostic_at(place, "limit-on-synchronous-node", message, related=related, notes=notes)
 
 
-def dead_bound(demanded: Demanded) -> Iterator[Found]:
+def dead_bound(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
     """A bound that is never reached, as a Timeout around the node is shorter.  If the Timeout never succeeds, that is
     reported instead."""
     for _, claim, node, place in demanded.claims:
@@ -71,10 +71,10 @@ def dead_bound(demanded: Demanded) -> Iterator[Found]:
             continue
         message = f"`{most[1]}` is never reached: a {above.tag} halts {node.shown} after {seconds(limit)}"
         related = (Related(above.place, above.tag),)
-        yield found_at(place, "dead-bound", message, related=related)
+        yield diagnostic_at(place, "dead-bound", message, related=related)
 
 
-def outbid_bound(demanded: Demanded) -> Iterator[Found]:
+def outbid_bound(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
     """A bound without effect: the same requirement has a tighter one of the same kind for the same node."""
     kinds: dict[tuple[object, ...], list[tuple[ResolvedClaim, _Limit, Place]]] = {}
     for applied, claim, node, place in demanded.claims:
@@ -102,10 +102,10 @@ def outbid_bound(demanded: Demanded) -> Iterator[Found]:
                 if tighter.path == bound[3].path and tighter.anchor is bound[3].anchor:
                     tighter = Place(tighter.span)  # without its item, which would be hashed for each of many claims
                 related = (Related(tighter, "tighter bound"),) if tight[3].span != bound[3].span else ()
-                yield found_at(bound[3], "dead-bound", message, related=related)
+                yield diagnostic_at(bound[3], "dead-bound", message, related=related)
 
 
-def goal_beyond_bound(view: View, requirement: ResolvedRequirement) -> Iterator[Found]:
+def goal_beyond_bound(view: View, requirement: ResolvedRequirement) -> Iterator[PlacedDiagnostic]:
     """A goal that is worse than what the requirement allows: a run that violates the bound would reach it."""
     goal = requirement.goal
     if not isinstance(goal, Quantity) or requirement.place.path != view.path:
@@ -126,10 +126,10 @@ def goal_beyond_bound(view: View, requirement: ResolvedRequirement) -> Iterator[
             continue
         place = Place(Span(clause.start, clause.end), requirement.place.path, requirement.place.anchor)
         related = (Related(claim.place, "bound"),)
-        yield found_at(place, "goal-beyond-bound", message, related=related)
+        yield diagnostic_at(place, "goal-beyond-bound", message, related=related)
 
 
-def attempts_mismatch(demanded: Demanded) -> Iterator[Found]:
+def attempts_mismatch(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
     """`tries at most` and the number of attempts of Retry and Repeat do not match."""
     for _, claim, node, place in demanded.claims:
         most = claim.highest if VERBS[claim.verb].operand == "count" else None
@@ -141,13 +141,13 @@ def attempts_mismatch(demanded: Demanded) -> Iterator[Found]:
         allowed = int(most[0])
         if count > allowed:
             message = f"{node.shown} may be tried {count} times, but the requirement allows {allowed}"
-            yield found_at(place, "attempts-mismatch", message, related=related)
+            yield diagnostic_at(place, "attempts-mismatch", message, related=related)
         elif count < allowed:
             message = f"{node.shown} is tried at most {count} times and never reaches the {allowed} allowed attempts"
-            yield found_at(place, "attempts-mismatch", message, related=related, severity=Severity.HINT)
+            yield diagnostic_at(place, "attempts-mismatch", message, related=related, severity=Severity.HINT)
 
 
-def contradicting_bounds(demanded: Demanded) -> Iterator[Found]:
+def contradicting_bounds(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
     """Two bounds on one node that cannot both hold, or one that cannot hold by itself."""
     least: dict[tuple[object, ...], tuple[float, str, Place]] = {}
     most: dict[tuple[object, ...], tuple[float, str, Place]] = {}
@@ -169,7 +169,7 @@ def contradicting_bounds(demanded: Demanded) -> Iterator[Found]:
             other = least[key] if high is not None and most[key][2] is place else most[key]
             related = () if other[2] is place else (Related(other[2], "other bound"),)
             message = f"{node.shown} cannot keep both bounds: at least `{least[key][1]}` and at most `{most[key][1]}`"
-            yield found_at(place, "contradicting-bounds", message, related=related)
+            yield diagnostic_at(place, "contradicting-bounds", message, related=related)
 
 
 _Limit = tuple[tuple[object, ...], tuple[float, str] | None, tuple[float, str] | None]

@@ -94,7 +94,7 @@ def _types(store: Store[Workspace], viewpoint: str, tree: str) -> _Types:
     does not ask for it, or it would be part of each circle."""
     view = View(store, viewpoint)
     types: _Types = {}
-    for number, resolved in enumerate(_nodes(view, tree)):
+    for number, resolved in enumerate(view.nodes_of(tree).all):
         if resolved.is_subtree:
             for key, passed_at, below in _handed_on(view, resolved):
                 _add(types, key, _Meeting(below.type, number, passed_at, below.port))
@@ -134,8 +134,8 @@ def _is_first(view: View, tree: str, key: str) -> bool:
         if entry is None:
             return
         for caller in view.ask(callers, name):
-            for resolved in _nodes(view, caller):
-                if resolved.is_subtree and resolved.node.id is not None and resolved.node.id.text == name:
+            for resolved in view.nodes_of(caller).all:
+                if resolved.is_subtree and resolved.id is not None and resolved.id.text == name:
                     passed = passed_on(resolved, entry)
                     meetings = view.ask(_types, caller).get(passed, ()) if passed else ()
                     if passed is None or (meetings and _is_strong(meetings[0].type)):
@@ -145,17 +145,12 @@ def _is_first(view: View, tree: str, key: str) -> bool:
     return any(entry is None or not view.ask(callers, name) for name, entry in reached([start], entry_above))
 
 
-def _nodes(view: View, tree: str) -> tuple[ResolvedNode, ...]:
-    definition = view.ask(inputs.definition, Kind.TREE, tree)
-    return view.seen_in(*definition).all if definition is not None else ()
-
-
 def _clashes(view: View, tree: str, key: str, meetings: list[_Meeting]) -> Iterator[Diagnostic]:
     first = meetings[0]
     # The order of ports at one node is unspecified.
     if not all(_is_strong(meeting.type) for meeting in meetings if meeting.node == first.node):
         return
-    nodes = _nodes(view, tree)
+    nodes = view.nodes_of(tree).all
     reported = {first.type}
     for later in meetings:
         is_one = (later.node, later.pair) == (first.node, first.pair) and later.pair is not None
@@ -198,7 +193,7 @@ def _meant(view: View, tree: str, type_: str) -> str | None:
 
 
 def _port(view: View, port: _Port) -> tuple[ResolvedNode, Pair]:
-    resolved = _nodes(view, port.tree)[port.node]
+    resolved = view.nodes_of(port.tree).all[port.node]
     return resolved, resolved.node.attributes[port.pair]
 
 

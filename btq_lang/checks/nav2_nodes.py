@@ -14,13 +14,11 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2 import FILES
 from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks import lookups
-from btq_lang.checks.pointers import passed_on
+from btq_lang.checks.pointers import is_on, passed_on
 from btq_lang.checks.ports import adding_fix
-from btq_lang.checks.sorted_nodes import NO_NODES
-from btq_lang.checks.view import View, ports_beside
+from btq_lang.checks.view import View, port_names
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.util.reach import reached
-from btq_lang.workspace import inputs
 from btq_lang.workspace.queries import Store, hub, on_circle
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
@@ -34,7 +32,7 @@ def isolated_node(view: View) -> Iterator[Diagnostic]:
         return
     is_old = is_before_4(view.target)
     for resolved in view.seen.subtrees:
-        tree = resolved.node.id
+        tree = resolved.id
         needed = view.ask(_needed_below, tree.text) if tree is not None else ()
         lacking = {entry: node for entry, node in needed if _passed(resolved, entry, is_old) is None}
         if tree is None or not lacking:
@@ -68,20 +66,17 @@ def _needed_in(store: Store[Workspace], viewpoint: str, tree: str) -> _InTree:
 
     view = View(store, viewpoint)
     distribution = view.ask(lookups.distribution)
-    definition = view.ask(inputs.definition, Kind.TREE, tree)
-    if distribution is None or definition is None:
+    if distribution is None:
         return (), ()
-    nodes = view.seen_in(*definition)
+    nodes = view.nodes_of(tree)
     needed: dict[str, str] = {}
     for resolved, name, _ in of_nav2(view, distribution, nodes.all):
-        ports = {port.id.text for port in ports_beside(view, resolved) if port.id is not None}
+        ports = port_names(view, resolved)
         for entry in created_with(distribution, name, ports):
             needed.setdefault(entry, name)
     is_old = is_before_4(view.target)
     below = [
-        (resolved.node.id.text, tuple(_renamed(resolved, is_old)))
-        for resolved in nodes.subtrees
-        if resolved.node.id is not None
+        (resolved.id.text, tuple(_renamed(resolved, is_old))) for resolved in nodes.subtrees if resolved.id is not None
     ]
     return tuple(needed.items()), tuple(below)
 
@@ -100,10 +95,10 @@ def _passed(resolved: ResolvedNode, entry: str, is_old: bool) -> str | None:
     """
     if not is_old:
         return passed_on(resolved, entry)
-    shared, value = (resolved.node.attribute(key) for key in ("__shared_blackboard", entry))
+    value = resolved.node.attribute(entry)
     if value is not None:
         return value.text.strip("{}")
-    return entry if shared is not None and shared.text in ("true", "True", "TRUE", "1") else None
+    return entry if is_on(resolved, "__shared_blackboard") else None
 
 
 def shared_server(view: View) -> Iterator[Diagnostic]:
@@ -122,7 +117,7 @@ def shared_server(view: View) -> Iterator[Diagnostic]:
 
 def _twice(view: View, resolved: ResolvedNode, server: str, first: ResolvedNode, node: ResolvedNode) -> Diagnostic:
     caller = dict(_calls(view, node))[server]
-    where = f" in the tree `{node.node.id.text}`" if node.is_subtree and node.node.id is not None else ""
+    where = f" in the tree `{node.id.text}`" if node.is_subtree and node.id is not None else ""
     message = f"`{caller}`{where} calls the server `{server}`, as another child of {resolved.shown_kind} does"
     notes = (
         "a server has one goal at a time: the later one ends the earlier one",
@@ -140,7 +135,7 @@ def _calls(view: View, resolved: ResolvedNode) -> tuple[tuple[str, str], ...]:
     """The servers that a node calls, each with the ID of the node that calls it.  A SubTree calls those of its tree's
     nodes."""
     if resolved.is_subtree:
-        return view.ask(_calls_of_tree, resolved.node.id.text) if resolved.node.id is not None else ()
+        return view.ask(_calls_of_tree, resolved.id.text) if resolved.id is not None else ()
     from btq_lang.catalog.nav2.creation import SERVERS  # only for Nav2
 
     distribution = view.ask(lookups.distribution)
@@ -165,10 +160,9 @@ def _calls_in(
 ) -> tuple[tuple[tuple[str, str], ...], tuple[str, ...]]:
     """The servers that the nodes of a tree itself call, and the trees that it runs."""
     view = View(store, viewpoint)
-    definition = view.ask(inputs.definition, Kind.TREE, tree)
-    nodes = view.seen_in(*definition) if definition is not None else NO_NODES
+    nodes = view.nodes_of(tree)
     calls = dict.fromkeys(call for resolved in nodes.all if not resolved.is_subtree for call in _calls(view, resolved))
-    trees = dict.fromkeys(resolved.node.id.text for resolved in nodes.subtrees if resolved.node.id is not None)
+    trees = dict.fromkeys(resolved.id.text for resolved in nodes.subtrees if resolved.id is not None)
     return tuple(calls), tuple(trees)
 
 

@@ -282,7 +282,7 @@ def _ports(view: View, resolved: ResolvedNode) -> KnownPorts | None:
         return None
     if resolved.is_subtree:
         # The engine reads `default = ""` as none, requires outputs too, and adds up the models of a tree.
-        name = resolved.node.id
+        name = resolved.id
         others = view.ask(lookups.ports_of_models, Kind.MODEL, name.text) if name is not None else ()
         declared = {port.id.text: port for port in chain(ports_beside(view, resolved), *others) if port.id is not None}
         ports = [replace(port, required=not port.default) for port in map(as_kind, declared.values())]
@@ -493,7 +493,7 @@ def _is_off(value: Word | None) -> bool:
 
 def _declared(view: View, resolved: ResolvedNode) -> tuple[Related, ...]:
     if resolved.is_subtree:
-        return view.declared_at(Kind.TREE, resolved.node.id.text, _DECLARED) if resolved.node.id is not None else ()
+        return view.declared_at(Kind.TREE, resolved.id.text, _DECLARED) if resolved.id is not None else ()
     return model_related(view, resolved, _DECLARED)
 
 

@@ -13,7 +13,7 @@ from itertools import pairwise
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.checks.demanded import Demanded, Found, found_at
+from btq_lang.checks.demanded import Demanded, PlacedDiagnostic, diagnostic_at
 from btq_lang.checks.view import View, declared_ports
 from btq_lang.checks.writers import all_entries, isolated, key_of
 from btq_lang.diagnostics.model import Related
@@ -30,7 +30,7 @@ from btq_lang.workspace.workspace import Workspace
 _ONE_AT_A_TIME = frozenset(("sequence", "fallback", "choice", "switch", "resume", "recover", "rotate"))
 
 
-def guard_never_renewed(demanded: Demanded) -> Iterator[Found]:
+def guard_never_renewed(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
     """A guard whose signals all have writers in the mission, but no writer is ticked while the node runs."""
     for applied, claim, node, place, why in demanded.hard:
         signals = _watched(applied.requirement, claim) if why is None else ()
@@ -54,7 +54,7 @@ def guard_never_renewed(demanded: Demanded) -> Iterator[Found]:
             *(Related(writer.place, "writes it, but not while the node runs") for writer in writers[:3]),
             Related(node.place, "guarded node"),
         )
-        yield found_at(shown, "guard-never-renewed", message, related=related, notes=notes)
+        yield diagnostic_at(shown, "guard-never-renewed", message, related=related, notes=notes)
 
 
 def _watched(requirement: ResolvedRequirement, claim: ResolvedClaim) -> Iterable[ResolvedSignal]:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.verbs import words
-from btq_lang.checks.demanded import Demanded, Found, Guard, found_at
+from btq_lang.checks.demanded import Demanded, Guard, PlacedDiagnostic, diagnostic_at
 from btq_lang.checks.view import View, port_of
 from btq_lang.checks.writers import all_entries, isolated, written_keys
 from btq_lang.diagnostics.model import Related
@@ -24,7 +24,7 @@ from btq_lang.workspace.workspace import Workspace
 _READING = words(operands=("condition", "use"))
 
 
-def of_signals(view: View, guards: Sequence[Guard]) -> Iterator[Found]:
+def of_signals(view: View, guards: Sequence[Guard]) -> Iterator[PlacedDiagnostic]:
     """The findings of these rules.
 
     Args:
@@ -56,7 +56,9 @@ def guards(demanded: Demanded) -> Iterator[Guard]:
         yield *by_parts[key], place
 
 
-def _never_written(view: View, own_signals: list[ResolvedSignal], guards: Sequence[Guard]) -> Iterator[Found]:
+def _never_written(
+    view: View, own_signals: list[ResolvedSignal], guards: Sequence[Guard]
+) -> Iterator[PlacedDiagnostic]:
     """A signal whose blackboard entry no port and no script of the mission writes, if another entry has nearly the same
     name, or if a guard reads it.  The latter is a hint, as the robot's program may write the entry.  A guard reads the
     root blackboard: an entry in a tree's own blackboard is another one."""
@@ -74,7 +76,7 @@ def _never_written(view: View, own_signals: list[ResolvedSignal], guards: Sequen
             message = f"`{signal.name}` reads the root's `{key}`, but the tree `{writer.tree}` writes its own `{key}`"
             notes = (f"write `{{@{key}}}`, or pass the entry on to the tree: `{key} = {{{key}}}`",)
             related = (Related(writer.place, "written here"),)
-            yield found_at(signal.place, "signal-never-written", message, related, notes)
+            yield diagnostic_at(signal.place, "signal-never-written", message, related, notes)
             continue
         if key in keys:
             continue
@@ -89,7 +91,7 @@ def _never_written(view: View, own_signals: list[ResolvedSignal], guards: Sequen
             notes = (f"connect the output `{port}` of {lost.shown_kind}: `{port} = {{@{key.removeprefix('@')}}}`",)
             related = (Related(lost.place, f"writes `{port}` nowhere"),)
         severity = None if likely or lost is not None else Severity.HINT
-        yield found_at(signal.place, "signal-never-written", message, related, notes, severity=severity)
+        yield diagnostic_at(signal.place, "signal-never-written", message, related, notes, severity=severity)
 
 
 def _unconnected(view: View, signal: ResolvedSignal) -> tuple[ResolvedNode | None, str]:
@@ -110,7 +112,7 @@ def _near_keys(store: Store[Workspace], viewpoint: str, key: str) -> tuple[str, 
     return near(key, store.ask(written_keys, viewpoint))
 
 
-def _of_text(view: View, own_signals: list[ResolvedSignal]) -> Iterator[Found]:
+def _of_text(view: View, own_signals: list[ResolvedSignal]) -> Iterator[PlacedDiagnostic]:
     """A numeric signal whose entry a text port writes.  A script that compares it converts the text, and throws if that
     is not a number."""
     main = view.ask(mission)
@@ -127,11 +129,11 @@ def _of_text(view: View, own_signals: list[ResolvedSignal]) -> Iterator[Found]:
             message = f"the signal `{signal.name}` is a number, but {port_of_node} writes a string"
             related = (Related(node.place, "written here"),)
             notes = ("the engine converts the string to a number; if that fails, the mission ends",)
-            yield found_at(signal.place, "unit-mismatch", message, related, notes, severity=Severity.WARNING)
+            yield diagnostic_at(signal.place, "unit-mismatch", message, related, notes, severity=Severity.WARNING)
             break
 
 
-def _may_be_unset(view: View, guards: Iterable[Guard]) -> Iterator[Found]:
+def _may_be_unset(view: View, guards: Iterable[Guard]) -> Iterator[PlacedDiagnostic]:
     """A guard on a signal without an initial value, or a classic guard on an entry that nothing writes: the engine ends
     the mission if it reads the entry before anything writes it."""
     reported: dict[str, tuple[ResolvedSignal, list[Related]]] = {}
@@ -146,7 +148,7 @@ def _may_be_unset(view: View, guards: Iterable[Guard]) -> Iterator[Found]:
                     f"nothing in the mission writes `{entry}`: it ends if a guard reads it before anything writes it"
                 )
                 notes = (f'write it first: `Script (code = "{entry} := …")`',)
-                yield found_at(place, "signal-may-be-unset", message, notes=notes)
+                yield diagnostic_at(place, "signal-may-be-unset", message, notes=notes)
         for signal in read:
             if signal.key is not None and signal.initially is None:
                 related = reported.setdefault(signal.name, (signal, []))[1]
@@ -155,4 +157,4 @@ def _may_be_unset(view: View, guards: Iterable[Guard]) -> Iterator[Found]:
         place = signal.place if signal.place.path == view.path else related[0].place
         message = f"`{name}` has no initial value: the mission ends if a guard reads it before anything writes it"
         notes = ("add an initial value: `initially …`",)
-        yield found_at(place, "signal-may-be-unset", message, related=tuple(related[:3]), notes=notes)
+        yield diagnostic_at(place, "signal-may-be-unset", message, related=tuple(related[:3]), notes=notes)

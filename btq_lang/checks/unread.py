@@ -16,7 +16,7 @@ from btq_lang.checks.entries import blackboards
 from btq_lang.checks.entries import mentions as mentions_in
 from btq_lang.checks.nav2_nodes import of_distribution, of_nav2
 from btq_lang.checks.pointers import passed_on, pointed_at
-from btq_lang.checks.view import View, declared_ports, ports_beside
+from btq_lang.checks.view import View, declared_ports, port_names, ports_beside
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.syntax.tree import Pair, Word, port_named
 from btq_lang.util.record import replace
@@ -35,7 +35,7 @@ def default_instead(view: View) -> Iterator[Diagnostic]:
     from btq_lang.catalog.nav2.read_once import is_read_once  # only for Nav2
 
     for resolved, name, tree in of_nav2(view, distribution, view.seen.given):
-        ports = {port.id.text for port in ports_beside(view, resolved) if port.id is not None}
+        ports = port_names(view, resolved)
         for pair in resolved.node.attributes:
             port, value = pair.key.text, pair.value
             key = pointed_at(port, value.text) if value is not None else None

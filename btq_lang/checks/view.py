@@ -198,6 +198,11 @@ class View:
         """The nodes of a tree of any file in scope, sorted; empty for any other item."""
         return self.ask(sorted_nodes, path, tree) if isinstance(tree.item, Tree) else NO_NODES
 
+    def nodes_of(self, tree: str) -> SortedNodes:
+        """The nodes of the tree with a name, sorted; empty if there is none."""
+        definition = self.ask(inputs.definition, Kind.TREE, tree)
+        return self.seen_in(*definition) if definition is not None else NO_NODES
+
     # ---- the file and the project ----
 
     @property
@@ -286,13 +291,18 @@ class View:
 def ports_beside(view: View, resolved: ResolvedNode) -> tuple[Port, ...]:
     """The ports that the model of a node declares, or the tree of a SubTree; not those of a built-in."""
     if resolved.is_subtree:
-        return declared_ports(view, resolved.node.id.text) if resolved.node.id is not None else ()
+        return declared_ports(view, resolved.id.text) if resolved.id is not None else ()
     model = (
         view.ask(lookups.meaning, Kind.MODEL, resolved.id.text)
         if resolved.is_defined and resolved.id is not None
         else None
     )
     return model.ports if model is not None else ()
+
+
+def port_names(view: View, resolved: ResolvedNode) -> set[str]:
+    """The names of these ports."""
+    return {port.id.text for port in ports_beside(view, resolved) if port.id is not None}
 
 
 def declared_ports(view: View, name: str) -> tuple[Port, ...]:

@@ -38,7 +38,7 @@ class Located(Record):
     Attributes:
         named: its name in the parameters, and where; None for the default.
         path: None if it is not on this machine.
-        problem: the reason why it is not here, for a message; empty if that is no mistake.
+        problem: the reason why it is not here, for a message; empty if nothing is wrong with that.
         severity: of the problem; an error if the robot certainly lacks it too.
     """
 
