@@ -62,7 +62,7 @@ class Declaration(Record):
 @of_name
 def ports_in_file(workspace: Workspace, path: str, kind: Kind, name: str) -> frozenset[str] | None:
     """The names of the ports of a model in a file itself; None if it has no such model."""
-    found = workspace.files[path].names.found.get((kind, name))
+    found = workspace.files[path].names.definitions.get((kind, name))
     model = found[0][1].target if found else None
     if not isinstance(model, Model):
         return None
@@ -257,7 +257,7 @@ def is_run_elsewhere(workspace: Workspace, viewpoint: str, tree: str) -> bool:
     if workspace.project.pool_of(viewpoint) is None or viewpoint not in workspace.xml:
         return False
     scope = workspace.scope(viewpoint).paths
-    return any(path not in scope and tree in workspace.files[path].said(Kind.TREE) for path in workspace.xml)
+    return any(path not in scope and tree in workspace.files[path].names_used(Kind.TREE) for path in workspace.xml)
 
 
 @of_viewpoint
@@ -338,20 +338,20 @@ def taken_names(workspace: Workspace, viewpoint: str, but: str) -> dict[str, str
 @of_viewpoint
 def is_node_name(workspace: Workspace, viewpoint: str, name: str) -> bool:
     """Whether a path can name a node by this name."""
-    return any(name in workspace.files[each].said("node_names") for each in workspace.scope(viewpoint).paths)
+    return any(name in workspace.files[each].names_used("node_names") for each in workspace.scope(viewpoint).paths)
 
 
 @of_viewpoint
 def is_asked_for(workspace: Workspace, viewpoint: str, name: str) -> bool:
     """Whether a condition, a bound or an argument in the file names it."""
-    return name in workspace.files[viewpoint].said("asked_for")
+    return name in workspace.files[viewpoint].names_used("asked_for")
 
 
 @of_viewpoint
 def asked_for_in_vain(workspace: Workspace, viewpoint: str) -> frozenset[str]:
     """The names in the file's conditions, bounds and arguments that are neither signals nor contexts."""
     find = workspace.scope(viewpoint).find
-    asked = workspace.files[viewpoint].said("asked_for")
+    asked = workspace.files[viewpoint].names_used("asked_for")
     return frozenset([name for name in asked if not (find(Kind.SIGNAL, name) or find(Kind.CONTEXT, name))])
 
 
@@ -394,7 +394,7 @@ def main_tree(workspace: Workspace, viewpoint: str) -> tuple[str, bool] | None:
     if main is None:
         return None
     name = Kind.TREE, main.symbol.name
-    return main.symbol.name, main.path == viewpoint and len(workspace.files[viewpoint].names.found[name]) == 1
+    return main.symbol.name, main.path == viewpoint and len(workspace.files[viewpoint].names.definitions[name]) == 1
 
 
 @of_viewpoint
@@ -423,7 +423,7 @@ def is_first_registered(workspace: Workspace, viewpoint: str) -> bool:
 @of_viewpoint
 def used(workspace: Workspace, viewpoint: str, kind: Kind) -> frozenset[str]:
     """The names of a kind that the file refers to."""
-    return workspace.files[viewpoint].said(kind)
+    return workspace.files[viewpoint].names_used(kind)
 
 
 @of_viewpoint
@@ -435,7 +435,7 @@ def first_user(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> F
 @of_viewpoint
 def names_unknown_requirements(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the file refers to a requirement that is defined nowhere."""
-    used = workspace.files[viewpoint].said(Kind.REQUIREMENT)
+    used = workspace.files[viewpoint].names_used(Kind.REQUIREMENT)
     return not used.issubset(workspace.scope(viewpoint).names(Kind.REQUIREMENT))
 
 
@@ -452,7 +452,7 @@ def custom_node(workspace: Workspace, viewpoint: str, name: str) -> tuple[str, t
 def most_have_models(workspace: Workspace, viewpoint: str) -> bool:
     """Whether few of the custom nodes that a file knows or uses have no model: a third at most."""
     known = workspace.scope(viewpoint).names(Kind.MODEL)
-    unknown = workspace.files[viewpoint].said(Kind.MODEL).difference(known)
+    unknown = workspace.files[viewpoint].names_used(Kind.MODEL).difference(known)
     return len(known) >= 2 and 2 * sum(lookup(name) is None for name in unknown) <= len(known)
 
 
@@ -460,7 +460,7 @@ def most_have_models(workspace: Workspace, viewpoint: str) -> bool:
 def is_crowded(workspace: Workspace, viewpoint: str, kind: Kind) -> bool:
     """Whether so many of the names of a kind are unknown that suggestions are of no use."""
     known = workspace.scope(viewpoint).names(kind)
-    unknown = workspace.files[viewpoint].said(kind).difference(known)
+    unknown = workspace.files[viewpoint].names_used(kind).difference(known)
     if kind is Kind.MODEL:
         unknown = unknown.difference(BUILTINS)
     return len(unknown) * (len(known) + len(BUILTINS)) > _MOST_COMPARED

@@ -250,7 +250,7 @@ def _connected(workspace: Workspace) -> list[list[str]]:
         for included in workspace.closure(path):
             join(path, included)
         scope = workspace.scope(path)
-        for name in file.said(Kind.TREE):
+        for name in file.names_used(Kind.TREE):
             found = () if scope.defines(Kind.TREE, name) else workspace.pooled(path, Kind.TREE, name)
             if len(found) == 1:
                 join(path, found[0].path)

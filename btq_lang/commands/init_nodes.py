@@ -103,7 +103,7 @@ def _of_engine(workspace: Workspace, engines: tuple[str, ...], used: Mapping[str
     """The distributions with the engine that the files are for which use some nodes; Nav2's own trees declare a format
     from version 4 on."""
     project = replace(workspace.project, engines=engines or VERSIONS, names_all=engines == VERSIONS)
-    users = [file for file in workspace.files.values() if not file.said(Kind.MODEL).isdisjoint(used)]
+    users = [file for file in workspace.files.values() if not file.names_used(Kind.MODEL).isdisjoint(used)]
     signs = [file.origin.signs for file in users if file.origin is not None]
     wanted = {is_before_4((written_for(project, None, each) or (VERSION_3,))[-1]) for each in signs}
     for each in DISTRIBUTIONS:

@@ -111,15 +111,15 @@ def literal(node: Node | None) -> str | None:
     if node is None:
         return None
     if node.type == "concatenated_string":
-        parts = [literal(each) for each in contents(node)]
-        return None if None in parts else "".join(each or "" for each in parts)
+        parts = [literal(part) for part in contents(node)]
+        return None if None in parts else "".join(part or "" for part in parts)
     if node.type == "user_defined_literal":
         return literal(node.named_children[0])
     if node.type == "raw_string_literal":
-        return "".join(text_of(each) for each in node.named_children if each.type == "raw_string_content")
+        return "".join(text_of(part) for part in node.named_children if part.type == "raw_string_content")
     if node.type != "string_literal":
         return None
-    return "".join(_ESCAPED.get(text_of(each), text_of(each)) for each in node.named_children)
+    return "".join(_ESCAPED.get(text_of(part), text_of(part)) for part in node.named_children)
 
 
 def enclosing(node: Node, kinds: tuple[str, ...]) -> Node | None:

@@ -168,7 +168,7 @@ def _parts_a_time(workspace: Workspace, path: str, top: Node) -> bool:
 
 def _has_span(file: File) -> bool:
     """Whether a requirement in a file limits a time between two events: few do, and others need not be resolved."""
-    targets = (same[0][1].target for (kind, _), same in file.names.found.items() if kind is Kind.REQUIREMENT)
+    targets = (same[0][1].target for (kind, _), same in file.names.definitions.items() if kind is Kind.REQUIREMENT)
     clauses = [target.clauses for target in targets if isinstance(target, Requirement)]
     return any(isinstance(one, Claim) and isinstance(one.subject, Between) for each in clauses for one in each)
 

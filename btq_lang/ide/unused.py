@@ -122,7 +122,7 @@ def _uses(workspace: Workspace, path: str, gone: set[str]) -> bool:
     for file in rest:
         nodes = names_of_nodes(file)
         named |= {(kind, name) for kind in (Kind.TREE, Kind.MODEL) for name in nodes}
-        named |= {(kind, name) for kind in (Kind.SIGNAL, Kind.CONTEXT) for name in file.said("asked_for")}
+        named |= {(kind, name) for kind in (Kind.SIGNAL, Kind.CONTEXT) for name in file.names_used("asked_for")}
     return not named.isdisjoint(defined) or not all(_is_plain(workspace, each) for each in gone)
 
 

@@ -413,5 +413,5 @@ def lacking_names(workspace: Workspace, paths: Iterable[str]) -> frozenset[str]:
     for path in paths:
         scope, file = workspace.scope(path), workspace.files[path]
         for kind in (Kind.TREE, Kind.MODEL) if file.origin is not None else ():
-            found.update(name for name in file.said(kind) if not scope.defines(kind, name))
+            found.update(name for name in file.names_used(kind) if not scope.defines(kind, name))
     return frozenset(found.difference(BUILTINS))

@@ -84,11 +84,11 @@ def comments(parsed: Parsed) -> Mapping[int, Comments]:
     """
     if "#" not in parsed.text and "/" not in parsed.text:
         return {}
-    found: dict[int, dict[str, list[Comment]]] = {}
+    remarks_by_line: dict[int, dict[str, list[Comment]]] = {}
 
     def add(line: _Line, place: str, remarks: list[Comment]) -> None:
         if remarks:
-            found.setdefault(line.start, {}).setdefault(place, []).extend(remarks)
+            remarks_by_line.setdefault(line.start, {}).setdefault(place, []).extend(remarks)
 
     open_lines: list[_Line] = []  # the line above and those whose blocks it is in
     for comment_lines, line in _lines(parsed.text):
@@ -100,7 +100,7 @@ def comments(parsed: Parsed) -> Mapping[int, Comments]:
                 add(owner, "last", remarks)
         if open_lines and open_lines[-1].behind:  # now it is known whether it has a block
             above = open_lines[-1]
-            has_block = above.level < line.level or "last" in found.get(above.start, ())
+            has_block = above.level < line.level or "last" in remarks_by_line.get(above.start, ())
             add(above, "first" if has_block else "behind", above.behind)
         if line.within:
             add(line, "within", line.within)
@@ -109,7 +109,7 @@ def comments(parsed: Parsed) -> Mapping[int, Comments]:
         open_lines.append(line)
     return {
         start: Comments(**{place: tuple(remarks) for place, remarks in places.items()})
-        for start, places in found.items()
+        for start, places in remarks_by_line.items()
     }
 
 
@@ -159,12 +159,12 @@ class _Line:
 def _lines(text: str) -> Iterator[tuple[list[tuple[str, list[Comment]]], _Line]]:
     """Each logical line, the end of the file as the last, with the comment lines above it and their blanks."""
     lexer = Lexer(text)
-    found = lexer.comments
+    spans = lexer.comments
     while True:
-        end, known = lexer.position, len(found)
+        end, count = lexer.position, len(spans)
         opened = lexer.open_line()
         above: list[tuple[str, list[Comment]]] = []
-        for start, comment_end in found[known:]:
+        for start, comment_end in spans[count:]:
             between = text[end:start]
             if not above or "\n" in between or "\r" in between:
                 above.append((LINE_END.split(between)[-1].lstrip("\ufeff"), []))
@@ -179,11 +179,11 @@ def _lines(text: str) -> Iterator[tuple[list[tuple[str, list[Comment]]], _Line]]
         if plain is not None:
             lexer.position = plain.end()  # it has no comment, so it need not be tokenized
         else:
-            known = len(found)
+            count = len(spans)
             lexer.scan()
             line.start = lexer.starts[0]
             last = lexer.starts[-2] if len(lexer.starts) > 1 else line.start  # the very last is the end of the line
-            for start, comment_end in found[known:]:
+            for start, comment_end in spans[count:]:
                 (line.within if start < last else line.behind).append(_comment(text, start, comment_end))
         yield above, line
 

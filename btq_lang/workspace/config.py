@@ -148,25 +148,25 @@ def parse_project(text: str, kind: Kind = "btq.toml", root: str = ".") -> tuple[
         else:
             complaints = [_Complaint(f"unknown key `{key}`{_meant(key, KEYS)}")]
         for complaint in complaints:
-            at = _find(text, (*above, key, *complaint.below), complaint.value)
-            problems.append(ProjectProblem(complaint.message, at))
-    given = {field: value for field, value in fields.items() if value is not None}
-    named_engines = given.get("engines", ())
-    given["product"] = next((name for name in named_engines if name in PRODUCTS), "")
-    if given["product"]:
-        given["engines"] = tuple(dict.fromkeys(PRODUCTS.get(name, name) for name in named_engines))
-    given["names_all"] = given.get("engines") == VERSIONS
-    if "include_paths" in given:
-        given["include_paths"] = tuple(_joined(root, path) for path in given["include_paths"])
-    if "baseline" in given:
-        given["baseline"] = _joined(root, given["baseline"])
-    if "node_files" in given:
+            position = _find(text, (*above, key, *complaint.below), complaint.value)
+            problems.append(ProjectProblem(complaint.message, position))
+    settings = {field: value for field, value in fields.items() if value is not None}
+    named_engines = settings.get("engines", ())
+    settings["product"] = next((name for name in named_engines if name in PRODUCTS), "")
+    if settings["product"]:
+        settings["engines"] = tuple(dict.fromkeys(PRODUCTS.get(name, name) for name in named_engines))
+    settings["names_all"] = settings.get("engines") == VERSIONS
+    if "include_paths" in settings:
+        settings["include_paths"] = tuple(_joined(root, path) for path in settings["include_paths"])
+    if "baseline" in settings:
+        settings["baseline"] = _joined(root, settings["baseline"])
+    if "node_files" in settings:
         from btq_lang.catalog.nav2 import PACKAGED  # few projects have this key
 
-        named = given["node_files"]
-        given["node_files"] = tuple(PACKAGED[name] for name in named if name in PACKAGED)
-        given["cpp"] = tuple(name for name in named if name not in PACKAGED)
-    return Project(**given), tuple(problems)
+        named = settings["node_files"]
+        settings["node_files"] = tuple(PACKAGED[name] for name in named if name in PACKAGED)
+        settings["cpp"] = tuple(name for name in named if name not in PACKAGED)
+    return Project(**settings), tuple(problems)
 
 
 def keys_above(path: str) -> tuple[str, ...]:
@@ -233,15 +233,15 @@ def _engines(key: str, value: object) -> _Read:
     if complaints:
         trap = ": TOML reads 4.10 as 4.1" if isinstance(value, float) else ""
         return None, [_Complaint(f'`{key}` must be a string such as "4.10", or a list of them{trap}')]
-    known = tuple(version for version in wanted or () if version in _NAMED or is_engine(version))
+    valid = tuple(version for version in wanted or () if version in _NAMED or is_engine(version))
     complaints = [
         _Complaint(f"unknown engine version `{version}`{_meant_engine(version)} {_CHECKED}", value=version)
         for version in wanted
-        if version not in known
+        if version not in valid
     ]
     if not wanted:
         complaints = [_Complaint(f"`{key}` must name at least one version; {_CHECKED}")]
-    return tuple(sorted(set(known), key=_as_numbers)) or None, complaints
+    return tuple(sorted(set(valid), key=_as_numbers)) or None, complaints
 
 
 def _as_numbers(named: str) -> tuple[int, ...]:
@@ -257,8 +257,8 @@ def _meant_engine(version: str) -> str:
 
 def is_engine(version: str) -> bool:
     """Whether it is a release line such as 4.9, also one between those that the catalog was tested with."""
-    known = _RELEASE_LINE.fullmatch(version) is not None
-    return known and at_least(version, VERSIONS[0]) and at_least(VERSIONS[-1], version)
+    is_line = _RELEASE_LINE.fullmatch(version) is not None
+    return is_line and at_least(version, VERSIONS[0]) and at_least(VERSIONS[-1], version)
 
 
 def _qualities(key: str, value: object) -> _Read:
@@ -311,9 +311,9 @@ def _overrides(key: str, value: object) -> _Read:
     overrides: list[Override] = []
     complaints: list[_Complaint] = []
     for number, table in enumerate(value):
-        override, found = _override(key, table)
+        override, inner = _override(key, table)
         overrides += [override] if override is not None else []
-        complaints += [_Complaint(each.message, (f"[{number}]", *each.below), each.value) for each in found]
+        complaints += [_below(complaint, f"[{number}]") for complaint in inner]
     return tuple(overrides), complaints
 
 
@@ -322,11 +322,11 @@ def _override(key: str, table: dict[str, object]) -> tuple[Override | None, list
     if not complaints and ("" in include or not include):
         missing = "must have at least one pattern, none of them empty"
         include, complaints = None, [_Complaint(f"`{key}.include` {missing}")]
-    complaints = [_Complaint(each.message, ("include",)) for each in complaints]
-    ignored, found = _rule_names(f"{key}.ignore", table.get("ignore", []))
-    complaints += [_Complaint(each.message, ("ignore", *each.below), each.value) for each in found]
-    severities, found = _severities(f"{key}.rules", table.get("rules", {}))
-    complaints += [_Complaint(each.message, ("rules", *each.below), each.value) for each in found]
+    complaints = [_below(complaint, "include") for complaint in complaints]
+    ignored, inner = _rule_names(f"{key}.ignore", table.get("ignore", []))
+    complaints += [_below(complaint, "ignore") for complaint in inner]
+    severities, inner = _severities(f"{key}.rules", table.get("rules", {}))
+    complaints += [_below(complaint, "rules") for complaint in inner]
     for name in table:
         if name not in OVERRIDE_KEYS:
             complaints.append(_Complaint(f"unknown key `{key}.{name}`{_meant(name, OVERRIDE_KEYS)}", (name,)))
@@ -335,18 +335,23 @@ def _override(key: str, table: dict[str, object]) -> tuple[Override | None, list
     return Override(include, (*((rule, None) for rule in ignored or ()), *(severities or ()))), complaints
 
 
+def _below(complaint: _Complaint, key: str) -> _Complaint:
+    """A complaint about a value that is below a key."""
+    return _Complaint(complaint.message, (key, *complaint.below), complaint.value)
+
+
 def _evidence(key: str, value: object) -> _Read:
     from btq_lang.workspace.project_evidence import read_evidence  # few projects have logs
 
-    found, complaints = read_evidence(value)
-    return found, [_Complaint(message, below) for message, below in complaints]
+    settings, complaints = read_evidence(value)
+    return settings, [_Complaint(message, below) for message, below in complaints]
 
 
 def _factories(key: str, value: object) -> _Read:
     from btq_lang.workspace.factories import read_factories  # few projects have any
 
-    found, complaints = read_factories(value)
-    return found, [_Complaint(message, below, named) for message, below, named in complaints]
+    factories, complaints = read_factories(value)
+    return factories, [_Complaint(message, below, named) for message, below, named in complaints]
 
 
 def _nodes(key: str, value: object) -> _Read:

@@ -156,8 +156,8 @@ def main_tree(workspace: Workspace, viewpoint: str) -> Placed | None:
 @of_item
 def entry(workspace: Workspace, path: str, facts: Facts) -> Entry:
     """An item of a file with its syntax diagnostics, as it would be at the start of the file."""
-    found = workspace.files[path].entry_of(facts.item)
-    return Entry(0, found.item, found.in_root, found.diagnostics)
+    original = workspace.files[path].entry_of(facts.item)
+    return Entry(0, original.item, original.in_root, original.diagnostics)
 
 
 @of_item
@@ -180,8 +180,8 @@ def unknown_units(workspace: Workspace, path: str, facts: Facts) -> tuple[int, .
 def definition(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Placed | None:
     """The item with the definition of a name that counts."""
     for file in workspace.scope(viewpoint).files(kind):
-        if found := file.names.found.get((kind, name)):
-            return file.path, file.facts[id(found[0][0])]
+        if definers := file.names.definitions.get((kind, name)):
+            return file.path, file.facts[id(definers[0][0])]
     return None
 
 
@@ -190,8 +190,8 @@ def declared(workspace: Workspace, viewpoint: str, name: str) -> Declared:
     """What the model of a custom node declares; nothing if it has none."""
     scope = workspace.scope(viewpoint)
     for file in scope.files(Kind.MODEL):
-        if found := file.names.found.get((Kind.MODEL, name)):
-            model = found[0][1].target
+        if definers := file.names.definitions.get((Kind.MODEL, name)):
+            model = definers[0][1].target
             category = model.category.raw if isinstance(model, Model) else None
             return category, _of_library(scope, name) if scope.node_paths else None
     pooled = workspace.find(viewpoint, Kind.MODEL, name)
@@ -202,8 +202,8 @@ def declared(workspace: Workspace, viewpoint: str, name: str) -> Declared:
 
 def _of_library(scope: Scope, name: str) -> NodeKind | None:
     """What a node does, if the model that counts is of a library that btq knows."""
-    found, distribution = scope.find(Kind.MODEL, name), distribution_among(scope.node_paths)
-    if found is None or distribution is None or found.path != FILES[distribution]:
+    model, distribution = scope.find(Kind.MODEL, name), distribution_among(scope.node_paths)
+    if model is None or distribution is None or model.path != FILES[distribution]:
         return None
     from btq_lang.catalog.nav2.nodes import nodes_of  # few projects have these models
 
@@ -224,9 +224,11 @@ def names(workspace: Workspace, viewpoint: str, kind: Kind) -> tuple[str, ...]:
 @of_viewpoint
 def claiming(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
     """The requirements in scope whose claims may name their own subjects, in the order of their definitions."""
-    found: frozenset[str] = frozenset().union(*[file.said("claiming") for file in _files(workspace, viewpoint)])
-    names = workspace.scope(viewpoint).names(Kind.REQUIREMENT) if found else ()
-    return tuple([name for name in names if name in found])
+    claimers: frozenset[str] = frozenset().union(
+        *[file.names_used("claiming") for file in _files(workspace, viewpoint)]
+    )
+    names = workspace.scope(viewpoint).names(Kind.REQUIREMENT) if claimers else ()
+    return tuple([name for name in names if name in claimers])
 
 
 @of_viewpoint
@@ -234,7 +236,7 @@ def asked_for(workspace: Workspace, viewpoint: str) -> frozenset[str]:
     """The names in all clauses in scope, and those by which `apply` selects nodes."""
     asked: set[str] = set()
     for file in _files(workspace, viewpoint):
-        asked |= file.said("asked_for")
+        asked |= file.names_used("asked_for")
         for apply in file.of_type(Apply):
             for selector in (*apply.targets, *apply.exceptions):
                 words = selector.path.names if selector.path is not None else ()
@@ -274,8 +276,8 @@ def _files(workspace: Workspace, viewpoint: str) -> Iterator[File]:
 
 
 def _items(workspace: Workspace, viewpoint: str, *kinds: type[Item]) -> tuple[Placed, ...]:
-    found: list[Placed] = []
+    placed: list[Placed] = []
     for file in _files(workspace, viewpoint):
         if any(map(file.of_type, kinds)):
-            found += [(file.path, facts) for facts in file.facts.values() if type(facts.item) in kinds]
-    return tuple(found)
+            placed += [(file.path, facts) for facts in file.facts.values() if type(facts.item) in kinds]
+    return tuple(placed)

@@ -94,16 +94,16 @@ def _wrong(name: str, source: Any) -> Iterator[Complaint]:
     if not isinstance(source, dict):
         yield f'`{key}` must be a table such as {{ topic = "/battery_state", field = "percentage" }}', ()
         return
-    for each in source:
-        if each not in SOURCE_KEYS:
-            yield f"unknown key `{key}.{each}`{did_you_mean(near(each, SOURCE_KEYS, 1))}", (each,)
-    for each in (*TEXTS, "unit"):
-        if each in source and not (isinstance(source[each], str) and source[each]):
-            yield f"`{key}.{each}` must be a string", (each,)
-    for each in NUMBERS:
-        number = source.get(each, 0.0)
+    for field in source:
+        if field not in SOURCE_KEYS:
+            yield f"unknown key `{key}.{field}`{did_you_mean(near(field, SOURCE_KEYS, 1))}", (field,)
+    for field in (*TEXTS, "unit"):
+        if field in source and not (isinstance(source[field], str) and source[field]):
+            yield f"`{key}.{field}` must be a string", (field,)
+    for field in NUMBERS:
+        number = source.get(field, 0.0)
         if isinstance(number, bool) or not isinstance(number, int | float) or not abs(number) <= float_info.max:
-            yield f"`{key}.{each}` must be a number", (each,)
+            yield f"`{key}.{field}` must be a number", (field,)
     unit = source.get("unit")
     if isinstance(unit, str) and unit and parse_unit(unit) is None:
         yield f"unknown unit `{unit}`{did_you_mean(nearest_units(unit))}", ("unit",)
@@ -113,9 +113,9 @@ def _wrong(name: str, source: Any) -> Iterator[Complaint]:
     kind, wanted, others = OF_A_TOPIC if "topic" in source else OF_A_FILE
     if wanted not in source:
         yield f"`{key}` must have a `{wanted}` beside its `{kind}`", ()
-    for each in others:
-        if each in source:
-            yield f"`{key}.{each}` does not go with a `{kind}`", (each,)
+    for field in others:
+        if field in source:
+            yield f"`{key}.{field}` does not go with a `{kind}`", (field,)
 
 
 # Each key with a line for editors.

@@ -423,29 +423,29 @@ def _values(
     to: ReferenceListener,
 ) -> None:
     """The names and quantities in clauses, conditions and bounds."""
-    for found in () if to.skips_values else syntax.walk(part):
-        if isinstance(found, syntax.Word):  # nearly half of them are
-            if found.kind == QUANTITY:
-                to.word(What.QUANTITY, found)
-            elif found.kind == NUMBER:
-                to.value(found)
-        elif isinstance(found, (syntax.Operand, syntax.Amount)):
-            if found.word.kind == NAME and found.word.raw not in ("true", "false"):
-                to.word(What.VALUE, found.word, owner=owner)
-        elif isinstance(found, syntax.Call):
-            to.word(What.VALUE, found.signal, owner=owner)
-        elif isinstance(found, syntax.Claim):
-            to.word(What.VALUE, found.resource, owner=owner)
-        elif isinstance(found, syntax.Path):
-            _path(found, to)
-        elif isinstance(found, syntax.Every):
-            to.word(What.PLACE, found.name)
+    for piece in () if to.skips_values else syntax.walk(part):
+        if isinstance(piece, syntax.Word):  # nearly half of them are
+            if piece.kind == QUANTITY:
+                to.word(What.QUANTITY, piece)
+            elif piece.kind == NUMBER:
+                to.value(piece)
+        elif isinstance(piece, (syntax.Operand, syntax.Amount)):
+            if piece.word.kind == NAME and piece.word.raw not in ("true", "false"):
+                to.word(What.VALUE, piece.word, owner=owner)
+        elif isinstance(piece, syntax.Call):
+            to.word(What.VALUE, piece.signal, owner=owner)
+        elif isinstance(piece, syntax.Claim):
+            to.word(What.VALUE, piece.resource, owner=owner)
+        elif isinstance(piece, syntax.Path):
+            _path(piece, to)
+        elif isinstance(piece, syntax.Every):
+            to.word(What.PLACE, piece.name)
 
 
 def _quantities(part: object, to: ReferenceListener) -> None:
-    for found in () if to.skips_values else syntax.walk(part):
-        if isinstance(found, syntax.Word) and found.kind == QUANTITY:
-            to.word(What.QUANTITY, found)
+    for piece in () if to.skips_values else syntax.walk(part):
+        if isinstance(piece, syntax.Word) and piece.kind == QUANTITY:
+            to.word(What.QUANTITY, piece)
 
 
 def _path(path: syntax.Path | None, to: ReferenceListener) -> None:

@@ -31,8 +31,8 @@ def tree_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts)
 @inputs.of_scope
 def tree_named(store: Store[Workspace], viewpoint: str, name: str) -> ResolvedTree | None:
     """The nodes of the tree with a name."""
-    found = store.ask(inputs.definition, viewpoint, Kind.TREE, name)
-    return store.ask(tree_nodes, viewpoint, *found) if found is not None else None
+    tree = store.ask(inputs.definition, viewpoint, Kind.TREE, name)
+    return store.ask(tree_nodes, viewpoint, *tree) if tree is not None else None
 
 
 @inputs.of_scope
@@ -244,15 +244,16 @@ class ResolvedTree:
 
     def _read(self, declared: Callable[[str], Declared]) -> Iterator[ResolvedNode]:
         waiting: list[tuple[Node, ResolvedNode | None, int]] = []
-        waiting += [(child, None, at) for at, child in enumerate(self.item.children) if isinstance(child, Node)]
-        waiting.reverse()
+        tops = [(child, None, place) for place, child in enumerate(self.item.children) if isinstance(child, Node)]
+        waiting += reversed(tops)
         while waiting:
             node, parent, index = waiting.pop()
-            found = ResolvedNode(node, self, parent, index, declared)
+            resolved = ResolvedNode(node, self, parent, index, declared)
             if parent is not None:
-                parent.children.append(found)
-            yield found
+                parent.children.append(resolved)
+            yield resolved
             if node.children:
-                children = [(child, found, at) for at, child in enumerate(node.children) if isinstance(child, Node)]
-                children.reverse()
-                waiting += children
+                children = [
+                    (child, resolved, place) for place, child in enumerate(node.children) if isinstance(child, Node)
+                ]
+                waiting += reversed(children)

@@ -88,8 +88,10 @@ def asked_for(item: syntax.Item) -> frozenset[str]:
 
 def claiming(summary: Summary) -> frozenset[str]:
     """The requirements that an item defines whose claims may name their own subjects: in clauses, or in a text."""
-    found = [(symbol.name, symbol.target) for symbol in summary.symbols if symbol.kind is Kind.REQUIREMENT]
-    return frozenset([name for name, target in found if isinstance(target, syntax.Requirement) and _may_claim(target)])
+    requirements = [(symbol.name, symbol.target) for symbol in summary.symbols if symbol.kind is Kind.REQUIREMENT]
+    return frozenset(
+        [name for name, target in requirements if isinstance(target, syntax.Requirement) and _may_claim(target)]
+    )
 
 
 def _may_claim(requirement: syntax.Requirement) -> bool:
@@ -106,7 +108,7 @@ def names_subject(item: object) -> bool:
 
 def same_requirement(first: syntax.Requirement, second: syntax.Requirement) -> bool:
     """Whether two definitions are equivalent (docs/language.md): texts compare after folding blanks."""
-    return _saying(first) == _saying(second)
+    return _content(first) == _content(second)
 
 
 def interface(model: syntax.Model) -> object:
@@ -145,9 +147,9 @@ def has_ports_of(one: Symbol, other: Symbol) -> bool:
         return False
     ports = {port.id.text: port for port in model.ports if port.id is not None}
     return model.category.raw == shorter.category.raw and all(
-        (known := ports.get(port.id.text)) is not None
-        and known.direction.raw == port.direction.raw
-        and may_be_one_type(known.type, port.type)
+        (own := ports.get(port.id.text)) is not None
+        and own.direction.raw == port.direction.raw
+        and may_be_one_type(own.type, port.type)
         for port in shorter.ports
         if port.id is not None
     )
@@ -175,7 +177,7 @@ def _words_in(part: object) -> frozenset[str]:
     return frozenset([*names, *(side for name in names if "-" in name for side in name.split("-"))])
 
 
-def _saying(requirement: syntax.Requirement) -> object:
+def _content(requirement: syntax.Requirement) -> object:
     text = " ".join(requirement.text.text.split()) if requirement.text else None
     return text, syntax.shape((requirement.quality, requirement.parameters, requirement.clauses))
 
