@@ -22,10 +22,10 @@ _WATCHES: Final = ("SkipUnlessUpdated", "WaitValueUpdate")
 _NUMBER: Final = r"-?\d+(\.\d*)?([eE][-+]?\d+)?"
 
 
-def _cases(since: str, what: str, value: str, after: str = "") -> tuple[BehaviorChange, ...]:
+def _cases(since: str, effect: str, value: str, after: str = "") -> tuple[BehaviorChange, ...]:
     instead = "write the cases and the variable in one form"
     ports = (f"case_{number}" for number in range(1, 7))
-    return tuple(BehaviorChange(since, _SWITCHES, what, instead, port, value, after=after) for port in ports)
+    return tuple(BehaviorChange(since, _SWITCHES, effect, instead, port, value, after=after) for port in ports)
 
 
 # Releases of the line 4.8, so that a file for that line meets it without moving on.

@@ -34,8 +34,8 @@ def foreign_name(word: str) -> ForeignName | None:
     if plain in _SPELLINGS:
         return None
     stem = _AFFIXES.sub("", plain)
-    known = _NAMES.get(plain) or _NAMES.get(stem)
-    return ForeignName(_SPELLINGS[stem]) if known is None and stem in _SPELLINGS else known
+    meaning = _NAMES.get(plain) or _NAMES.get(stem)
+    return ForeignName(_SPELLINGS[stem]) if meaning is None and stem in _SPELLINGS else meaning
 
 
 def statement(word: str) -> str:

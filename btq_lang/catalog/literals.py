@@ -146,11 +146,11 @@ def _check_list(port_type: str, item: str, text: str, version: str) -> LiteralPr
     if items[-1] == "":
         items.pop()
     reads = []
-    for one in items:
-        problem = _check_one(item, one, version)
+    for literal in items:
+        problem = _check_one(item, literal, version)
         if problem is not None and problem.kind == "refused":
-            return LiteralProblem("refused", f"{problem.expected} as each item", found=_item(one))
-        reads.append(one if problem is None else problem.reads or "")
+            return LiteralProblem("refused", f"{problem.expected} as each item", found=_item(literal))
+        reads.append(literal if problem is None else problem.reads or "")
     if reads == items:
         return None
     expected = "an integer as each item" if item == "int" else "a number as each item"
@@ -195,12 +195,12 @@ def _plain(port_type: str) -> str:
 @lru_cache(500)
 def _list_item(port_type: str) -> str | None:
     """The type of a list's items; None if the engine cannot read it as a list."""
-    found = _LIST.match(" ".join(port_type.split())) if "<" in port_type else None
-    if found is None:
+    match = _LIST.match(" ".join(port_type.split())) if "<" in port_type else None
+    if match is None:
         return None
-    if "basic_string" in found[1] or found[1] in ("string", "std::string"):
+    if "basic_string" in match[1] or match[1] in ("string", "std::string"):
         return "std::string"
-    item = _plain(found[1].strip())
+    item = _plain(match[1].strip())
     # The engine has converters for lists of these; any other is the user's own.
     return item if item in ("int", "double", "bool") else None
 

@@ -73,7 +73,7 @@ def legal_name(name: str) -> str:
     """
     if name.isascii() and name.isidentifier() and name not in ("Root", "root"):
         return name  # nearly all are
-    plain = (each if each in "_-0123456789" or each.isalpha() else " " for each in name)
+    plain = (character if character in "_-0123456789" or character.isalpha() else " " for character in name)
     pieces = "".join(plain).split()
     legal = "_".join(kept for piece in pieces if (kept := piece.strip("-")))
     if legal in ("", "Root", "root"):
@@ -85,10 +85,10 @@ def _contained(name: str, refused: frozenset[str]) -> str | None:
     """The first character of a name that is refused, as a reason; None if none is."""
     if refused.isdisjoint(name):
         return None
-    found = next(character for character in name if character in refused)
-    if found in _CONTROLS:
-        return f"it contains the control character U+{ord(found):04X}"
-    return "it contains a space" if found == " " else f"it contains `{found}`"
+    character = next(character for character in name if character in refused)
+    if character in _CONTROLS:
+        return f"it contains the control character U+{ord(character):04X}"
+    return "it contains a space" if character == " " else f"it contains `{character}`"
 
 
 def _reserved(name: str) -> str | None:

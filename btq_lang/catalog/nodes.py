@@ -48,8 +48,8 @@ def xml_tag(word: str, quoted: bool = False, child_count: int | None = None) -> 
     kind = lookup(word, quoted, child_count)
     if kind is not None:
         return kind.tag
-    known = None if quoted else KNOWN_WORDS.get(word)
-    return word if known is None else known.tag
+    old_word = None if quoted else KNOWN_WORDS.get(word)
+    return word if old_word is None else old_word.tag
 
 
 def spellings(kind: NodeKind) -> tuple[str, ...]:
@@ -75,8 +75,8 @@ def inspects_children(tag: str) -> bool:
 
 def tags_of(flow: Flow) -> frozenset[str]:
     """The tags of the built-ins of a flow, and those that older engines have for them."""
-    found = {kind.tag for kind in ENGINE_NODES if kind.flow == flow}
-    return frozenset((*found, *(known.word for known in KNOWN_WORDS.values() if known.replacement in found)))
+    tags = {kind.tag for kind in ENGINE_NODES if kind.flow == flow}
+    return frozenset((*tags, *(old.word for old in KNOWN_WORDS.values() if old.replacement in tags)))
 
 
 def of_version(port: PortKind, version: str) -> PortKind:

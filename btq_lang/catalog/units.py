@@ -86,11 +86,12 @@ def nearest_units(text: str, wanted: str | None = None) -> tuple[str, ...]:
     answers: dict[str, None] = {}
     for choice in range(3):  # the best for every factor, then the second best where there is one …
         words = [(operator, _nearest_words(word, len(factors) == 1, alone), power) for operator, word, power in factors]
-        if choice >= max(len(found) for _, found, _ in words) or not all(found for _, found, _ in words):
+        counts = [len(candidates) for _, candidates, _ in words]
+        if choice >= max(counts) or not all(counts):
             break
         guess = "".join(
-            f"{operator}{found[min(choice, len(found) - 1)]}{'^' if power else ''}{power}"
-            for operator, found, power in words
+            f"{operator}{candidates[min(choice, len(candidates) - 1)]}{'^' if power else ''}{power}"
+            for operator, candidates, power in words
         )
         unit = parse_unit(guess)
         if guess != written and unit is not None and (target is None or unit.dimension == target.dimension):
@@ -185,8 +186,8 @@ def _nearest_words(word: str, alone: bool, target: Unit | None) -> tuple[str, ..
         return (_MEANT[word],)
     if word[-1:] in "23" and word[:-1] in _TABLE:  # m/s2
         return (f"{_TABLE[word[:-1]][0]}^{word[-1]}",)
-    known = SYMBOLS if target is None else [name for name in SYMBOLS if _TABLE[name][1] == target.dimension]
-    return tuple(dict.fromkeys(_TABLE[name][0] for name in near(word, known)))
+    candidates = SYMBOLS if target is None else [name for name in SYMBOLS if _TABLE[name][1] == target.dimension]
+    return tuple(dict.fromkeys(_TABLE[name][0] for name in near(word, candidates)))
 
 
 # ---- the table ----

@@ -215,25 +215,25 @@ def _edits(text: str, stretches: Iterable[_Stretch]) -> tuple[Edit, ...]:
         if _BLANKS.sub("", old) != _BLANKS.sub("", new):
             edits.append(_edit(stretch.start, old, new))
             continue
-        at = new_at = 0
-        while at < len(old) or new_at < len(new):
-            end, new_end = _end(_BLANKS, old, at), _end(_BLANKS, new, new_at)
-            if old[at:end] != new[new_at:new_end]:
-                edits.append(_edit(stretch.start + at, old[at:end], new[new_at:new_end]))
+        position = new_position = 0
+        while position < len(old) or new_position < len(new):
+            end, new_end = _end(_BLANKS, old, position), _end(_BLANKS, new, new_position)
+            if old[position:end] != new[new_position:new_end]:
+                edits.append(_edit(stretch.start + position, old[position:end], new[new_position:new_end]))
             same = min(_end(_WORD, old, end) - end, _end(_WORD, new, new_end) - new_end)
-            at, new_at = end + same, new_end + same
+            position, new_position = end + same, new_end + same
     return tuple(edits)
 
 
-def _edit(at: int, old: str, new: str) -> Edit:
+def _edit(offset: int, old: str, new: str) -> Edit:
     """Replace the one text by the other, but for what both begin with."""
     same = alike(old, new)
-    return Edit(Span(at + same, at + len(old)), new[same:])
+    return Edit(Span(offset + same, offset + len(old)), new[same:])
 
 
-def _end(pattern: re.Pattern[str], text: str, at: int) -> int:
-    found = pattern.match(text, at)
-    return found.end() if found else at
+def _end(pattern: re.Pattern[str], text: str, offset: int) -> int:
+    match = pattern.match(text, offset)
+    return match.end() if match else offset
 
 
 _OLD_LINE_END: Final = re.compile(r"\r(?!\n)")

@@ -20,16 +20,16 @@ def align(old: str, rows: Iterable[PhysicalLine]) -> None:
     for row in (*rows, PhysicalLine("")):
         column = _column(old, row.at, lines.position(row.at).column) if row.comment else -1
         if column != shared or "\n" in row.code or any("\n" in above.comment for above in run[-1:]):
-            ends = [len(each.code) - each.code.rfind("\n") for each in run]
-            for each, end in zip(run, ends, strict=True):
-                each.code += " " * (max(ends) - end)
+            ends = [len(aligned.code) - aligned.code.rfind("\n") for aligned in run]
+            for aligned, end in zip(run, ends, strict=True):
+                aligned.code += " " * (max(ends) - end)
             run, shared = [], column
         if row.comment:
             run.append(row)
 
 
-def _column(text: str, at: int, length: int) -> int:
+def _column(text: str, offset: int, length: int) -> int:
     """The column of a place `length` after the start of its line; a tab goes to the next multiple of four columns, as
     for comment lines.
     """
-    return len(text[at - length : at].lstrip("\ufeff").expandtabs(4))
+    return len(text[offset - length : offset].lstrip("\ufeff").expandtabs(4))

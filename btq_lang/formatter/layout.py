@@ -159,7 +159,8 @@ class _Writer:
         if piece.kind == COMMENT and not piece.broken:
             return False
         if self.next_word < index:
-            self.next_word = next(at for at in range(index, len(self.pieces)) if self.pieces[at].kind != COMMENT)
+            rest = range(index, len(self.pieces))
+            self.next_word = next(following for following in rest if self.pieces[following].kind != COMMENT)
         word = self.pieces[self.next_word]
         return word.start in self.marks.elements or (piece.kind == COMMENT and word.kind == CLOSE)
 
@@ -195,8 +196,8 @@ class _Writer:
         """The pieces from this one to the end of the element, or of the line outside brackets."""
         yield self.pieces[index]
         depth = int(self.pieces[index].kind == OPEN)
-        for at in range(index + 1, len(self.pieces)):
-            piece = self.pieces[at]
+        for following in range(index + 1, len(self.pieces)):
+            piece = self.pieces[following]
             if piece.kind == OPEN:
                 depth += 1
             elif depth == 0 and (piece.kind == CLOSE or (self.groups and piece.start in self.marks.elements)):
@@ -222,11 +223,11 @@ def _is(piece: Piece, kind: int, text: str) -> bool:
 
 def _closing(pieces: Sequence[Piece]) -> dict[int, int]:
     """The index of the closing bracket for each opening one."""
-    found: dict[int, int] = {}
-    open_at: list[int] = []
+    closing: dict[int, int] = {}
+    open_brackets: list[int] = []
     for index, piece in enumerate(pieces):
         if piece.kind == OPEN:
-            open_at.append(index)
+            open_brackets.append(index)
         elif piece.kind == CLOSE:
-            found[open_at.pop()] = index
-    return found
+            closing[open_brackets.pop()] = index
+    return closing

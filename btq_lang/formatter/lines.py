@@ -176,6 +176,6 @@ def _written(kind: int, raw: str) -> str:
     return LINE_END.sub("\n", raw) if "\r" in raw else raw
 
 
-def _line_end(text: str, at: int) -> int:
-    found = LINE_END.search(text, at)
-    return found.end() if found else len(text)
+def _line_end(text: str, offset: int) -> int:
+    match = LINE_END.search(text, offset)
+    return match.end() if match else len(text)

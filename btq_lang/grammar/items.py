@@ -135,10 +135,10 @@ class ItemParser(NodeParser):
 
     def port_of_cpp(self, declared: re.Match[str]) -> tuple[Fix, ...]:
         """The fix for `InputPort<double> speed` and `std::string place`, in the words of C++."""
-        rest = line_end(self.text, declared.end())
+        end = line_end(self.text, declared.end())
         direction = _DIRECTIONS_OF_CPP[declared["port"] or "InputPort"]
         type_ = declared["type"] or declared["bare"]
-        if self.text[declared.end() : rest].partition("#")[0].strip():
+        if self.text[declared.end() : end].partition("#")[0].strip():
             return ()
         plain = type_ is not None and _PLAIN_TYPE.fullmatch(type_) is not None
         after = "" if type_ is None else f" : {type_ if plain else quote(type_)}"

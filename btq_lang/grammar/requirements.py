@@ -223,9 +223,9 @@ class RequirementParser(ClauseParser):
         """Params = "(" Param { "," Param } ")\""""
         self.advance()
         self.group += 1
-        found = self.listed(self.param)
+        parameters = self.listed(self.param)
         self.close_group("`,` or `)`")
-        return found
+        return parameters
 
     def param(self) -> Parameter | None:
         """Param = NAME ":" UNIT [ "=" Bounded ]"""
@@ -247,9 +247,9 @@ class RequirementParser(ClauseParser):
             return ReqRef(name)
         self.advance()
         self.group += 1
-        found = self.listed(self.argument)
+        arguments = self.listed(self.argument)
         self.close_group("`,` or `)`")
-        return ReqRef(name, found)
+        return ReqRef(name, arguments)
 
     def argument(self) -> Argument | None:
         """NAME "=" Bounded"""

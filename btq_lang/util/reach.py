@@ -12,9 +12,9 @@ def reached(starts: Iterable[T], following: Callable[[T], Iterable[T]]) -> Itera
     """Some things and all that follows them, directly or not: each once, the nearest first."""
     waiting = [*dict.fromkeys(starts)]
     seen = set(waiting)
-    for each in waiting:
-        yield each
-        for other in following(each):
+    for thing in waiting:
+        yield thing
+        for other in following(thing):
             if other not in seen:
                 seen.add(other)
                 waiting.append(other)
@@ -33,22 +33,24 @@ def knots(graph: Mapping[T, Iterable[T]]) -> Iterator[set[T]]:
     for start in graph:
         path = [] if start in numbers else [start]
         while path:
-            each = path[-1]
-            if each not in numbers:
-                numbers[each] = lowest[each] = len(numbers)
-                waiting.append(each)
-                left[each] = iter(graph[each])
-            following = next((other for other in left[each] if other in graph and other not in numbers), None)
+            node = path[-1]
+            if node not in numbers:
+                numbers[node] = lowest[node] = len(numbers)
+                waiting.append(node)
+                left[node] = iter(graph[node])
+            following = next(
+                (neighbour for neighbour in left[node] if neighbour in graph and neighbour not in numbers), None
+            )
             if following is not None:
                 path.append(following)
                 continue
             path.pop()
-            lowest[each] = min(lowest[other] for other in (each, *graph[each]) if other in lowest)
-            if lowest[each] == numbers[each]:
+            lowest[node] = min(lowest[neighbour] for neighbour in (node, *graph[node]) if neighbour in lowest)
+            if lowest[node] == numbers[node]:
                 knot: set[T] = set()
-                while each in lowest:
-                    other = waiting.pop()
-                    knot.add(other)
-                    del lowest[other]
-                if len(knot) > 1 or each in graph[each]:
+                while node in lowest:
+                    neighbour = waiting.pop()
+                    knot.add(neighbour)
+                    del lowest[neighbour]
+                if len(knot) > 1 or node in graph[node]:
                     yield knot

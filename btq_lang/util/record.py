@@ -22,13 +22,13 @@ class _Frozen:
     _key: attrgetter[Any]  # the class and the fields, for equality and hash
 
     def __init__(self, *values: object, **named: object) -> None:
-        made: Any = type(self)
-        scope = {f"set_{field}": made.__dict__[field].__set__ for field in fields_of(self)}
+        cls: Any = type(self)
+        scope = {f"set_{field}": cls.__dict__[field].__set__ for field in fields_of(self)}
         body = "; ".join(f"set_{field}(self, {field})" for field in fields_of(self)) or "pass"
         exec(f"def __init__({', '.join(('self', *fields_of(self)))}): {body}", scope)
-        made.__init__ = scope["__init__"]
-        made.__init__.__defaults__ = made._defaults
-        made.__init__(self, *values, **named)
+        cls.__init__ = scope["__init__"]
+        cls.__init__.__defaults__ = cls._defaults
+        cls.__init__(self, *values, **named)
 
     def __eq__(self, other: object) -> bool:
         return self._key(self) == self._key(other) if type(other) is type(self) else NotImplemented
@@ -54,9 +54,9 @@ class _Maker(type):
     def __new__(cls, name: str, bases: tuple[Any, ...], namespace: dict[str, Any]) -> Any:
         fields = (*bases[0]._fields, *namespace.get("__annotations__", ()))
         defaults = {field: namespace.pop(field) for field in fields if field in namespace}
-        made: Any = type(name, (_Frozen,), {**namespace, "__slots__": fields, "__match_args__": fields})
-        made._key, made._defaults = attrgetter("__class__", *fields), tuple(defaults.values())
-        return made
+        record: Any = type(name, (_Frozen,), {**namespace, "__slots__": fields, "__match_args__": fields})
+        record._key, record._defaults = attrgetter("__class__", *fields), tuple(defaults.values())
+        return record
 
 
 if TYPE_CHECKING:

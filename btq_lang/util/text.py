@@ -70,13 +70,13 @@ def apply_edits(text: str, edits: Iterable[Edit]) -> str:
         ValueError: two edits overlap.
     """
     pieces: list[str] = []
-    at = 0
+    copied = 0
     for edit in sorted(edits, key=lambda edit: edit.span):
-        if edit.span.start < at:
+        if edit.span.start < copied:
             raise ValueError(f"edits overlap at offset {edit.span.start}")
-        pieces += (text[at : edit.span.start], edit.text)
-        at = edit.span.end
-    return "".join([*pieces, text[at:]])
+        pieces += (text[copied : edit.span.start], edit.text)
+        copied = edit.span.end
+    return "".join([*pieces, text[copied:]])
 
 
 def alike(first: Sequence[T], second: Sequence[T]) -> int:
@@ -92,8 +92,8 @@ def changed(before: str, after: str) -> Span | None:
     # One of the two is compared in place: copying takes most of the time for a large text.
     start = _same(lambda low, high: after.startswith(before[low:high], low), shorter)
     size, new_size = len(before), len(after)
-    rest = _same(lambda low, high: after.endswith(before[size - high : size - low], 0, new_size - low), shorter)
-    return Span(start, size - min(rest, shorter - start))
+    ending = _same(lambda low, high: after.endswith(before[size - high : size - low], 0, new_size - low), shorter)
+    return Span(start, size - min(ending, shorter - start))
 
 
 def _same(is_same: Callable[[int, int], bool], size: int) -> int:

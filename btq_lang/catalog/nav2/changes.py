@@ -24,9 +24,9 @@ _CLEARS: Final = ("ClearEntireCostmap", "ClearCostmapExceptRegion", "ClearCostma
 
 
 def _read_again(since: str, nodes: tuple[str, ...], *ports: str) -> tuple[BehaviorChange, ...]:
-    what = "reads the entry in `{}` at each start, no longer only when the tree is created"
+    effect = "reads the entry in `{}` at each start, no longer only when the tree is created"
     instead = "write the value itself if the entry changes meanwhile and must not count"
-    return tuple(BehaviorChange(since, nodes, what.format(port), instead, port, _ENTRY) for port in ports)
+    return tuple(BehaviorChange(since, nodes, effect.format(port), instead, port, _ENTRY) for port in ports)
 
 
 CHANGES: Final = (

@@ -161,10 +161,10 @@ _DECORATORS: Final = (
 )
 
 
-def _notices(tag: str, doc: str, what: str) -> NodeKind:
+def _notices(tag: str, doc: str, condition: str) -> NodeKind:
     semantics = (
-        f"At its first tick it fails and remembers {what}; it succeeds at a later one. A parent that resets it when "
-        "it has failed makes it start again, so that it never succeeds: only WhileDoElse keeps its condition."
+        f"At its first tick it fails and remembers {condition}; it succeeds at a later one. A parent that resets it "
+        "when it has failed makes it start again, so that it never succeeds: only WhileDoElse keeps its condition."
     )
     return NodeKind(tag, doc, semantics, "Condition", (0, 0), execution="synchronous", flow="notices", memory="failure")
 
