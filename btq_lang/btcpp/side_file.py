@@ -25,8 +25,7 @@ from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.tree import Apply, Context, Entry, Qualities, QualityDecl, Satisfices, Tree
 from btq_lang.syntax.tree import Requirement as RequirementItem
 from btq_lang.syntax.tree import Signal as SignalItem
-from btq_lang.util.fields import fields_of
-from btq_lang.util.record import Record
+from btq_lang.util.record import Record, fields_of
 from btq_lang.workspace.file import SIDE_SUFFIX
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from btq_lang.catalog.changes import BehaviorChange
+from btq_lang.catalog.versions import BehaviorChange
 
 _IN_TURN: Final = ("Sequence", "AsyncSequence", "SequenceWithMemory", "Fallback", "AsyncFallback")
 _LOOPS: Final = ("LoopInt", "LoopBool", "LoopDouble", "LoopString")

@@ -1,4 +1,7 @@
-"""What a name can name."""
+"""What a name can name.
+
+In a module of its own because most rooms look names up by their kind and need no table of the catalog.
+"""
 
 from __future__ import annotations
 

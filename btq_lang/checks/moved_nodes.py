@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TypeVar
 
-from btq_lang.catalog.changes import BehaviorChange
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2 import DISTRIBUTIONS, FILES
 from btq_lang.catalog.nav2.changes import CHANGES, INSTEAD, RENAMED, RENAMED_PORTS
+from btq_lang.catalog.versions import BehaviorChange
 from btq_lang.checks import lookups
 from btq_lang.checks.pointers import pointed_at
 from btq_lang.checks.ports import adding_fix

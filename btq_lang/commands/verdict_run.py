@@ -10,7 +10,7 @@ from btq_lang.evidence.one_run import one_run
 from btq_lang.evidence.readers import NotALog
 from btq_lang.projects.files import write_stdout
 from btq_lang.projects.options import Refused
-from btq_lang.util.fields import as_dict
+from btq_lang.util.record import as_dict
 from btq_lang.workspace.loader import shown
 
 if TYPE_CHECKING:

@@ -9,10 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Final, TypeVar
 
-from btq_lang.catalog.cpp_classes import ENGINE, LIBRARIES, NUMBERED_TAGS, ROS_PORTS, TAGS
+from btq_lang.catalog.cpp_classes import BASES, ENGINE, LIBRARIES, NAMESPACE, NUMBERED_TAGS, ROS_PORTS, TAGS, BasePort
 from btq_lang.catalog.kinds import Category
 from btq_lang.catalog.nav2 import DISTRIBUTIONS
-from btq_lang.catalog.nav2.bases import BASES, NAMESPACE, BasePort
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.cpp.model import CppPort, SourcePosition, Unseen
 from btq_lang.cpp.source import Class, CppSource, Function, parts, substituted

@@ -7,7 +7,7 @@ from collections.abc import Container
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.evidence.wording import timestamp
-from btq_lang.util.fields import as_dict
+from btq_lang.util.record import as_dict
 from btq_lang.workspace.loader import shown
 
 if TYPE_CHECKING:

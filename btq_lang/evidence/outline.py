@@ -8,8 +8,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.requirements.model import Applied, NodeTarget, ResolvedClaim, ResolvedRequirement
-from btq_lang.util.fields import fields_of
-from btq_lang.util.record import Record
+from btq_lang.util.record import Record, fields_of
 from btq_lang.workspace.resolved import ResolvedNode, ResolvedTree
 
 if TYPE_CHECKING:

@@ -35,9 +35,8 @@ from typing import Final
 
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.formatter.alignment import align
 from btq_lang.formatter.clauses import sections
-from btq_lang.formatter.layout import FormatOptions, PhysicalLine, laid_out
+from btq_lang.formatter.layout import FormatOptions, PhysicalLine, align, laid_out
 from btq_lang.formatter.lines import CommentLines, LogicalLine, logical_lines
 from btq_lang.formatter.marks import Marks
 from btq_lang.parser import Parsed, parse

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from btq_lang.catalog.measured import measured
+from btq_lang.catalog.verbs import measured
 from btq_lang.diagnostics.model import Fix, FixEdit, Place, replace_fix, write_fix
 from btq_lang.grammar.claims import QUALITY_IN_HEAD, VERB_WORDS, ClaimParser, is_time
 from btq_lang.grammar.conditions import HEADS, SUBJECT_HEADS

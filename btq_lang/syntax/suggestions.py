@@ -9,8 +9,8 @@ import re
 from functools import lru_cache
 from typing import Final
 
-from btq_lang.catalog.measured import measured
 from btq_lang.catalog.units import nearest_units
+from btq_lang.catalog.verbs import measured
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, replace_fix, write_fix
 from btq_lang.syntax.composed_times import composed_time
 from btq_lang.syntax.scan import line_end, line_start, number_end

@@ -60,8 +60,7 @@ from btq_lang.syntax.words import Pair as Pair
 from btq_lang.syntax.words import TypeWord as TypeWord
 from btq_lang.syntax.words import Word as Word
 from btq_lang.syntax.words import unquote as unquote
-from btq_lang.util.fields import fields_of
-from btq_lang.util.record import Part, Record
+from btq_lang.util.record import Part, Record, fields_of
 from btq_lang.util.text import Span
 
 # ---- Items ----------------------------------------------------------------------------------------------------------

@@ -6,8 +6,7 @@ One invariant: nothing here concerns behavior trees or imports another room.
     source_map.py   maps a generated text to its source, and back
     readable.py     characters that an output's encoding lacks
     spelling.py     names similar to a misspelt one
-    record.py       immutable classes, without the start-up time of dataclasses
-    fields.py       the fields of such a class, and of the compiled ones that are like it
+    record.py       immutable classes, without the start-up time of dataclasses, and the fields of a class
     reach.py        what is reached from something, step by step
     grouping.py     what belongs together, by what it has in common
     globs.py        patterns of paths

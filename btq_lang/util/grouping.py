@@ -1,4 +1,7 @@
-"""What belongs together, by what it has in common."""
+"""Values grouped by a key.
+
+In a module of its own because all rooms use it, and nothing else here is about collections.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Processes that share the work of a command."""
+"""Processes that share the work of a command.
+
+In a module of its own because importing them takes longer than most commands run.
+"""
 
 from __future__ import annotations
 

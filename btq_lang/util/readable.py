@@ -1,4 +1,7 @@
-"""Text for people in an encoding that lacks some of its characters, such as cp1252 in a pipe on Windows."""
+"""Text for people in an encoding that lacks some of its characters, such as cp1252 in a pipe on Windows.
+
+In a module of its own because it is imported only when a character is missing.
+"""
 
 from __future__ import annotations
 

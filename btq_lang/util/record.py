@@ -10,8 +10,6 @@ from __future__ import annotations
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from btq_lang.util.fields import as_dict, fields_of
-
 T = TypeVar("T")
 
 
@@ -78,3 +76,13 @@ else:  # only the bases in a class statement: no record is an instance
 def replace(instance: T, **changes: Any) -> T:
     """A copy of a record with some fields changed; an unknown name raises a TypeError."""
     return type(instance)(**as_dict(instance) | changes)
+
+
+def as_dict(part: object) -> dict[str, Any]:
+    """The values of the fields of a record, or of another class with `__match_args__`, in order, by name."""
+    return {field: getattr(part, field) for field in fields_of(part)}
+
+
+def fields_of(part: object) -> tuple[str, ...]:
+    """The names of these fields, in order."""
+    return type(part).__match_args__  # type: ignore[attr-defined, no-any-return]  # `part` may be of any class

@@ -1,4 +1,7 @@
-"""Applying fixes: which of them can be applied together, and the resulting texts."""
+"""Applying fixes: which of them can be applied together, and the resulting texts.
+
+In a module of its own because a plain check applies none and does not import it.
+"""
 
 from __future__ import annotations
 

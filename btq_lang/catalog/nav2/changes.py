@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from btq_lang.catalog.changes import ANY, BehaviorChange
+from btq_lang.catalog.versions import ANY, BehaviorChange
 
 # The names after a release that renamed a node, or a port of one.
 RENAMED: Final = {("lyrical", "IsPathValid"): "ValidatePath", ("lyrical", "IsStopped"): "CheckStopStatus"}

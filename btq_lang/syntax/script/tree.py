@@ -10,8 +10,7 @@ from collections.abc import Iterator
 from itertools import chain
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from btq_lang.util.fields import fields_of
-from btq_lang.util.record import Part, Record
+from btq_lang.util.record import Part, Record, fields_of
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
