@@ -273,7 +273,7 @@ class Lexer(StrangeCharacters):
         return line_end(self.text, self.position)
 
     def _is_root_line(self) -> bool:
-        """Whether the current line, of which at least one token is read, begins a `Root` block."""
+        """Whether the current line begins a `Root` block; its first token must have been read."""
         return self.raws[0] == "Root" and self.kinds[0] == NAME and self.level in (0, self._root_level)
 
     # ---- tokens, each from its first character to the position after it ----

@@ -32,15 +32,14 @@ class OfElements(Record):
 
 def said_in_xml(workspace: Workspace, path: str, side: str | None) -> OfElements:
     """What the side file of an XML file says of each element, else the lines that the build has described at it."""
-    origin = workspace.files[path].origin
-    found = OfElements("", {})
-    if origin is None:
+    file, found = workspace.files[path], OfElements("", {})
+    if not file.is_foreign:
         return found
     if side is not None:
         *included, _ = workspace.registered_with(path)
-        origins = (workspace.files[each].origin for each in included)
-        found = of_elements(side, origin.text, tuple(each.text for each in origins if each is not None))
-    return replace(found, lines={**dict(described(origin.text)), **found.lines})
+        files = (workspace.files[each] for each in included)
+        found = of_elements(side, file.source, tuple(each.source for each in files if each.is_foreign))
+    return replace(found, lines={**dict(described(file.source)), **found.lines})
 
 
 @lru_cache(maxsize=2)  # a request for each move of the mouse

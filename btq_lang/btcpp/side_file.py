@@ -258,7 +258,7 @@ class _Places:
         if place.path is None:
             return {}
         file = self._workspace.files[place.path]
-        if file.origin is not None:  # it was imported from XML, so its lines differ
+        if file.is_foreign:  # it was imported from XML, so its lines differ
             return {"file": self.name(place.path)}
         return {"file": self.name(place.path), "line": file.lines.position(file.span_of(place).start).line + 1}
 

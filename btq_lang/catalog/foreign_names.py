@@ -40,17 +40,17 @@ def foreign_name(word: str) -> ForeignName | None:
 
 
 def statement(word: str) -> str:
-    """How a tree says what a word of programming languages does, in the words of a message; empty for other words."""
+    """How a tree expresses a statement of programming languages, in the words of a message; empty for other words."""
     return _STATEMENTS.get(word, "")
 
 
 def is_of_leaves(word: str) -> bool:
-    """Whether programs have leaves of that name too, so that a word after it may well be a label."""
+    """Whether programs have leaves of that name too: a word after it may then be a label."""
     return _plain(word) in _OF_LEAVES
 
 
 def of_other_engines(flow: str, key: str) -> str:
-    """What does here what an attribute of another engine does, as a sentence; empty if nothing is known of it.
+    """What replaces an attribute of another engine here, as a sentence; empty if it is unknown.
 
     Args:
         flow: of the built-in that has the attribute.

@@ -162,8 +162,7 @@ def _find_word(word: str, key: str, index: _Index) -> QualityMatch | None:
 
 
 def _find_path(words: tuple[str, ...], keys: tuple[str, ...], index: _Index) -> QualityMatch | None:
-    """The match of several words that are not an id: understood if the front and the last word are, and belong
-    together."""
+    """The match of several words that are not an id, if the last word names a part of what the others name."""
     other = _index("2011" if index.edition == "2023" else "2023")
     old = other.by_key.get(".".join(keys))
     if old is not None:
@@ -172,7 +171,7 @@ def _find_path(words: tuple[str, ...], keys: tuple[str, ...], index: _Index) -> 
     inside = [index.by_key.get(f"{fold(id_)}.{keys[-1]}") for id_ in front if "." not in id_]
     last = _meanings(find(words[-1:], index.edition))
     matches = tuple(
-        dict.fromkeys([part for part in inside if part] or [one for one in last if _lies(one, front, index)])
+        dict.fromkeys([part for part in inside if part] or [one for one in last if _belongs(one, front, index)])
     )
     if not matches:
         return None
@@ -181,7 +180,7 @@ def _find_path(words: tuple[str, ...], keys: tuple[str, ...], index: _Index) -> 
     return QualityMatch("alias", matches[0], matches, True, f"`{'.'.join(words)}` is another word for {matches[0].id}")
 
 
-def _lies(quality: Quality, front: set[str], index: _Index) -> bool:
+def _belongs(quality: Quality, front: set[str], index: _Index) -> bool:
     """Whether a quality belongs under one of these ids.  A robotics quality belongs under the nearest to it."""
     if quality.parent is not None:
         return quality.parent in front

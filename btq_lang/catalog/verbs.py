@@ -69,11 +69,11 @@ def words(
 
 def measured(line: Sequence[str]) -> str | None:
     """The unit of what follows some words of a line, or one of its dimension; None if they do not determine it."""
-    is_behind_case = False
+    is_after_case = False
     for word in reversed(line):
         if word in ("else", ","):
-            is_behind_case = True  # `20 s if near, 30 s if slow else …`: the verb precedes all the cases
-        elif word in _UNITS and not (word == "if" and is_behind_case):
+            is_after_case = True  # `20 s if near, 30 s if slow else …`: the verb precedes all the cases
+        elif word in _UNITS and not (word == "if" and is_after_case):
             return _UNITS[word]
     return None
 

@@ -130,7 +130,7 @@ def at_least(version: str, since: str) -> bool:
 
 
 def last_of(version: str) -> str:
-    """A version that no release of a line is after; a release is its own."""
+    """A version that is after all releases of a line; for a release, the release itself."""
     return version if version.count(".") > 1 else f"{version}.99"
 
 

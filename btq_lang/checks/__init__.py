@@ -296,7 +296,7 @@ def findings_of(workspace: Workspace, path: str, reported: Iterable[Reported]) -
     """The diagnostics of a file's items, without those that comments silence; those of XML are placed in the XML."""
     found = FileFindings([(each, each.starts(workspace)) for each in reported])
     file = workspace.files[path]
-    if not file.has_directives and not workspace.origins:
+    if not file.has_directives and not workspace.foreign:
         return found
     diagnostics: Iterable[Diagnostic] = found.diagnostics
     if file.has_directives:
@@ -304,7 +304,7 @@ def findings_of(workspace: Workspace, path: str, reported: Iterable[Reported]) -
 
         suppressions = Suppressions(file)
         diagnostics = [each for each in (*diagnostics, *suppressions.useless) if not suppressions.silence(each)]
-    if workspace.origins:
+    if workspace.foreign:
         from btq_lang.checks.origins import shown_on_origins  # few workspaces have any
 
         diagnostics = shown_on_origins(workspace, path, diagnostics)

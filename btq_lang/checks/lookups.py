@@ -17,7 +17,7 @@ from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.syntax.tree import Apply, Include, Item, Model, Models, Port, Root, Tree, Verbatim, models_in
 from btq_lang.util.record import Record
-from btq_lang.workspace.file import Definition, Origin, Signs
+from btq_lang.workspace.file import Definition, Signs
 from btq_lang.workspace.inputs import of_name, of_viewpoint
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.port_types import is_text, meetings
@@ -84,8 +84,8 @@ def is_pooled(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bo
 @of_name
 def ends_at_once(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
     """Whether the C++ of a node shows that it never returns RUNNING."""
-    origins = [workspace.files[each.path].origin for each in workspace.scope(viewpoint).all(kind, name)]
-    nodes = (each.nodes.get(name) for each in origins if each is not None and each.nodes is not None)
+    files = [workspace.files[each.path] for each in workspace.scope(viewpoint).all(kind, name)]
+    nodes = (file.cpp_nodes.get(name) for file in files)
     return any(each.at_once for each in nodes if each is not None)
 
 
@@ -108,8 +108,8 @@ def ports_of_models(workspace: Workspace, viewpoint: str, kind: Kind, name: str)
     """The ports of each model of a node in scope, of the first alone if it is C++ whose ports are all seen, else of the
     one that it has in the pool."""
     found = workspace.scope(viewpoint).all(kind, name) or (workspace.find(viewpoint, kind, name),)
-    first = workspace.files[found[0].path].origin if found[0] is not None else None
-    if first is not None and first.nodes is not None and first.nodes[name].complete:
+    first = workspace.files[found[0].path] if found[0] is not None else None
+    if first is not None and first.is_cpp and first.cpp_nodes[name].complete:
         found = found[:1]
     targets = [each.symbol.target for each in found if each is not None]
     return tuple([target.ports for target in targets if isinstance(target, Model)])
@@ -126,8 +126,8 @@ def declaration(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> 
 def is_torn(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
     """Whether something could not be read in the tree or model of a name, or in its C++, which may be a port."""
     found = workspace.find(viewpoint, kind, name)
-    if found is not None and (origin := workspace.files[found.path].origin) and origin.nodes:
-        return not origin.nodes[name].complete
+    if found is not None and (nodes := workspace.files[found.path].cpp_nodes):
+        return not nodes[name].complete
     if found is None or not found.entry.diagnostics:
         return False
     target, item = found.symbol.target, found.entry.item
@@ -187,8 +187,7 @@ def node_paths(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
 @of_viewpoint
 def signs(workspace: Workspace, viewpoint: str) -> Signs | None:
     """What an XML file says of its version of the engine; None for any other file."""
-    written = workspace.files[viewpoint].origin
-    return written.signs if written is not None else None
+    return workspace.files[viewpoint].signs
 
 
 @of_viewpoint
@@ -484,21 +483,21 @@ def has_torn_tree(workspace: Workspace, viewpoint: str) -> bool:
 
 
 @of_viewpoint
-def origin(workspace: Workspace, viewpoint: str) -> Origin | None:
-    """The file on the disk, if it is written in another language."""
-    return workspace.files[viewpoint].origin
-
-
-@of_viewpoint
 def is_cpp(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the file is C++, which registers the nodes that it has models of."""
     return workspace.files[viewpoint].is_cpp
 
 
 @of_viewpoint
+def is_foreign(workspace: Workspace, viewpoint: str) -> bool:
+    """Whether the file is XML that the engine loads as it is, without a build, or C++."""
+    return workspace.files[viewpoint].is_foreign
+
+
+@of_viewpoint
 def is_xml(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether the file is XML that the engine loads as it is, without a build."""
-    return workspace.files[viewpoint].origin is not None
+    """Whether the file is XML that the engine loads as it is, and not C++."""
+    return workspace.files[viewpoint].is_xml
 
 
 @of_viewpoint

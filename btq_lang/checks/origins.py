@@ -20,28 +20,27 @@ from btq_lang.workspace.workspace import Workspace
 
 def shown_on_origins(workspace: Workspace, path: str, found: Iterable[Diagnostic]) -> list[Diagnostic]:
     """The diagnostics of a file, with those of its own XML, if it is XML."""
-    foreign = workspace.origins
-    origin = foreign.get(path)
+    file = workspace.files[path]
 
-    def on_origin(span: Span, where: str | None) -> Span:
-        there = foreign.get(where or path)
-        return span if there is None else there.places.origin(span)
+    def on_disk(span: Span, where: str | None) -> Span:
+        foreign = workspace.foreign.get(where or path)
+        return span if foreign is None else foreign.on_disk(span)
 
     shown: list[Diagnostic] = []
     for each in found:
-        if origin is not None and each.rule in _OF_SPELLING:
+        if file.is_foreign and each.rule in _OF_SPELLING:
             continue
         related = each.related
         if each.rule not in _OF_SHOWN:
             related = tuple(
-                Related(Place(on_origin(near.place.span, near.place.path), near.place.path), near.message)
+                Related(Place(on_disk(near.place.span, near.place.path), near.place.path), near.message)
                 for near in related
             )
         fixes = tuple(placed for fix in each.fixes if (placed := _placed(workspace, path, fix)) is not None)
-        shown.append(replace(each, span=on_origin(each.span, path), related=related, fixes=fixes))
-    if origin is None:
+        shown.append(replace(each, span=on_disk(each.span, path), related=related, fixes=fixes))
+    if not file.is_foreign:
         return shown
-    return [*(each for each in origin.diagnostics if not is_silenced_in_xml(origin.text, each)), *shown]
+    return [*(each for each in file.source_diagnostics if not is_silenced_in_xml(file.source, each)), *shown]
 
 
 def _placed(workspace: Workspace, path: str, fix: Fix) -> Fix | None:
@@ -53,7 +52,7 @@ def _placed(workspace: Workspace, path: str, fix: Fix) -> Fix | None:
     is_safe = fix.safe
     for change in fix.changes:
         file = workspace.files[change.place.path or path]
-        if file.origin is None:
+        if not file.is_foreign:
             changes.append(change)
         elif edits := exact_edits(file, Edit(change.place.span, change.text)):
             changes += [FixEdit(Place(edit.span, change.place.path), edit.text) for edit in edits]

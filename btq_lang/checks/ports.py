@@ -322,8 +322,7 @@ def _of_model_in_xml(view: View, seen: ResolvedNode) -> str:
     """The rest of a sentence about a port, if only a model in XML says which ones a node has: it may be an old one."""
     name = seen.id if seen.is_defined and not (seen.kind or seen.is_subtree) else None
     found = view.ask(lookups.declaration, Kind.MODEL, name.text) if name is not None else None
-    origin = view.store.ask(lookups.origin, found.path) if found is not None else None
-    if name is None or found is None or origin is None or origin.nodes is not None:
+    if name is None or found is None or not view.store.ask(lookups.is_xml, found.path):
         return ""
     if view.ask(lookups.is_repeated, Kind.MODEL, name.text):
         return ""
@@ -352,8 +351,7 @@ def _needed(view: View, seen: ResolvedNode, missing: list[PortKind]) -> list[Por
     definition = view.ask(inputs.definition, Kind.MODEL, name)
     if definition is None:
         return []
-    origin = view.store.ask(lookups.origin, definition[0])
-    if origin is None or origin.nodes is not None:
+    if not view.store.ask(lookups.is_xml, definition[0]):
         return missing
     _, used, uses = view.ask(lookups.custom_node, name)
     given = {port.name for port in used}

@@ -50,7 +50,7 @@ class Suppressions:
 
     def __init__(self, file: File) -> None:
         self._lines = file.lines
-        self._is_btq = file.origin is None
+        self._is_btq = not file.is_foreign
         self._everything: set[int] = set()
         self._silenced: dict[int, set[str]] = {}
         self.useless: list[Diagnostic] = []

@@ -32,7 +32,7 @@ def not_enforced(demanded: Demanded) -> Iterator[Found]:
             from btq_lang.btcpp.enforceability import where_else  # few missions demand anything of other files' nodes
 
             path = elsewhere.path
-            why = where_else(elsewhere, is_xml=demanded.view.store.ask(lookups.is_xml, path))
+            why = where_else(elsewhere, is_xml=demanded.view.store.ask(lookups.is_foreign, path))
             yield place, _found(applied, place, why, related, is_bundled=True)
 
 

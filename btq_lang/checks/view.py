@@ -199,7 +199,7 @@ class View:
     @property
     def is_xml(self) -> bool:
         """Whether the file is XML that the engine loads as it is, without a build."""
-        return self.ask(lookups.is_xml)
+        return self.ask(lookups.is_foreign)
 
     @property
     def is_read(self) -> bool:

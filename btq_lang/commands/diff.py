@@ -57,7 +57,7 @@ def _warn(side: Side) -> None:
             if side.workspace.included_by(path, include) is None:
                 message = f"includes `{include.path.text}`, which does not exist: its content is not compared"
                 print(f"btq: {side.shown(path)}: {message}", file=sys.stderr)
-        if file.origin is not None and DESCRIPTION_MARK in file.source:
+        if file.is_foreign and DESCRIPTION_MARK in file.source:
             message = "its requirements are missing: `btq build` wrote them to the .qreq.json that was beside it"
             print(f"btq: {side.shown(path)}: {message}", file=sys.stderr)
         if error := _first_error(file):
@@ -65,8 +65,7 @@ def _warn(side: Side) -> None:
 
 
 def _first_error(file: File) -> str | None:
-    own = file.origin.diagnostics if file.origin is not None else file.parsed.diagnostics
-    for diagnostic in own:
+    for diagnostic in file.source_diagnostics:
         if diagnostic.effective_severity is Severity.ERROR:
             line, column = file.source_lines.position(diagnostic.span.start)
             return f"{line + 1}:{column + 1}: {diagnostic.message}"

@@ -77,7 +77,7 @@ def _added(file: File, found: Iterable[Diagnostic], reason: str) -> list[Added]:
             added += [] if same else [(edit, [each])]
             for silenced in same:
                 silenced.append(each)
-    places = (at_line_end, above_line) if file.origin is None else (before_element,)
+    places = (before_element,) if file.is_foreign else (at_line_end, above_line)
     for line, here in of_line.items():
         rules = tuple(dict.fromkeys(each.rule for each in here))
         made = (edit for place in places if (edit := place(file, line, rules, reason)) is not None)

@@ -149,7 +149,7 @@ def _xml_below(folder: str) -> Workspace:
         path: group.workspace.files[path]
         for group in groups
         for path in group.given
-        if group.workspace.files[path].origin is not None
+        if group.workspace.files[path].is_foreign
     }
     project = groups[0].workspace.project if groups else Workspace.of({}).project
     return Workspace(files, replace(project, pools=(folder,)))

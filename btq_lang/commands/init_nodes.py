@@ -104,7 +104,7 @@ def _of_engine(workspace: Workspace, engines: tuple[str, ...], used: Mapping[str
     from version 4 on."""
     project = replace(workspace.project, engines=engines or VERSIONS, names_all=engines == VERSIONS)
     users = [file for file in workspace.files.values() if not file.names_used(Kind.MODEL).isdisjoint(used)]
-    signs = [file.origin.signs for file in users if file.origin is not None]
+    signs = [file.signs for file in users if file.is_foreign]
     wanted = {is_before_4((written_for(project, None, each) or (VERSION_3,))[-1]) for each in signs}
     for each in DISTRIBUTIONS:
         if wanted <= {is_before_4(ENGINES[each])}:

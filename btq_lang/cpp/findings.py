@@ -37,7 +37,7 @@ def nothing_registered(texts: Mapping[str, str]) -> str:
 
 
 def _all(nodes_read: CppNodes) -> Iterator[tuple[str, SourcePosition, str]]:
-    """Each with its rule and place; nodes that share a base class, and so a place, are named together."""
+    """Each finding: its rule, place and message; nodes that share a base class, and so a place, are named together."""
     nodes: dict[tuple[str, SourcePosition, str], list[str]] = {}
     for node in nodes_read.nodes:
         for port in node.unread:

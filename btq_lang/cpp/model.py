@@ -1,4 +1,4 @@
-"""What C++ sources say of nodes."""
+"""The nodes that C++ sources register, as plain records."""
 
 from __future__ import annotations
 

@@ -204,7 +204,11 @@ class CppSources:
     def _nearest(
         self, candidates: list[T], name: str, scope: tuple[str, ...], path: str, place: SourcePosition
     ) -> T | None:
-        """Of what has a name's last part, the one that the name means at a place."""
+        """The candidate that a name means at a place.
+
+        Args:
+            candidates: those with the last part of the name.
+        """
         if not candidates:
             return None
         usings: list[str] = self.files[path].usings

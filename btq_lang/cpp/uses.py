@@ -127,7 +127,7 @@ def _function(sources: CppSources, argument: Node, frame: Frame) -> tuple[Node, 
 
 
 def _is_handed_on(function: Node) -> bool:
-    """Whether other code may read ports, too, because the function passes on the node that it is given."""
+    """Whether a function passes on its node, so that other code may read ports, too."""
     listed = next((node for node in walk(function) if node.type == "parameter_list"), None)
     parameters = [node for node in contents(listed) if "NodeStatus" not in text_of(node)]  # that of a decorator's child
     names = {text_of(node) for parameter in parameters for node in walk(parameter) if node.type == "identifier"}

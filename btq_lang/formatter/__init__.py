@@ -102,7 +102,7 @@ def format_range(text: str, start: int, end: int, options: FormatOptions = DEFAU
 
 
 def refused(parsed: Parsed) -> Diagnostic | None:
-    """The first syntax error of a text, because of which it is not formatted."""
+    """The first syntax error of a text, which prevents its formatting; None if it has none."""
     errors = (problem for problem in parsed.diagnostics if problem.effective_severity is Severity.ERROR)
     return min(errors, key=lambda problem: problem.span, default=None)
 

@@ -255,7 +255,7 @@ def _closing(pieces: Sequence[Piece]) -> dict[int, int]:
 
 
 def _column(text: str, offset: int, length: int) -> int:
-    """The column of a place `length` after the start of its line; a tab goes to the next multiple of four columns, as
-    for comment lines.
+    """The column of an offset, `length` characters after the start of its line; a tab goes to the next multiple of four
+    columns, as for comment lines.
     """
     return len(text[offset - length : offset].lstrip("\ufeff").expandtabs(4))

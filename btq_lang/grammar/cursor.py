@@ -339,7 +339,7 @@ class Cursor:
         return None
 
     def time_of_parts(self) -> Diagnostic | None:
-        """A diagnostic for a time of several numbers, of which one has been read: `3:30 min`, `1 h 30 min`."""
+        """A diagnostic for a time of several numbers, the first of which has been read: `3:30 min`, `1 h 30 min`."""
         is_after = self.index > 0 and self.kinds[self.index - 1] in (NUMBER, QUANTITY)
         return composed_time(self.text, self.starts[self.index - 1]) if is_after else None
 

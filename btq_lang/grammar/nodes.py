@@ -320,7 +320,7 @@ class NodeParser(AttributeParser):
         self.go_to(len(self.kinds) - 1)
 
     def with_memory(self, symbol: int, first: int, last: int) -> None:
-        """Report `->*` or `*->`: the tokens from `first` to `last`, of which one is the symbol."""
+        """Report `->*` or `*->`: the tokens from `first` to `last`; one of them is the symbol."""
         plain = self.raws[symbol].replace("→", "->").lstrip("M")
         span = Span(self.starts[first], self.starts[last] + len(self.raws[last]))
         if f"M{plain}" in SYMBOLS:

@@ -64,7 +64,7 @@ def refactorings(workspace: Workspace, path: str, offset: int) -> Iterator[Actio
     """The refactorings of the node, or the requirement, at a place."""
     file = workspace.files[path]
     entry = entry_at(workspace, path, offset)
-    if entry is None or file.origin is not None or any(one.rule == "syntax-error" for one in entry.diagnostics):
+    if entry is None or file.is_foreign or any(one.rule == "syntax-error" for one in entry.diagnostics):
         return
     yield from _lift(workspace, path, entry, offset)
     line = nodes_at(file, entry, offset)
@@ -186,7 +186,7 @@ def _inline(workspace: Workspace, path: str, entry: Entry, node: Node) -> Iterat
     top = tree.children[0]
     source = workspace.files[found.path]
     given = {pair.key.text: pair.value for pair in node.attributes if pair.key.text != "ID"}
-    if not isinstance(top, Node) or source.origin is not None or any(key.startswith("_") for key in given):
+    if not isinstance(top, Node) or source.is_foreign or any(key.startswith("_") for key in given):
         return
     if found.path == path and found.entry is entry:
         return

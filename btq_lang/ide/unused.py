@@ -66,7 +66,7 @@ def _needless_includes(store: Store[Workspace], path: str) -> tuple[NeedlessIncl
     workspace = store.ask(everything, path)
     file = workspace.files[path]
     includes = [one for one in file.includes if one.path is not None and not file.entry_of(one).diagnostics]
-    if file.origin is not None or not includes:
+    if file.is_foreign or not includes:
         return ()
     duplicates = _duplicates(workspace, path, includes)
     found = [*duplicates]

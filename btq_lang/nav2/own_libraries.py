@@ -37,8 +37,7 @@ def own_libraries(workspaces: Iterable[Workspace]) -> OwnLibraries:
     of_node: dict[str, set[str]] = {}
     for library, sources in targets.items():
         for path in sources & files.keys():
-            origin = files[path].origin
-            for node in (origin.nodes or {}) if origin is not None else ():
+            for node in files[path].cpp_nodes:
                 of_node.setdefault(node, set()).add(library)
     whole = frozenset(library for library, sources in targets.items() if sources and sources <= files.keys())
     return OwnLibraries({node: frozenset(libraries) for node, libraries in of_node.items()}, whole)

@@ -118,7 +118,6 @@ def errors(
     replaced: Collection[str] = tuple(map(xml_name, made)) if replaces else ()
     reported = {*built, *included}
     for path in (*built, *(each for each in included if each not in replaced)):
-        own = workspace.files[path].origin or workspace.files[path].parsed
-        for each in own.diagnostics if verbatim else check(workspace, path):
+        for each in workspace.files[path].source_diagnostics if verbatim else check(workspace, path):
             if each.effective_severity is Severity.ERROR and not is_reported_beside(each, reported):
                 yield path, each

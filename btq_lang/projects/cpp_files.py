@@ -121,8 +121,8 @@ class CppFiles:
             named = ((each, each.message.replace(home, "")) for each in wrong.get(path, ()))  # as people see files
             found = tuple(replace(each, message=message) for each, message in named)
             known = self._files.get(path)
-            before = known.origin if known is not None else None
-            if before is None or (before.text, before.nodes, before.diagnostics) != (text, of_path[path], found):
+            kept = (known.source, known.cpp_nodes, known.source_diagnostics) if known is not None else None
+            if kept != (text, of_path[path], found):
                 self._files[path] = cpp_file(path, text, of_path[path], found, known)
         return nodes, {path: self._files[path] for path in texts}
 

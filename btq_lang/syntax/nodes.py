@@ -1,4 +1,4 @@
-"""Nodes, of which a tree has thousands, and verbatim XML among them.
+"""Nodes, and verbatim XML among them; a tree has thousands.
 
 One invariant: a node is a plain class, as words are, so that it can be compiled.
 """

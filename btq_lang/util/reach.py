@@ -1,4 +1,4 @@
-"""What is reached from something, step by step, and what reaches itself."""
+"""Reachability in graphs, and their cycles."""
 
 from __future__ import annotations
 
@@ -9,25 +9,29 @@ T = TypeVar("T", bound=Hashable)
 
 
 def reached(starts: Iterable[T], following: Callable[[T], Iterable[T]]) -> Iterator[T]:
-    """Some things and all that follows them, directly or not: each once, the nearest first."""
+    """The starts and all that is reachable from them, each once, the nearest first.
+
+    Args:
+        following: returns the successors of a node.
+    """
     waiting = [*dict.fromkeys(starts)]
     seen = set(waiting)
-    for thing in waiting:
-        yield thing
-        for other in following(thing):
+    for node in waiting:
+        yield node
+        for other in following(node):
             if other not in seen:
                 seen.add(other)
                 waiting.append(other)
 
 
 def knots(graph: Mapping[T, Iterable[T]]) -> Iterator[set[T]]:
-    """All that reach themselves, those together that reach each other (Tarjan's strongly connected components).
+    """The sets of nodes that reach each other, and themselves (Tarjan's strongly connected components).
 
     Args:
-        graph: what follows each; what is not a key of it is ignored.
+        graph: the successors of each node; a successor that is not a key is ignored.
     """
     numbers: dict[T, int] = {}  # in the order in which they are met
-    lowest: dict[T, int] = {}  # that each is known to reach, while its knot is open
+    lowest: dict[T, int] = {}  # the lowest number that each node reaches, while its knot is open
     waiting: list[T] = []  # for their knot to be complete
     left: dict[T, Iterator[T]] = {}
     for start in graph:

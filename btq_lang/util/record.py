@@ -14,7 +14,7 @@ T = TypeVar("T")
 
 
 class _Frozen:
-    """What records do: equal by class and fields; setting or deleting a field raises an AttributeError."""
+    """The behavior of records: equal by class and fields; setting or deleting a field raises an AttributeError."""
 
     __slots__ = ()
     _key: attrgetter[Any]  # the class and the fields, for equality and hash

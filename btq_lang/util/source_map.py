@@ -29,7 +29,7 @@ class OriginMap:
         marks: from which `located` computes pieces, at least one from each; in the order of the text, each with the
             index of its line first.
         lines: of the generated text; empty if marks have no lines.
-        located: gives the pieces of some marks, from them and the offsets at which all lines begin.
+        located: computes the pieces of some marks, given these and the offsets at which lines begin.
     """
 
     def __init__(

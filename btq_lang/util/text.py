@@ -41,7 +41,7 @@ class Span(NamedTuple):
 
 
 class Placed(Protocol):
-    """What has a place, as a part of a tree has."""
+    """An object with a span, such as a part of a tree."""
 
     @property
     def start(self) -> int: ...

@@ -60,14 +60,14 @@ class Comments(Record):
     Attributes:
         before: on lines of their own above it, in its block.
         within: on its line (or lines, if it has brackets) before its last word: in brackets, or before it.
-        behind: after it on its line, if it has no block.
+        after: at the end of its line, if it has no block.
         first: after it on its line, if a block follows: they are the first thing in the block.
         last: on lines of their own at the end of its block; an element without a block may have them too.
     """
 
     before: tuple[Comment, ...] = ()
     within: tuple[Comment, ...] = ()
-    behind: tuple[Comment, ...] = ()
+    after: tuple[Comment, ...] = ()
     first: tuple[Comment, ...] = ()
     last: tuple[Comment, ...] = ()
 
@@ -98,10 +98,10 @@ def comments(parsed: Parsed) -> Mapping[int, Comments]:
                 add(line, "before", remarks)
             else:
                 add(owner, "last", remarks)
-        if open_lines and open_lines[-1].behind:  # now it is known whether it has a block
+        if open_lines and open_lines[-1].after:  # only now its block is known
             above = open_lines[-1]
             has_block = above.level < line.level or "last" in remarks_by_line.get(above.start, ())
-            add(above, "first" if has_block else "behind", above.behind)
+            add(above, "first" if has_block else "after", above.after)
         if line.within:
             add(line, "within", line.within)
         while open_lines and open_lines[-1].level >= line.level:
@@ -143,17 +143,17 @@ class _Line:
         start: of its first word.
         level: number of open blocks around it.
         blanks: the text before it on its physical line.
-        within, behind: its comments, before and after its last word.
+        within, after: its comments, before and after its last word.
     """
 
-    __slots__ = ("behind", "blanks", "level", "start", "within")
+    __slots__ = ("after", "blanks", "level", "start", "within")
 
     def __init__(self, start: int, level: int, blanks: str, within: list[Comment]) -> None:
         self.start = start
         self.level: Final = level
         self.blanks: Final = blanks
         self.within: Final = within
-        self.behind: Final[list[Comment]] = []
+        self.after: Final[list[Comment]] = []
 
 
 def _lines(text: str) -> Iterator[tuple[list[tuple[str, list[Comment]]], _Line]]:
@@ -184,7 +184,7 @@ def _lines(text: str) -> Iterator[tuple[list[tuple[str, list[Comment]]], _Line]]
             line.start = lexer.starts[0]
             last = lexer.starts[-2] if len(lexer.starts) > 1 else line.start  # the very last is the end of the line
             for start, comment_end in spans[count:]:
-                (line.within if start < last else line.behind).append(_comment(text, start, comment_end))
+                (line.within if start < last else line.after).append(_comment(text, start, comment_end))
         yield above, line
 
 

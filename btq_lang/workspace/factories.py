@@ -44,8 +44,8 @@ class Factory(Record):
         files: those of `load`, in order, each once.
         node_files: those of `nodes` that are not in `files`.
         cpp_files: the C++ sources of `nodes`.
-        lost: the patterns that match no file, so that it is not known what the program registers.
-        has_gaps: whether bt_navigator registers files that are not here; what is wrong is said of its parameter file.
+        lost: the patterns that match no file: what the program registers is then unknown in part.
+        has_gaps: whether bt_navigator registers files that are not here; its parameter file has the diagnostics.
         entries: of the root blackboard, which the program sets or reads, if it is known to be bt_navigator.
         goals: what is wrong with trees that nodes name for goals, by this name.
     """

@@ -41,8 +41,9 @@ class File:
 
     Attributes:
         text: in this language, whatever the language of the file on the disk.
-        origin: that file, if it is in another language.
-        last_read: the file before the edits since which it cannot be read, and so has no text.
+        origin: that file, if it is in another language; outside of the workspace it is asked through the properties
+            below (`is_foreign`, `source`, `on_disk`, …).
+        last_read: the last file that could be read, if an edit since then has made this one unreadable: it has no text.
     """
 
     last_read: File | None = None
@@ -59,7 +60,7 @@ class File:
         """The file after an edit, which shares what the edit does not touch.
 
         Args:
-            origin: the file in another language after the edit, of which `text` is the translation.
+            origin: the file in another language after the edit; `text` is its translation.
         """
         if text and self.last_read is not None:
             return self.last_read.edited(text, origin)
@@ -129,17 +130,41 @@ class File:
         return self.origin is None and not is_xml(self.path, self.text)
 
     @property
+    def is_foreign(self) -> bool:
+        """Whether it is written in another language, XML or C++; the text is its translation."""
+        return self.origin is not None
+
+    @property
+    def is_xml(self) -> bool:
+        """Whether it is XML that the engine loads as it is, without a build."""
+        return self.origin is not None and self.origin.nodes is None
+
+    @property
     def source(self) -> str:
         """The text on the disk, which users see."""
         return self.origin.text if self.origin else self.text
+
+    @property
+    def source_diagnostics(self) -> tuple[Diagnostic, ...]:
+        """What is wrong with the file in the language that it is written in; spans count from its start on the disk."""
+        return self.parsed.diagnostics if self.origin is None else self.origin.diagnostics
+
+    @property
+    def places(self) -> OriginMap | None:
+        """Maps the text to the file on the disk; None if they are the same."""
+        return None if self.origin is None else self.origin.places
 
     def on_disk(self, span: Span) -> Span:
         """The span on the disk for one of the text."""
         return span if self.origin is None else self.origin.places.origin(span)
 
-    def from_disk(self, offset: int) -> int | None:
-        """The offset in the text for one on the disk; None: the text has no such place."""
-        return offset if self.origin is None else self.origin.places.made(offset)
+    def from_disk(self, offset: int, exact: bool = True) -> int | None:
+        """The offset in the text for one on the disk; None: the text has no such place.
+
+        Args:
+            exact: only in parts that are the same in both texts; of others the offset is their start.
+        """
+        return offset if self.origin is None else self.origin.places.made(offset, exact)
 
     def after_models(self, span: Span) -> Span:
         """For C++, the span after the end of the text that is `span` on the disk: there the text is the C++ itself."""
@@ -147,12 +172,22 @@ class File:
 
     @property
     def is_cpp(self) -> bool:
-        """Whether it is C++, of which the text has the models of the nodes that it registers."""
+        """Whether it is C++; the text has the models of the nodes that it registers."""
         return self.origin is not None and self.origin.nodes is not None
 
     @property
+    def cpp_nodes(self) -> Mapping[str, CppNode]:
+        """The nodes that it registers, by ID; none unless it is C++."""
+        return (self.origin.nodes if self.origin is not None else None) or {}
+
+    @property
+    def signs(self) -> Signs | None:
+        """The signs of its version of the engine; None unless it is XML."""
+        return None if self.origin is None else self.origin.signs
+
+    @property
     def is_understood(self) -> bool:
-        """Whether a name that is not in this file's tree is not in the file."""
+        """Whether all of it could be read: a name that is not in its tree is then not in the file."""
         return self.origin.is_complete if self.origin else self.is_btq
 
     @cached_property
@@ -180,7 +215,7 @@ class File:
 
     @property
     def uses(self) -> Iterator[tuple[Entry, Use]]:
-        """What the file refers to, each with the entry that does, in the order of its text."""
+        """The uses in the file, each with its entry, in the order of its text."""
         return ((entry, use) for entry in self.parsed.entries for use in self.facts[id(entry.item)].summary.uses)
 
     def of_type(self, kind: type[Kept]) -> tuple[Kept, ...]:
@@ -271,7 +306,7 @@ class File:
         return {id(entry.item): place(entry.start) for entry in self.parsed.entries}
 
     def _places_on_line(self, offset: int) -> dict[int, tuple[int, str]]:
-        """The same for the items that begin in the line of an offset."""
+        """As `item_places`, for the items that begin in the line of an offset."""
         place, entries = self.lines.place, self.parsed.entries
         line, before = place(offset)
         places: dict[int, tuple[int, str]] = {}
@@ -397,13 +432,13 @@ class Definition(Record):
 
 
 class Signs(Record):
-    """What XML says of the version that it is written for.
+    """Signs in XML of the version that it is written for.
 
     Attributes:
         format: its BTCPP_format; empty if it has none.
-        is_new: whether something in it is read by version 4 alone.
-        old: what version 4 does not read as version 3 does, as it is spelt; empty if something is new.
-        is_refused: whether version 4 refuses some of that.
+        is_new: whether it has a construct that version 4 alone reads.
+        old: the constructs, as they are spelt, that version 4 does not read as version 3 does; empty if `is_new`.
+        is_refused: whether version 4 refuses one of these.
     """
 
     format: str = ""
@@ -422,7 +457,7 @@ class Origin(Record):
         is_complete: whether all of it could be read, so that a name that is not in the file's text is not in this one.
         defines: the names of its trees and models.
         nodes: by ID, those that it registers, if it is C++; its diagnostics are then all there are.
-        signs: what it says of its version of the engine, if it is XML.
+        signs: of its version of the engine, if it is XML.
     """
 
     text: str

@@ -23,7 +23,7 @@ class Reported:
         items: the item, then the others that places count from, each after its file; empty if everything counts from
             the start of a file.
         fixed: the related places that do, after their files.
-        written: a cache for who writes them.
+        written: a cache for their writer.
     """
 
     __slots__ = ("diagnostics", "fixed", "items", "written")

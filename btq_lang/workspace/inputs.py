@@ -44,7 +44,7 @@ Declared: TypeAlias = "tuple[str | None, NodeKind | None]"
 # May change with an edit of any file that is linked with the viewpoint by includes, or in which XML that is linked with
 # it looks up names.
 of_viewpoint = input_of(lambda viewpoint, *_: viewpoint)
-# Depends only on the items that define a name, in whatever file.
+# Depends only on the items that define a name, in any file.
 of_name = input_of(lambda viewpoint, kind, name: (kind, name))
 of_model = input_of(lambda viewpoint, name: (Kind.MODEL, name))
 # Never changes, for an edited item is a new one.
@@ -70,20 +70,20 @@ def _touched(after: Workspace, old: File, new: File) -> Iterator[Hashable]:
     for item in old.facts.keys() ^ new.facts.keys():
         for symbol in (old.facts.get(item) or new.facts[item]).summary.symbols:
             yield symbol.kind, symbol.name
-    if old.is_cpp and old.origin is not None and new.origin is not None:  # more is known of nodes than their models say
-        before, now = old.origin.nodes or {}, new.origin.nodes or {}
+    if old.is_cpp:  # more is known of nodes than their models say
+        before, now = old.cpp_nodes, new.cpp_nodes
         yield from ((Kind.MODEL, name) for name in before.keys() | now.keys() if before.get(name) != now.get(name))
 
 
 @of_project
 def project(workspace: Workspace) -> Project:
-    """What holds for all files."""
+    """The project of the files."""
     return workspace.project
 
 
 @of_project
 def factory(workspace: Workspace) -> Factory | None:
-    """Whose files these are; None: each file is a factory of its own."""
+    """The factory whose files these are; None: each file is a factory of its own."""
     return workspace.factory
 
 
@@ -98,8 +98,8 @@ def representative(workspace: Workspace) -> str | None:
 def of_scope(
     query: Callable[Concatenate[Store[Workspace], str, P], T],
 ) -> Callable[Concatenate[Store[Workspace], str, P], T]:
-    """Declare a query of which the viewpoint is nothing but its scope: in a factory, whose files all have one, it is
-    computed once."""
+    """Declare a query that depends on nothing but the scope of its viewpoint: it is computed once for a factory, whose
+    files have one scope."""
 
     @wraps(query)
     def ask(store: Store[Workspace], viewpoint: str, /, *key: P.args, **named: P.kwargs) -> T:

@@ -425,7 +425,7 @@ def _identity(path: str) -> tuple[int, int] | None:
 
 
 def _status(path: str) -> os.stat_result | None:
-    """What the system knows of a path; None if nothing is there."""
+    """The status of a path; None if nothing is there."""
     try:
         return os.stat(path)
     except (OSError, ValueError):  # ValueError: a NUL in the path

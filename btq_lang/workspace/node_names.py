@@ -1,4 +1,4 @@
-"""What a written node is called, and what that means.
+"""The names of written nodes, and what these mean.
 
 One invariant: besides the node, only what its model declares counts, which the caller looks up.
 """

@@ -1,4 +1,4 @@
-"""The types as which the value of a SubTree's port is read in the tree below it.
+"""The types with which a tree reads the values that a SubTree passes to its ports.
 
 One invariant: the result follows the engine: an entry of the tree is read as the type of each port to which it is
 assigned, and a SubTree passes it on.  Unknown types, and those that accept anything, are left out.

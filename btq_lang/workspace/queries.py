@@ -132,7 +132,7 @@ class Store(Generic[State]):
         self._count = 0  # of numbers
         self._first = 0  # the last number before the current top-level query
         self._start = 0  # the index on the path where Python's calls begin
-        self._circles: list[_Answer] = []  # answers in circles of which another part is open
+        self._circles: list[_Answer] = []  # answers of circles, another part of which is open
         self._hubs: list[_Answer] = []  # those that are not clean, and whose dependents are not suspect yet
 
     # ---- used by queries ----

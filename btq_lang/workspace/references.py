@@ -64,7 +64,7 @@ class Mention(Record):
         span: the name, counted from the item; of a key without its braces and `@`.
         word: that contains it, to see whether it is quoted.
         defines: whether the name is defined here, and not used.
-        node: that it is at, or that it replaces.
+        node: the node that has it, or that it replaces.
         owner: the requirement of a parameter, the model of a port or of its own name, the tree of a key; else None.
         pair: the attribute with a port or a key.
         writes: whether it is a key that a script assigns.

@@ -43,8 +43,8 @@ def trees_called(store: Store[Workspace], viewpoint: str, name: str) -> tuple[st
 
 
 class ResolvedNode:
-    """A node as it is written, with what is around it and what it means.  Equal only to itself: its place is its
-    identity.
+    """A written node, with its place in the tree and its meaning.  Equal only to itself: its place is its identity.
+
 
     Attributes:
         within: its tree.

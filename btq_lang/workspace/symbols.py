@@ -1,4 +1,4 @@
-"""What an item defines and refers to: a summary made from its tree alone.
+"""The names that an item defines and refers to: a summary made from its tree alone.
 
 One invariant: a summary depends only on the item, so it is made once (`references.summarize`) and is valid as long as
 the item exists.  Which definition a use refers to is for the workspace.
@@ -41,7 +41,7 @@ class Use(Record):
 
     Attributes:
         span: the name, counted from the item.
-        node: that it is at, if any.
+        node: the node that has it, if any.
     """
 
     kind: Kind
@@ -112,13 +112,13 @@ def same_requirement(first: syntax.Requirement, second: syntax.Requirement) -> b
 
 
 def interface(model: syntax.Model) -> object:
-    """What a model says of its node; equal for equivalent models, as palettes that tools write repeat them."""
+    """The content of a model; equal for equivalent models, which the palettes that tools write repeat."""
     ports = tuple([(port.direction, port.name, port.type, port.default) for port in model.ports])
     return model.category.raw, syntax.shape(ports)
 
 
 def differences(one: Symbol, other: Symbol) -> Iterator[str]:
-    """What two models say otherwise of their node, as a message names it: its category, or ports by name."""
+    """The differences between two models of a node, as a message names them: its category, or ports by name."""
     first, second = one.target, other.target
     if not (isinstance(first, syntax.Model) and isinstance(second, syntax.Model)):
         return

@@ -49,7 +49,7 @@ class Workspace:
         self._closures: dict[str, tuple[str, ...]] = {}
 
     def __reduce__(self) -> tuple[object, ...]:
-        """What makes it again in another process."""
+        """How another process makes it again."""
         return Workspace, (self.files, self.project, self.factory)
 
     @classmethod
@@ -70,9 +70,13 @@ class Workspace:
             after._take_over(self, path)
         return after
 
+    def with_read(self, file: File) -> Workspace:
+        """The workspace after an edit that replaces a file, which may be in another language, by this one."""
+        return self.with_file(file.path, file.text, file.origin)
+
     @cached_property
     def moved(self) -> Workspace:
-        """The same files as the engine takes them that the project moves to."""
+        """The same files, for the engine that the project moves to."""
         target = self.project.moves_to or self.project.target
         engines, written_for = (ENGINES.get(target, target),), self.project.engines
         project = replace(self.project, engines=engines, moves_to=None, written_for=written_for)
@@ -107,7 +111,7 @@ class Workspace:
         self._everywhere.clear()
 
     def _take_over(self, before: Workspace, edited: str) -> None:
-        """Copy what is known of includes, and of the names in files that do not see the edited one."""
+        """Copy cached results about includes, and the scopes of files that do not see the edited one."""
         for attribute in ("included_files", "missions"):
             if attribute in before.__dict__:
                 self.__dict__[attribute] = before.__dict__[attribute]
@@ -144,25 +148,28 @@ class Workspace:
         return hash(tuple(self.files))
 
     @cached_property
-    def origins(self) -> Mapping[str, Origin]:
-        """The origins of the files that are written in another language, by path."""
-        return {path: file.origin for path, file in self.files.items() if file.origin is not None}
+    def foreign(self) -> Mapping[str, File]:
+        """The files that are written in another language, by path."""
+        return {path: file for path, file in self.files.items() if file.origin is not None}
 
     @cached_property
     def xml(self) -> tuple[str, ...]:
         """Those of them that are XML, which looks up in its pool what it lacks."""
-        return tuple([path for path in self.origins if not self.files[path].is_cpp])
+        return tuple([path for path, file in self.foreign.items() if not file.is_cpp])
 
     # ---- includes and scopes ----
 
     def included(self, path: str, include: str, of_package: bool = False) -> str | None:
-        """The file that an `include` in `path` refers to, if it is there; files of a ROS package are known only on the
-        robot."""
+        """The file that an `include` in `path` refers to, if the workspace has it.
+
+        Args:
+            of_package: whether it is in a ROS package, which is known only on the robot.
+        """
         candidates = () if of_package else include_candidates(self.project, path, include)
         return next((each for each in candidates if each in self.files), None)
 
     def included_by(self, path: str, include: Include) -> str | None:
-        """As `included`."""
+        """As `included`, for an include of the tree."""
         return None if include.path is None else self.included(path, include.path.text, is_of_package(include))
 
     def closure(self, path: str) -> tuple[str, ...]:
@@ -257,23 +264,23 @@ class Workspace:
     def files_defining(self, kind: Kind, name: str) -> tuple[str, ...]:
         """The files of the project that define a name, to suggest where it could come from; this is known even if a
         file's tree was released."""
-        foreign = [path for path in self._foreign.get(name, ()) if self.files[path].defines(kind, name)]
+        foreign = [path for path in self._foreign_defining.get(name, ()) if self.files[path].defines(kind, name)]
         own = [path for path in self._own if self.files[path].defines(kind, name)]
         return (*own, *foreign)
 
     @cached_property
-    def _foreign(self) -> Mapping[str, list[str]]:
+    def _foreign_defining(self) -> Mapping[str, list[str]]:
         """The files in another language that define a tree or model of a name."""
         paths_by_name: dict[str, list[str]] = {}
-        for path, origin in self.origins.items():
-            for name in origin.defines:
+        for path, file in self.foreign.items():
+            for name in file.origin.defines if file.origin is not None else ():
                 paths_by_name.setdefault(name, []).append(path)
         return paths_by_name
 
     @cached_property
     def _own(self) -> tuple[str, ...]:
         """The files in this language."""
-        return tuple([path for path in self.files if path not in self.origins])
+        return tuple([path for path in self.files if path not in self.foreign])
 
     def defined_anywhere(self, kind: Kind, name: str) -> tuple[Definition, ...]:
         """Every definition of a name in the project."""
@@ -303,7 +310,7 @@ class Workspace:
         scope = self.scope(path).paths
         in_pool = [each for each in anywhere if each.path.startswith(pool) and each.path not in scope]
         folder = posixpath.dirname(path)
-        near = [each for each in in_pool if posixpath.dirname(each.path) == folder and each.path in self.origins]
+        near = [each for each in in_pool if posixpath.dirname(each.path) == folder and each.path in self.foreign]
         return tuple((near or in_pool) if kind is Kind.TREE else in_pool)
 
     # ---- missions ----
