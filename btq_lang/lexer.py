@@ -516,7 +516,7 @@ class Lexer(StrangeCharacters):
         self.problems.append(Diagnostic("unclosed-bracket", span, message, related=related, fixes=(fix,)))
 
     def _missed_at(self, opened: int) -> int:
-        """Where a `)` was probably forgotten: at the end of a line after which no attribute begins."""
+        """The place of a probably forgotten `)`: the end of a line after which no attribute begins."""
         end = opened
         for index in range(bisect_left(self.starts, opened), len(self.starts)):
             start, raw = self.starts[index], self.raws[index]

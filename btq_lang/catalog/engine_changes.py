@@ -1,4 +1,4 @@
-"""What a release of the engine changes for trees that load in an earlier one too: one row a change.
+"""The changes of the engine's releases for trees that load in an earlier one too: one row a change.
 
 What a release refuses, and what it reads otherwise, are rows of `versions`; the nodes that it adds or removes say so
 themselves.  Determined in the sources of the releases, and seen in those before and after each change by

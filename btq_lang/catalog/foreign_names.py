@@ -1,4 +1,4 @@
-"""What other engines call the built-ins of this one and their attributes: people who know those write them here.
+"""Other engines' names of this one's built-ins and their attributes, which people who know those engines write here.
 
 One invariant: no name of a node here, written as its engine writes it, is a spelling of a built-in.  A node of a
 program may have any of them, so callers ask only about nodes with children that nothing declares, and about attributes
@@ -15,7 +15,7 @@ from btq_lang.util.record import Record
 
 
 class ForeignName(Record):
-    """What a name of other engines means.
+    """The meaning of a name in other engines.
 
     Attributes:
         tag: the built-in that does the same.
@@ -40,7 +40,7 @@ def foreign_name(word: str) -> ForeignName | None:
 
 
 def statement(word: str) -> str:
-    """How a tree expresses a statement of programming languages, in the words of a message; empty for other words."""
+    """The way in which a tree expresses a statement of programming languages, for a message; empty for other words."""
     return _STATEMENTS.get(word, "")
 
 
@@ -50,7 +50,7 @@ def is_of_leaves(word: str) -> bool:
 
 
 def of_other_engines(flow: str, key: str) -> str:
-    """What replaces an attribute of another engine here, as a sentence; empty if it is unknown.
+    """The replacement here of an attribute of another engine, as a sentence; empty if it is unknown.
 
     Args:
         flow: of the built-in that has the attribute.

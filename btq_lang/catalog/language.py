@@ -32,7 +32,7 @@ class Phrase(Record):
 
     @property
     def sentence(self) -> str:
-        """What it means."""
+        """The meaning of the phrase."""
         meaning = f"violated when {self.meaning}" if self.part == "claim" else self.meaning
         return f"{meaning[0].upper()}{meaning[1:]}."
 

@@ -50,7 +50,7 @@ class Quality(Record):
 
 
 class QualityMatch(Record):
-    """What a QualityPath means.
+    """The meaning of a QualityPath.
 
     Attributes:
         kind: exact; alias: another word for it; other-edition: a name of another edition; ambiguous; unknown.
@@ -72,7 +72,7 @@ class QualityMatch(Record):
 
 @lru_cache(1000)
 def find(words: tuple[str, ...], edition: Edition = DEFAULT_EDITION) -> QualityMatch:
-    """What the parts of a QualityPath mean in an edition.
+    """The meaning of the parts of a QualityPath in an edition.
 
     Args:
         words: the path's names as written: `("performance", "time-behavior")`, `("time-behaviour",)`.
@@ -87,7 +87,7 @@ def find(words: tuple[str, ...], edition: Edition = DEFAULT_EDITION) -> QualityM
     if keys in _PAPER_NAMES:
         return QualityMatch("exact", get(_PAPER_NAMES[keys], edition))
     match = _find_word(words[0], keys[0], index) if len(words) == 1 else _find_path(words, keys, index)
-    return match or QualityMatch("unknown", near=_near(words, keys, index))
+    return match or QualityMatch("unknown", near=_similar_ids(words, keys, index))
 
 
 def get(id_: str, edition: Edition = DEFAULT_EDITION) -> Quality | None:
@@ -115,7 +115,7 @@ def parts(id_: str, edition: Edition = DEFAULT_EDITION) -> tuple[Quality, ...]:
 
 
 def successors(id_: str) -> tuple[str, ...]:
-    """What a name of 2011 became in 2023; empty if it was dropped, or 2011 does not have the name.
+    """The names of 2023 for a name of 2011; empty if it was dropped, or 2011 does not have the name.
 
     A sub-characteristic that has no successor of its own has those of its characteristic.
     """
@@ -129,7 +129,7 @@ def successors(id_: str) -> tuple[str, ...]:
 
 
 def predecessors(id_: str) -> tuple[str, ...]:
-    """What a name of 2023 was in 2011; empty if it is new."""
+    """The names of 2011 for a name of 2023; empty if it is new."""
     if get(id_, "2011") is not None and id_ not in SUCCESSORS:
         return (id_,)
     return tuple(old for old, new in SUCCESSORS.items() if id_ in new)
@@ -229,7 +229,7 @@ def _remark(keys: tuple[str, ...]) -> str:
     return AMBIGUOUS[keys[0]][0] if len(keys) == 1 and keys[0] in AMBIGUOUS else ""
 
 
-def _near(words: tuple[str, ...], keys: tuple[str, ...], index: _Index) -> tuple[str, ...]:
+def _similar_ids(words: tuple[str, ...], keys: tuple[str, ...], index: _Index) -> tuple[str, ...]:
     """Ids for an unknown name: what its last word means, or else those similar to the whole name or its last word."""
     last = [quality.id for quality in _meanings(find(words[-1:], index.edition))] if len(words) > 1 else []
     names: dict[str, tuple[str, ...]] = {}

@@ -128,7 +128,7 @@ def convert(value: float, source: Unit, target: Unit) -> float:
 
 
 def dimension_name(unit: Unit) -> str:
-    """What a unit measures, in words: `time`, `speed`, `energy or torque`, `length^4/time`."""
+    """The dimension of a unit, in words: `time`, `speed`, `energy or torque`, `length^4/time`."""
     name = _DIMENSION_NAMES.get(unit.dimension)
     if name is not None:
         return name
@@ -139,7 +139,7 @@ def dimension_name(unit: Unit) -> str:
 
 
 def a_dimension(unit: Unit) -> str:
-    """What a unit measures, with an article: `a time`, `an angle`, `a plain number`; a formula has none."""
+    """The dimension of a unit, with an article: `a time`, `an angle`, `a plain number`; a formula has none."""
     name = dimension_name(unit)
     if name.startswith("a ") or not name.replace(" ", "").isalpha():
         return name

@@ -1,4 +1,4 @@
-"""What is wrong between the ports of nodes and their code, and what cannot be seen, as diagnostics of the C++ files.
+"""Diagnostics of C++ files: differences between the ports of nodes and their code, and parts that cannot be read.
 
 One invariant: a finding is at the line of C++ that it is about, and a comment `// btq: ignore[rule]` on that line, or
 alone on the line above, silences it.
@@ -20,7 +20,7 @@ def findings(nodes: CppNodes, texts: Mapping[str, str]) -> dict[str, tuple[Diagn
     """The diagnostics of some files, by path; those without any are left out."""
     lines: dict[str, LineIndex] = {}
     of_path: dict[str, list[Diagnostic]] = {}
-    for rule, place, message in _all(nodes):
+    for rule, place, message in _rule_findings(nodes):
         index = lines.setdefault(place.path, LineIndex(texts[place.path]))
         if not _is_silenced(index, place.line - 1, rule):
             tags = (Tag.UNNECESSARY,) if rule == UNUSED else ()
@@ -36,7 +36,7 @@ def nothing_registered(texts: Mapping[str, str]) -> str:
     return f"no node is registered in {counted(len(texts), 'C++ file')}; {where}"
 
 
-def _all(nodes_read: CppNodes) -> Iterator[tuple[str, SourcePosition, str]]:
+def _rule_findings(nodes_read: CppNodes) -> Iterator[tuple[str, SourcePosition, str]]:
     """Each finding: its rule, place and message; nodes that share a base class, and so a place, are named together."""
     nodes: dict[tuple[str, SourcePosition, str], list[str]] = {}
     for node in nodes_read.nodes:

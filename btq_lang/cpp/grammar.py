@@ -56,7 +56,7 @@ def walk(node: Node, outside: frozenset[str] = frozenset()) -> Iterator[Node]:
 
 
 def errors(node: Node) -> Iterator[Node]:
-    """What the grammar cannot read, and what it misses."""
+    """The nodes that the grammar cannot read, and those that it misses."""
     waiting = [node]
     while waiting:  # expressions may be deep
         node = waiting.pop()
@@ -77,12 +77,12 @@ def contents(node: Node | None) -> list[Node]:
 
 
 def arguments(call: Node) -> list[Node]:
-    """What a call passes."""
+    """The arguments of a call."""
     return contents(field(call, "arguments"))
 
 
 def callee(call: Node) -> tuple[str, str, list[str]]:
-    """What a call names: the scope before the name, the name, and the arguments of a template."""
+    """The function of a call: the scope before its name, the name, and the arguments of a template."""
     return named(field(call, "function"))
 
 

@@ -42,7 +42,7 @@ class Failed(Record):
 
 
 class Registering(Record):
-    """Something that looks like a macro which registers its arguments, but does not show how."""
+    """A call that looks like a macro which registers its arguments, but whose definition is unknown."""
 
     name: str
     arguments: tuple[str, ...]
@@ -150,7 +150,7 @@ class Expanded:
                 if passed:
                     self.registering.append(Registering(name, tuple(passed), self._place(match.start(), end)))
                 continue
-            macro = self._meant(name, row, match.start(), end)
+            macro = self._macro_named(name, row, match.start(), end)
             if macro is None or (macro.parameters is not None and passed is None):
                 continue
             end = end if macro.parameters is not None else match.end()
@@ -169,7 +169,7 @@ class Expanded:
             copied = end
         return "".join((*pieces, text[copied:]))
 
-    def _meant(self, name: str, row: int, start: int, end: int) -> Macro | None:
+    def _macro_named(self, name: str, row: int, start: int, end: int) -> Macro | None:
         """The macro that a name means in a row; reported if it may be any of several."""
         every = self._macros[name]
         choice = [macro for macro in every if macro.path == self._path and row in macro.rows]
@@ -187,7 +187,7 @@ class Expanded:
         return choice[0] if choice else None
 
     def _call(self, macro: Macro, passed: list[str], within: frozenset[str], place: SourcePosition) -> str | None:
-        """What a macro expands to; None if it cannot be; within: the macros that are being expanded."""
+        """The expansion of a macro; None if it fails; within: the macros that are being expanded."""
         parameters = macro.parameters or ()
         is_variadic = parameters[-1:] != () and parameters[-1].endswith("...")
         if macro.parameters is not None:
@@ -233,7 +233,7 @@ class Expanded:
             if match.start() < copied or name is None or name in within or name not in self._macros:
                 continue
             passed, end = _arguments(text, match.end())
-            macro = self._meant(name, place.line - 1, match.start(), match.end())
+            macro = self._macro_named(name, place.line - 1, match.start(), match.end())
             if macro is None or (macro.parameters is not None and passed is None):
                 continue
             expansion = self._call(macro, passed or [], within, place)
@@ -266,7 +266,7 @@ def _is_wanted(macro: Macro) -> bool:
 
 
 def _arguments(text: str, offset: int) -> tuple[list[str] | None, int]:
-    """What is given in the brackets at an offset, and where they end; None if there are none."""
+    """The arguments in the brackets at an offset, and the end of these; None if there are none."""
     passed: list[str] = []
     depth, begin = 0, offset
     for match in _TOKEN.finditer(text, offset):

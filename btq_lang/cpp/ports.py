@@ -1,4 +1,5 @@
-"""What `providedPorts()` returns: lists in braces, helpers that add to a list, variables that are filled, base classes.
+"""The ports that `providedPorts()` returns: lists in braces, helpers that add to a list, variables that are filled,
+base classes.
 
 One invariant: as in a `std::unordered_map`, the first of two entries with one name counts, unless `[]` or
 `insert_or_assign` sets it.  What is not understood is reported, and the ports then count as not complete.
@@ -113,7 +114,7 @@ class PortsReader:
         )
 
     def basic_ports(self, scope: str, frame: Frame, call: Node) -> Ports | None:
-        """What `providedBasicPorts` of a library's class adds; None: unknown."""
+        """The ports that `providedBasicPorts` of a library's class adds; None: unknown."""
         place = self.sources.place_of(frame.path, call)
         libraries = [each for each in self._owners(scope, frame, place) if each.class_ is None]
         return next(filter(None, (self._of_library(each, place) for each in libraries)), None)
@@ -154,7 +155,7 @@ class Body:
     # ---- statements ----
 
     def result(self, function: Node) -> Ports:
-        """What a function returns."""
+        """The ports that a function returns."""
         body = field(function, "body")
         for statement in contents(body):
             if statement.type == "return_statement":
@@ -284,7 +285,7 @@ class Body:
         return True
 
     def _added(self, passed: list[Node]) -> Ports | None:
-        """What `insert` and the like are given: a port, its name and what it is, a list, or a range."""
+        """The ports that `insert` and the like receive: a port, a name and a port, a list, or a range."""
         if len(passed) == 2 and all(each.type == "call_expression" for each in passed):
             whose = [_of_range(each) for each in passed]
             names = [callee(each)[1] for each in passed]
@@ -378,7 +379,7 @@ class Body:
         return self._helped(name, scope, passed, node)
 
     def _helped(self, name: str, scope: str, passed: list[Node], node: Node) -> Ports | None:
-        """What a function of the sources makes of the lists that it is given."""
+        """The result of a function of the sources for the lists that it receives."""
         lists = [self.evaluated(each) for each in passed]
         helper = self.reader.helper(name, scope, self.frame, node)
         if helper is None:

@@ -105,7 +105,7 @@ class CppSource:
                 self.unseen.append(Unseen("the C++ grammar cannot read this", self.place_of(node), hides_node=True))
 
     def place_of(self, node: Node) -> SourcePosition:
-        """Where a node is on the disk."""
+        """The place of a node on the disk."""
         row, column = self._expanded.original(*node.start_point)
         end_row, end_column = self._expanded.original(*node.end_point, at_end=True)
         return SourcePosition(self.path, row + 1, column + 1, end_row + 1, end_column + 1)

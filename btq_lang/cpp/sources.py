@@ -61,7 +61,7 @@ class CppSources:
         self._methods: Final = grouped((_last(each.name), each) for source in every for each in source.functions)
 
     def place_of(self, path: str, node: Node) -> SourcePosition:
-        """Where a node of a file is on the disk."""
+        """The place of a node of a file on the disk."""
         return self.files[path].place_of(node)
 
     def report(self, message: str, place: SourcePosition, hides_node: bool = False) -> None:
@@ -128,7 +128,7 @@ class CppSources:
 
     def string(self, name: str, bound: BoundClass | None, scope: tuple[str, ...], path: str) -> str | None:
         """The string that a constant means."""
-        for whole, source in self._meant(name, bound, scope, path):
+        for whole, source in self._whole_names(name, bound, scope, path):
             if whole in source.strings:
                 return source.strings[whole]
         strings = {
@@ -143,12 +143,12 @@ class CppSources:
         self, name: str, bound: BoundClass | None, scope: tuple[str, ...], path: str
     ) -> tuple[Node, tuple[str, ...], str] | None:
         """The value of a constant that may be ports, with its scope and file."""
-        for whole, source in self._meant(name, bound, scope, path):
+        for whole, source in self._whole_names(name, bound, scope, path):
             if whole in source.lists:
                 return *source.lists[whole], source.path
         return None
 
-    def _meant(
+    def _whole_names(
         self, name: str, bound: BoundClass | None, scope: tuple[str, ...], path: str
     ) -> Iterator[tuple[str, CppSource]]:
         """The whole names that a name may mean, each in each file, the nearest first."""
@@ -258,7 +258,7 @@ def _mixed_in(bound: BoundClass) -> Category | None:
 
 
 def _in_scopes(name: str, scope: tuple[str, ...]) -> list[str]:
-    """What a name may mean, from the innermost scope to the outermost."""
+    """The whole names that a name may mean, from the innermost scope to the outermost."""
     return ["::".join((*scope[:depth], name)) for depth in range(len(scope), -1, -1)]
 
 

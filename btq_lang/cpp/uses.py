@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Uses:
-    """What code does with ports.
+    """The reads and writes of ports in some code.
 
     Attributes:
         all: reads and writes whose port can be seen, in order.
@@ -39,7 +39,7 @@ class Uses:
 
     @classmethod
     def of_class(cls, sources: CppSources, bound: BoundClass) -> Uses:
-        """What the methods of a class and of its bases do."""
+        """The uses in the methods of a class and of its bases."""
         uses = cls(sources)
         for ancestor in sources.ancestry(bound):
             if ancestor.class_ is None:
@@ -54,7 +54,7 @@ class Uses:
 
     @classmethod
     def of_function(cls, sources: CppSources, argument: Node, frame: Frame) -> Uses:
-        """What a function does that a node is made of: a lambda, or the name of one or of a function."""
+        """The uses in the function of a node: a lambda, or the name of one or of a function."""
         uses = cls(sources)
         function = _function(sources, argument, frame)
         uses.complete = function is not None and not _is_handed_on(function[0])
@@ -75,7 +75,7 @@ class Uses:
         return tuple(use for use in self.all if use.port not in names and not use.falls_back)
 
     def without_each(self, ports: Iterable[CppPort]) -> tuple[tuple[str, str], ...]:
-        """What the code does without each input that has no default: see `Use.without`."""
+        """The effect of each missing input that has no default: see `PortUse.without`."""
         inputs = (port for port in ports if port.direction != "output" and port.default is None)
         return tuple((port.name, self._without(port)) for port in inputs)
 
@@ -149,7 +149,7 @@ def _is_parameter(name: Node) -> bool:
 
 
 def _without(read: Node) -> str:
-    """What happens if a read gets nothing, as the code around it shows."""
+    """The effect of a read that gets nothing, as the code around it shows."""
     node, negated, within_and = read, False, False
     while (around := node.parent) is not None:
         if around.type == "expression_statement":
@@ -178,7 +178,7 @@ def _without(read: Node) -> str:
 
 
 def _in_condition(condition: Node, negated: bool, within_and: bool) -> str:
-    """What a branch does that is taken if the read gets nothing."""
+    """The effect of the branch that is taken if the read gets nothing."""
     statement = condition.parent
     if statement is None or statement.type != "if_statement":
         return ""
@@ -195,7 +195,7 @@ def _in_condition(condition: Node, negated: bool, within_and: bool) -> str:
 
 
 def _kept(declared: Node) -> str:
-    """What the code does with a result that it keeps in a variable."""
+    """The effect of a missing result that is kept in a variable."""
     inner = field(declared, "declarator") or field(declared, "left")
     name = text_of(inner)
     if name == "std::ignore":

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Frame:
-    """Where an expression is: in which class, scope and file, and what names mean there.
+    """The surroundings of an expression: its class, scope and file, and the meanings of names there.
 
     Attributes:
         bound: the class, if it is in one.
@@ -31,7 +31,7 @@ class Frame:
 
     @property
     def meanings(self) -> dict[str, str]:
-        """What the parameters of templates mean."""
+        """The meanings of the parameters of templates."""
         return self.bound.meanings if self.bound is not None else {}
 
 

@@ -124,7 +124,7 @@ def _stretches(parsed: Parsed, options: FormatOptions) -> list[_Stretch]:
     parts = tuple(sections(logical_lines(parsed.text, parsed.tokens, marks.atoms), marks, options))
     items = {entry.start + entry.item.start for entry in parsed.entries}
     _part_items([line for _, lines in parts for line in lines], items)
-    written = [[part for line in lines for part in _written(line, marks, options)] for _, lines in parts]
+    written = [[part for line in lines for part in _parts_of(line, marks, options)] for _, lines in parts]
     above = -1  # the level of the part above
     for part in chain.from_iterable(written):
         if part.blank and part.level <= above:
@@ -174,7 +174,7 @@ class _Part(Record):
     rows: list[PhysicalLine]
 
 
-def _written(line: LogicalLine, marks: Marks, options: FormatOptions) -> Iterator[_Part]:
+def _parts_of(line: LogicalLine, marks: Marks, options: FormatOptions) -> Iterator[_Part]:
     """A line with the comment lines above and below it."""
     for remark in line.lead:
         yield _remark(remark, options)

@@ -463,7 +463,7 @@ class ClaimParser(ConditionParser):
         return value
 
     def end_of_simple(self, index: int) -> int:
-        """Where the value ends that begins at a token; the same token if none does."""
+        """The token after the value that begins at a token; the same token if none does."""
         begin = index + (self.raws[index : index + 1] == ["-"])
         is_value = begin < len(self.kinds) and self.kinds[begin] in (QUANTITY, NUMBER, NAME)
         return begin + 1 if is_value else min(index, len(self.kinds) - 1)

@@ -157,7 +157,7 @@ class ConditionParser(Cursor):
         return RELATIONS[meant]
 
     def bound_ahead(self) -> tuple[int, tuple[str, str]] | None:
-        """How many words from here say how a bound begins, and how that is written."""
+        """The number of words here that begin a bound, and the words of this language for them."""
         for length in (5, 4, 3, 2, 1):
             if (meant := BOUNDS.get(tuple(self.raws[self.index : self.index + length]))) is not None:
                 return length, meant

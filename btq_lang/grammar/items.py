@@ -239,7 +239,7 @@ class ItemParser(NodeParser):
         return True
 
     def is_selection(self, others: tuple[tuple[str, ...], ...]) -> int:
-        """How many words from here are one of others before another selector."""
+        """The number of words here that are one of `others` and precede a selector; 0 if none are."""
         if self.kind != NAME:
             return 0
         lengths = [len(words) for words in others if tuple(self.raws[self.index : self.index + len(words)]) == words]

@@ -233,8 +233,8 @@ class NodeParser(AttributeParser):
         return (replace_fix("Put an `Inverter` above it", sign, f"Inverter{below}"),) if below else ()
 
     def line_below(self) -> str:
-        """How a line begins that is one step deeper than the current one, with the line end before it; empty if the
-        current one begins with something else.
+        """The line end and the indentation of a line that is one step deeper than the current one; empty if the current
+        one does not begin with its first token.
         """
         margin = self.text[line_start(self.text, 0, self.starts[0]) : self.starts[0]]
         step = "\t" if margin.startswith("\t") else "    "

@@ -30,7 +30,7 @@ def composed_time(text: str, start: int) -> Diagnostic | None:
         parts, units, end = [int(spoken[1]), int(spoken[3])], [(large, small)], spoken.end()
     else:
         return None
-    written = [amount for reading in units for amount in _written(parts, reading)]
+    written = [amount for reading in units for amount in _in_one_unit(parts, reading)]
     span = Span(start, end)
     fixes = tuple([write_fix(amount, span) for amount in written])
     shown = " or ".join(f"`{amount}`" for amount in written)
@@ -43,7 +43,7 @@ def _readings(unit: str | None) -> list[tuple[str, ...]]:
     return [minutes, hours] if unit is None else [hours] if unit == "h" else [minutes]
 
 
-def _written(parts: list[int], units: tuple[str, ...]) -> list[str]:
+def _in_one_unit(parts: list[int], units: tuple[str, ...]) -> list[str]:
     """A time in its largest unit, if that takes few decimals, and in its smallest."""
     seconds = sum(part * _SECONDS[unit] for part, unit in zip(parts, units, strict=True))
     numbers = [f"{seconds / _SECONDS[unit]:.10g}" for unit in (units[0], units[-1])]

@@ -47,7 +47,7 @@ ASCII: Final = 0x80  # the first character that is not ASCII
 
 
 class Maps:
-    """Where words and blanks end in a text, found in one step.
+    """The ends of words and blanks in a text, found in one step.
 
     Attributes:
         words: the text with a NUL for each character but ASCII letters, digits and `_`.

@@ -105,7 +105,7 @@ def no_token(text: str, start: int, end: int, *, of_signal: bool) -> Diagnostic:
 
 
 def _square_brackets(text: str, start: int) -> tuple[str, tuple[Fix, ...]]:
-    """What square brackets are probably meant to be, and the fix: attributes, a list of requirements, or children."""
+    """The probable meaning of square brackets, and the fix: attributes, a list of requirements, or children."""
     closing = text.find("]", start, line_end(text, start))
     if closing < 0:
         return ATTRIBUTES, ()

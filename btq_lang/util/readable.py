@@ -10,7 +10,7 @@ from typing import Final
 
 
 def replaced(error: UnicodeError) -> tuple[str, int]:
-    """What to write instead of the characters that cannot be encoded, and where to go on.
+    """A replacement for the characters that cannot be encoded, and the index after them.
 
     An error handler for `codecs.register_error`.  Most are replaced by one character, so that columns stay aligned.
     """

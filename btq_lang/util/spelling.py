@@ -64,7 +64,7 @@ def did_you_mean(names: Iterable[str]) -> str:
 
 
 def distance(a: str, b: str, enough: int | None = None) -> int:
-    """How many letters must be inserted, deleted, replaced or swapped with their neighbour to turn `a` into `b`.
+    """The number of letters to insert, delete, replace or swap with their neighbour to turn `a` into `b`.
 
     This is the optimal string alignment form of the Damerau-Levenshtein distance: no piece is edited twice.
 

@@ -109,7 +109,7 @@ def _same(is_same: Callable[[int, int], bool], size: int) -> int:
 
 
 class LineIndex:
-    """Where the lines of a text begin; converts offsets to positions and back.
+    """The index of the lines of a text; converts offsets to positions and back.
 
     After an edit of a large text most lines are merely shifted; the shift is kept separately and added on look-up,
     because an author types in one place.
@@ -229,7 +229,7 @@ class LineIndex:
 
 
 def _line_starts(text: str) -> Iterator[int]:
-    """Where the lines of a text begin, without its first; each character of a line end counts."""
+    """The starts of the lines of a text, except the first; each character of a line end counts."""
     if "\r" in text:
         text = text.replace("\r\n", " \n").replace("\r", "\n")
     *lines, _ = text.split("\n")
@@ -242,7 +242,7 @@ def counted(number: int, one: str, several: str = "") -> str:
 
 
 def width_of(text: str, encoding: Encoding) -> int:
-    """How many columns a text takes: code points, or code units in UTF-8 or UTF-16."""
+    """The number of columns of a text: code points, or code units in UTF-8 or UTF-16."""
     if encoding == "code-points" or text.isascii():
         return len(text)
     if encoding == "utf-8":

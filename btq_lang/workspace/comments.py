@@ -157,7 +157,7 @@ class _Line:
 
 
 def _lines(text: str) -> Iterator[tuple[list[tuple[str, list[Comment]]], _Line]]:
-    """Each logical line, the end of the file as the last, with the comment lines above it and their blanks."""
+    """The logical lines, the end of the file as the last; each with the comment lines above it and their blanks."""
     lexer = Lexer(text)
     spans = lexer.comments
     while True:

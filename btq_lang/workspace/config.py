@@ -29,7 +29,7 @@ PROJECT_FILES: tuple[Kind, ...] = ("btq.toml", "pyproject.toml")  # the first of
 
 
 class Project(Record):
-    """What holds for all files of a project.
+    """The settings of all files of a project.
 
     Attributes:
         root: the folder of the project file.
@@ -146,7 +146,7 @@ def parse_project(text: str, kind: Kind = "btq.toml", root: str = ".") -> tuple[
             field, read, *_ = KEYS[key]
             fields[field], complaints = read(key, value)
         else:
-            complaints = [_Complaint(f"unknown key `{key}`{_meant(key, KEYS)}")]
+            complaints = [_Complaint(f"unknown key `{key}`{_suggestion(key, KEYS)}")]
         for complaint in complaints:
             position = _find(text, (*above, key, *complaint.below), complaint.value)
             problems.append(ProjectProblem(complaint.message, position))
@@ -175,7 +175,7 @@ def keys_above(path: str) -> tuple[str, ...]:
 
 
 def table_of(text: str, above: tuple[str, ...]) -> Any:
-    """What a TOML file has below some keys, which should be a table.
+    """The value below some keys of a TOML file, which should be a table.
 
     Raises:
         ValueError, RecursionError: it is not TOML.
@@ -208,17 +208,17 @@ def configured(project: Project, path: str, diagnostics: Iterable[Diagnostic]) -
 
 def unknown_rule(name: str) -> str | None:
     """The message about an unknown rule; None if the rule exists."""
-    return None if name in RULES else f"unknown rule `{name}`{_meant(name, RULES)}"
+    return None if name in RULES else f"unknown rule `{name}`{_suggestion(name, RULES)}"
 
 
 def include_candidates(project: Project, path: str, include: str) -> tuple[str, ...]:
-    """Where an included file may be, best first: beside the file at `path`, then in the include paths."""
+    """The paths at which an included file may be, best first: beside the file at `path`, then in the include paths."""
     folders = (os.path.dirname(path), *project.include_paths)
     return tuple(dict.fromkeys(_joined(folder, include) for folder in folders))
 
 
 class _Complaint(Record):
-    """What is wrong with the value of a key: with the entry `below` it, or with the string `value` in it."""
+    """A mistake in the value of a key: in the part `below` it, or in the string `value` in it."""
 
     message: str
     below: tuple[str, ...] = ()
@@ -235,7 +235,7 @@ def _engines(key: str, value: object) -> _Read:
         return None, [_Complaint(f'`{key}` must be a string such as "4.10", or a list of them{trap}')]
     valid = tuple(version for version in wanted or () if version in _NAMED or is_engine(version))
     complaints = [
-        _Complaint(f"unknown engine version `{version}`{_meant_engine(version)} {_CHECKED}", value=version)
+        _Complaint(f"unknown engine version `{version}`{_engine_suggestion(version)} {_CHECKED}", value=version)
         for version in wanted
         if version not in valid
     ]
@@ -248,11 +248,11 @@ def _as_numbers(named: str) -> tuple[int, ...]:
     return numbers(PRODUCTS.get(named) or named)
 
 
-def _meant_engine(version: str) -> str:
+def _engine_suggestion(version: str) -> str:
     """A similar version with the same major number: `3.8` is not a misspelt 4.8."""
     if not version[:1].isdecimal():
-        return _meant(version, PRODUCTS) or ";"
-    return (_meant(version, VERSIONS) if version.startswith("4.") else "") or ";"
+        return _suggestion(version, PRODUCTS) or ";"
+    return (_suggestion(version, VERSIONS) if version.startswith("4.") else "") or ";"
 
 
 def is_engine(version: str) -> bool:
@@ -266,7 +266,7 @@ def _qualities(key: str, value: object) -> _Read:
 
     if value in (*EDITIONS,):
         return value, []
-    meant = _meant(value, EDITIONS) if isinstance(value, str) else ""
+    meant = _suggestion(value, EDITIONS) if isinstance(value, str) else ""
     return None, [_Complaint(f"`{key}` must be {' or '.join(map(_quoted, EDITIONS))}{meant}")]
 
 
@@ -298,7 +298,7 @@ def _severities(key: str, value: object) -> _Read:
             complaints.append(_Complaint(message, (name,)))
         elif not isinstance(word, str) or word not in SEVERITIES:
             words = ", ".join(map(_quoted, SEVERITIES))
-            meant = _meant(word, SEVERITIES) if isinstance(word, str) else ""
+            meant = _suggestion(word, SEVERITIES) if isinstance(word, str) else ""
             complaints.append(_Complaint(f"`{key}.{name}` must be one of {words}{meant}", (name,)))
         else:
             severities.append((name, SEVERITIES[word]))
@@ -329,7 +329,7 @@ def _override(key: str, table: dict[str, object]) -> tuple[Override | None, list
     complaints += [_below(complaint, "rules") for complaint in inner]
     for name in table:
         if name not in OVERRIDE_KEYS:
-            complaints.append(_Complaint(f"unknown key `{key}.{name}`{_meant(name, OVERRIDE_KEYS)}", (name,)))
+            complaints.append(_Complaint(f"unknown key `{key}.{name}`{_suggestion(name, OVERRIDE_KEYS)}", (name,)))
     if include is None:
         return None, complaints
     return Override(include, (*((rule, None) for rule in ignored or ()), *(severities or ()))), complaints
@@ -360,7 +360,7 @@ def _nodes(key: str, value: object) -> _Read:
 
     names, complaints = _strings(key, value)
     unknown = [name for name in names or () if name not in PACKAGED and not name.endswith(CPP_SUFFIXES)]
-    complaints += [_Complaint(f"unknown nodes `{name}`{_meant(name, PACKAGED)}", value=name) for name in unknown]
+    complaints += [_Complaint(f"unknown nodes `{name}`{_suggestion(name, PACKAGED)}", value=name) for name in unknown]
     return tuple(name for name in dict.fromkeys(names or ()) if name not in unknown), complaints
 
 
@@ -423,7 +423,7 @@ _RELEASE_LINE = re.compile(r"4\.(0|[1-9][0-9]?)")
 _DIGITS = re.compile(r"\d+")
 
 
-def _meant(name: str, names: Iterable[str]) -> str:
+def _suggestion(name: str, names: Iterable[str]) -> str:
     return did_you_mean(near(name, names, 1))
 
 

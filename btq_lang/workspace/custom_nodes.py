@@ -1,4 +1,4 @@
-"""What the uses of a custom node suggest about it: its category, and its ports with directions and types.
+"""Custom nodes as their uses suggest them: their categories, and their ports with directions and types.
 
 One invariant: the result is the same for all files of a mission.
 """

@@ -32,7 +32,7 @@ Complaint: TypeAlias = tuple[str, tuple[str, ...], str | None]
 
 
 class Factory(Record):
-    """What one program registers.
+    """The files and nodes that one program registers.
 
     Attributes:
         name: as messages call it.
@@ -116,17 +116,19 @@ def merged(results: Sequence[tuple[Factory | None, tuple[Diagnostic, ...]]]) -> 
         if diagnostic.effective_severity is Severity.ERROR or _identity(diagnostic) not in errors
     ]
     return tuple(
-        _naming(diagnostic, factories_of[diagnostic]) if len(factories_of[diagnostic]) < len(results) else diagnostic
+        _with_factories(diagnostic, factories_of[diagnostic])
+        if len(factories_of[diagnostic]) < len(results)
+        else diagnostic
         for diagnostic in sorted(kept, key=attrgetter("span"))
     )
 
 
 def _identity(diagnostic: Diagnostic) -> tuple[str, Span, str]:
-    """What a diagnostic has in common with one of another severity about the same."""
+    """The identity of a diagnostic, whatever its severity."""
     return diagnostic.rule, diagnostic.span, diagnostic.message
 
 
-def _naming(diagnostic: Diagnostic, factories: list[str]) -> Diagnostic:
+def _with_factories(diagnostic: Diagnostic, factories: list[str]) -> Diagnostic:
     note = f"only in the factor{'y' if len(factories) == 1 else 'ies'} {', '.join(factories)}"
     return replace(diagnostic, notes=(*diagnostic.notes, note))
 

@@ -146,7 +146,7 @@ class File:
 
     @property
     def source_diagnostics(self) -> tuple[Diagnostic, ...]:
-        """What is wrong with the file in the language that it is written in; spans count from its start on the disk."""
+        """The diagnostics of the language that it is written in; spans count from its start on the disk."""
         return self.parsed.diagnostics if self.origin is None else self.origin.diagnostics
 
     @property
@@ -206,7 +206,7 @@ class File:
 
     @cached_property
     def defined(self) -> tuple[Definition, ...]:
-        """What the file itself defines, in the order of its text."""
+        """The definitions in the file itself, in the order of its text."""
         return tuple(
             Definition(self.path, entry, symbol)
             for entry in self.parsed.entries
@@ -301,7 +301,7 @@ class File:
 
     @cached_property
     def item_places(self) -> dict[int, tuple[int, str]]:
-        """Where each item begins, by its `id`: its line, and the text before it."""
+        """The start of each item, by its `id`: its line, and the text before it on that line."""
         place = self.lines.place
         return {id(entry.item): place(entry.start) for entry in self.parsed.entries}
 
@@ -318,7 +318,7 @@ class File:
         return places
 
     def start_of(self, item: object) -> int:
-        """Where one of the file's items begins.
+        """The start of one of the file's items.
 
         Raises:
             KeyError: the item does not belong to this file.
@@ -386,9 +386,9 @@ class File:
 
 
 def _sharing(before: Parsed, now: Parsed, change: Span | None) -> Parsed:
-    """The same, except that the item before the change is the old object if it was reparsed with an equal result: a
-    change in the first line of an item may touch the one before it.  All text up to the next item must be equal too, as
-    it is not if a following item has become a comment."""
+    """The new tree, but with the old object for the item before the change if it was reparsed with an equal result: a
+    change in the first line of an item may touch the one before it.  All text up to the next item must be equal too,
+    which it is not if a following item has become a comment."""
     old, new = before.entries, now.entries
     index = bisect_right(old, change.start, key=_start_of) - 2 if change is not None else -1
     is_first_one = (

@@ -1,4 +1,4 @@
-"""What queries read in the workspace: the inputs of the store (queries.py) that several packages ask for.
+"""The inputs of the query store (queries.py): what several packages read in the workspace.
 
 Each is a function of the workspace and of a *viewpoint*, which names the scope in which names are looked up: all that
 one program registers before it creates a tree.  That is a file with what it includes, named by its path; in the
@@ -168,7 +168,7 @@ def text(workspace: Workspace, path: str, facts: Facts) -> str:
 
 @of_item
 def unknown_units(workspace: Workspace, path: str, facts: Facts) -> tuple[int, ...]:
-    """Where the words of an item begin that its diagnostics call unknown units."""
+    """The starts of the words of an item that its diagnostics call unknown units."""
     problems = workspace.files[path].entry_of(facts.item).diagnostics
     return tuple(sorted([problem.span.start for problem in problems if problem.rule == "unknown-unit"]))
 
@@ -187,7 +187,7 @@ def definition(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> P
 
 @of_model
 def declared(workspace: Workspace, viewpoint: str, name: str) -> Declared:
-    """What the model of a custom node declares; nothing if it has none."""
+    """The declaration of a custom node by its model; empty if it has none."""
     scope = workspace.scope(viewpoint)
     for file in scope.files(Kind.MODEL):
         if definers := file.names.definitions.get((Kind.MODEL, name)):
@@ -201,7 +201,7 @@ def declared(workspace: Workspace, viewpoint: str, name: str) -> Declared:
 
 
 def _of_library(scope: Scope, name: str) -> NodeKind | None:
-    """What a node does, if the model that counts is of a library that btq knows."""
+    """The behavior of a node, if the model that counts is of a library that btq knows."""
     model, distribution = scope.find(Kind.MODEL, name), distribution_among(scope.node_paths)
     if model is None or distribution is None or model.path != FILES[distribution]:
         return None
@@ -211,7 +211,7 @@ def _of_library(scope: Scope, name: str) -> NodeKind | None:
 
 
 def symbol(facts: Facts, kind: Kind, name: str) -> Symbol:
-    """How an item defines a name."""
+    """The symbol with which an item defines a name."""
     return next(each for each in facts.summary.symbols if each.kind is kind and each.name == name)
 
 

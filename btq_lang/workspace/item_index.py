@@ -23,7 +23,7 @@ NameSort: TypeAlias = Kind | Literal["asked_for", "claiming", "node_names", "run
 
 
 class Facts:
-    """What follows from an item alone: computed on demand, and valid as long as the item exists."""
+    """The facts of an item: they follow from it alone, are computed on demand, and are valid as long as it exists."""
 
     def __init__(self, item: Item) -> None:
         self.item = item
@@ -172,5 +172,5 @@ class Names:
 
     @cached_property
     def repeated(self) -> frozenset[Name]:
-        """Those with several definitions."""
+        """The names with several definitions."""
         return frozenset([name for name, definers in self.definitions.items() if len(definers) > 1])

@@ -419,7 +419,7 @@ def _is_folder(entry: os.DirEntry[str]) -> bool:
 
 
 def _identity(path: str) -> tuple[int, int] | None:
-    """What all paths of a regular file have in common; None for anything else."""
+    """The identity of a regular file, the same for all its paths; None for anything else."""
     status = _status(path)
     return (status.st_dev, status.st_ino) if status is not None and stat.S_ISREG(status.st_mode) else None
 

@@ -18,7 +18,7 @@ from btq_lang.workspace.inputs import Declared
 
 
 class NodeMeaning(Record):
-    """What a node means.
+    """The meaning of a node.
 
     Attributes:
         kind: the built-in, if it is one; for an older engine's word, the one of today.
@@ -37,7 +37,7 @@ class NodeMeaning(Record):
 
 
 def meaning_of(node: Node, declared: Callable[[str], Declared]) -> NodeMeaning:
-    """What a node means.
+    """The meaning of a node.
 
     Args:
         declared: returns what a node's model in scope declares, given the node's name.

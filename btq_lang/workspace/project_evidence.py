@@ -26,7 +26,7 @@ Complaint: TypeAlias = tuple[str, tuple[str, ...]]  # the message, and the keys 
 
 
 class SignalSource(Record):
-    """Where the samples of a signal come from: a field of a topic, or a column of a file.
+    """The source of the samples of a signal: a field of a topic, or a column of a file.
 
     Attributes:
         signal: its name.
@@ -48,7 +48,7 @@ class SignalSource(Record):
 
 
 class EvidenceSettings(Record):
-    """What a project declares about logs.
+    """The settings of a project for logs.
 
     Attributes:
         logs: patterns of paths, relative to the project file.
@@ -80,7 +80,7 @@ def read_evidence(table: object) -> tuple[EvidenceSettings, list[Complaint]]:
         signals = None
     sources = []
     for name, source in (signals or {}).items():
-        wrong = [*_wrong(name, source)]
+        wrong = [*_mistakes(name, source)]
         complaints += [(message, ("signals", name, *below)) for message, below in wrong]
         if not wrong:
             unit = source.get("unit")
@@ -88,8 +88,8 @@ def read_evidence(table: object) -> tuple[EvidenceSettings, list[Complaint]]:
     return EvidenceSettings(tuple(logs or ()), store, tuple(sources)), complaints
 
 
-def _wrong(name: str, source: Any) -> Iterator[Complaint]:
-    """What is wrong with the source of a signal, and at which of its keys."""
+def _mistakes(name: str, source: Any) -> Iterator[Complaint]:
+    """The mistakes in the source of a signal, each with the key that has it."""
     key = f"evidence.signals.{name}"
     if not isinstance(source, dict):
         yield f'`{key}` must be a table such as {{ topic = "/battery_state", field = "percentage" }}', ()

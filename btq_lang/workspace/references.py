@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 class What(Enum):
-    """What a word may name, as far as its place determines it."""
+    """The kind of thing that a word may name, as far as its place determines it."""
 
     __hash__ = object.__hash__  # `Enum` computes it in Python
 
@@ -316,7 +316,7 @@ def _pair(
 
 
 def _content(key: str, node: syntax.Node) -> str | None:
-    """What the value of an attribute contains: of a port of a built-in node, or of an attribute that every node may
+    """The content of the value of an attribute: of a port of a built-in node, or of an attribute that every node may
     have."""
     attribute = RESERVED_ATTRIBUTES.get(key)
     if attribute is not None:

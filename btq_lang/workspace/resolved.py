@@ -150,19 +150,19 @@ class ResolvedNode:
 
     @property
     def shown_kind(self) -> str:
-        """As a message names it: its kind, or what is written in its place."""
+        """The node as a message names it: its kind, or the word in its place."""
         return f"`{self.node.head.text}`"
 
     @property
     def shown(self) -> str:
-        """As a message names it among others: its kind and its instance name, if it has one."""
+        """The node as a message names it among others: its kind, and its instance name if it has one."""
         return self.node.shown
 
     # ---- what it means ----
 
     @property
     def flow(self) -> Flow:
-        """What it does with its children; empty if nothing is known of that."""
+        """The flow of its children; empty if it is unknown."""
         return self.behavior.flow if self.behavior is not None else ""
 
     @property

@@ -51,7 +51,7 @@ class Use(Record):
 
 
 class Summary(Record):
-    """All that an item defines and refers to, in the order of the text."""
+    """The symbols and uses of an item, in the order of the text."""
 
     symbols: tuple[Symbol, ...]
     uses: tuple[Use, ...]
@@ -171,7 +171,7 @@ def _asked_by(requirement: syntax.Requirement) -> frozenset[str]:
 
 
 def _words_in(part: object) -> frozenset[str]:
-    """Each name, and of `a-b`, which may be meant as a subtraction, both sides too."""
+    """The names in a part; for `a-b`, which may be meant as a subtraction, both sides too."""
     words = [word for word in syntax.walk(part) if isinstance(word, syntax.Word)]
     names = [word.text for word in words if word.kind == NAME]
     return frozenset([*names, *(side for name in names if "-" in name for side in name.split("-"))])

@@ -49,7 +49,7 @@ class Workspace:
         self._closures: dict[str, tuple[str, ...]] = {}
 
     def __reduce__(self) -> tuple[object, ...]:
-        """How another process makes it again."""
+        """The arguments with which another process makes it again."""
         return Workspace, (self.files, self.project, self.factory)
 
     @classmethod
@@ -84,7 +84,7 @@ class Workspace:
 
     @cached_property
     def moved_nodes(self) -> Workspace:
-        """The same, with the nodes of Nav2 in the distribution that the project moves to."""
+        """As `moved`, with the nodes of Nav2 in the distribution that the project moves to."""
         target = FILES.get(self.project.moves_to or "")
 
         def those_of_target(paths: tuple[str, ...]) -> tuple[str, ...]:
@@ -154,7 +154,7 @@ class Workspace:
 
     @cached_property
     def xml(self) -> tuple[str, ...]:
-        """Those of them that are XML, which looks up in its pool what it lacks."""
+        """The files that are XML, which look up in their pool what they lack."""
         return tuple([path for path, file in self.foreign.items() if not file.is_cpp])
 
     # ---- includes and scopes ----
@@ -265,7 +265,7 @@ class Workspace:
         """The files of the project that define a name, to suggest where it could come from; this is known even if a
         file's tree was released."""
         foreign = [path for path in self._foreign_defining.get(name, ()) if self.files[path].defines(kind, name)]
-        own = [path for path in self._own if self.files[path].defines(kind, name)]
+        own = [path for path in self._own_files if self.files[path].defines(kind, name)]
         return (*own, *foreign)
 
     @cached_property
@@ -278,7 +278,7 @@ class Workspace:
         return paths_by_name
 
     @cached_property
-    def _own(self) -> tuple[str, ...]:
+    def _own_files(self) -> tuple[str, ...]:
         """The files in this language."""
         return tuple([path for path in self.files if path not in self.foreign])
 
@@ -301,8 +301,8 @@ class Workspace:
         return pooled[0] if agree and not _may_be_of_nav2(models[0], name) else None
 
     def pooled(self, path: str, kind: Kind, name: str) -> tuple[Definition, ...]:
-        """What an XML file may mean by a name outside its scope: a tree of its folder's XML, else of its project; the
-        project's models of a node.  A program may register all of these files, or only some."""
+        """The possible meanings of a name outside the scope of an XML file: a tree of its folder's XML, else of its
+        project; the project's models of a node.  A program may register all of these files, or only some."""
         anywhere = self.defined_anywhere(kind, name) if self.files[path].origin is not None else ()
         pool = self.project.pool_of(path) if anywhere else None  # most names that are looked up are nowhere
         if pool is None:
@@ -391,7 +391,7 @@ class Scope:
         return definitions[0] if definitions else None
 
     def target(self, kind: Kind, name: str) -> Target | None:
-        """What that definition defines."""
+        """The target of that definition."""
         definition = self.find(kind, name)
         return definition.symbol.target if definition is not None else None
 

@@ -1,4 +1,4 @@
-"""What a release of Nav2 changes for trees that were written for an earlier one: one row a change.
+"""The changes of Nav2's releases for trees that were written for an earlier one: one row a change.
 
 Nodes and ports that a release removes follow from the files of nodes beside this module; the rows here say what
 replaces them, and what a tree that still loads means from then on.  Determined in the sources of the branches and, for

@@ -1,4 +1,4 @@
-"""What Nav2's nodes do: its control nodes, its decorators, and the leaves that are not as other leaves are.
+"""The behavior of Nav2's nodes: its control nodes, its decorators, and the leaves that differ from others.
 
 One invariant: every row was read in the C++ code of the branches; where they differ there is a row for the older ones.
 Actions without a row run on a server; conditions without a row answer within the tick.  Which ports a node has is in

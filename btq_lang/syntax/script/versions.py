@@ -1,4 +1,4 @@
-"""What engines before 4.9 refuse, or read differently from 4.9 and later.
+"""Scripts that engines before 4.9 refuse, or read differently from 4.9 and later.
 
 One invariant: a script without problems here is read alike by all the given versions, and a fix adds brackets,
 blanks or `;` only, so that the newest engine reads the script as before.
