@@ -12,7 +12,12 @@ import os
 import sys
 from collections.abc import Callable, Sequence
 from io import BytesIO, TextIOWrapper
-from typing import Any
+from typing import TYPE_CHECKING, Any, NoReturn
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+
+    from btq_lang.projects.messages import CommandOutput
 
 CLEAN, FINDINGS, TROUBLE = 0, 1, 2
 _SYMBOLS_LIKE_OPTIONS = ("->",)
@@ -49,22 +54,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):  # a program that calls this may have put something else there
             stream.reconfigure(errors="readable")
-    given = list(sys.argv[1:] if arguments is None else arguments)
-    if given in (["--version"], ["-V"]):
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    if words in (["--version"], ["-V"]):
         from btq_lang.util.version import __version__
 
         print(f"btq {__version__}")
         return CLEAN
-    if given[:1] == ["check"] and not any(word.startswith("-") for word in given[1:]):
-        return _plain_check(given[1:])
-    if given[:1] == ["explain"]:  # `->` is a node, not an option
-        given[1:] = [f" {word}" if word in _SYMBOLS_LIKE_OPTIONS else word for word in given[1:]]
+    if words[:1] == ["check"] and not any(word.startswith("-") for word in words[1:]):
+        return _plain_check(words[1:])
+    if words[:1] == ["explain"]:  # `->` is a node, not an option
+        words[1:] = [f" {word}" if word in _SYMBOLS_LIKE_OPTIONS else word for word in words[1:]]
     # argparse would take the path in `--add-ignore FILE` as the reason, and change all files of the folder.
-    given = ["--add-ignore=" if word == "--add-ignore" else word for word in given]
+    words = ["--add-ignore=" if word == "--add-ignore" else word for word in words]
     from btq_lang.commands.arguments import build_parser
 
     parser = build_parser()
-    options, unknown = parser.parse_known_args(given)
+    options, unknown = parser.parse_known_args(words)
     try:
         name, command = options.command, options.parser
     except AttributeError:
@@ -77,12 +82,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         unknown = []
     if unknown:
         command.error(f"unrecognized arguments: {' '.join(unknown)}")
-    run = _command(name)
+    if name == "lsp":
+        return _serve(options)
+    run, record = _command(name)
     if getattr(options, "config", None) is not None:
-        from btq_lang.commands.configuring import configured
-
-        run = configured(run, options.config)
-    return _finish(name, run, options)
+        run = _configured(run, options.config)
+    return _finish(name, run, record(**{field: getattr(options, field) for field in record.__match_args__}))
 
 
 def _readable(error: UnicodeError) -> tuple[str, int]:
@@ -100,31 +105,51 @@ def _plain_check(paths: Sequence[str]) -> int:
 
     gc.freeze()
     gc.enable()
-    return _finish("check", run, CheckOptions(paths))
+    return _finish("check", run, CheckOptions(paths or (".",)))
 
 
-def _command(name: str) -> Callable[[Any], int]:
-    """The function that runs a command."""
-    if name == "lsp":
-        return _serve
+def _command(name: str) -> tuple[Callable[[Any, CommandOutput], int], Any]:
+    """The function that runs a command, and the record of its options, whose fields have argparse's names."""
     from importlib import import_module
 
-    run: Callable[[Any], int] = import_module(f"btq_lang.commands.{_MODULES.get(name, name)}").run
-    return run
+    module = import_module(f"btq_lang.commands.{_MODULES.get(name, name)}")
+    return module.run, getattr(module, module.run.__annotations__["options"])
 
 
-def _serve(options: Any) -> int:
+def _serve(options: Namespace) -> NoReturn:
     """`btq lsp`: the server, which `btq-lsp` starts too."""
+    from btq_lang.projects.options import ServerOptions
     from btq_lang.server import serve  # the protocol's types take longer to import than most commands to run
 
-    raise SystemExit(serve(options))  # standard output was the editor's and is closed: it must not be flushed
+    # Standard output was the editor's and is closed: it must not be flushed.
+    raise SystemExit(serve(ServerOptions(options.tcp, options.log)))
 
 
-def _finish(name: str, run: Callable[[Any], int], options: object) -> int:
+def _configured(run: Callable[[Any, CommandOutput], int], config: str) -> Callable[[Any, CommandOutput], int]:
+    """A function that runs a command with one project file for all files, not with the nearest one above each."""
+    from btq_lang.projects.options import refuse
+    from btq_lang.workspace.loader import absolute, find_project, read, use_project_file
+
+    def run_configured(options: Any, messages: CommandOutput) -> int:
+        text, problem = read(absolute(config))
+        if text is None:
+            refuse(f"--config {config}: {problem.message if problem else 'cannot be read'}")
+        use_project_file(absolute(config))
+        try:
+            refuse(*(f"--config {mistake}" for mistake in find_project(".").problems[:1]))
+            return run(options, messages)
+        finally:
+            use_project_file(None)
+
+    return run_configured
+
+
+def _finish(name: str, run: Callable[[Any, CommandOutput], int], options: object) -> int:
+    from btq_lang.commands.output import Terminal
     from btq_lang.projects.options import Refused
 
     try:
-        code = run(options)
+        code = run(options, Terminal())
         sys.stdout.flush()
     except Refused as refused:
         for reason in refused.args:

@@ -301,6 +301,8 @@ class Parser(ItemParser):
         fixes: tuple[Fix, ...] = ()
         if self.kind == STRING and self.is_doc_string():
             self.other_comment(self.here().start + 3)
+        elif self.is_after_dashes():
+            self.other_comment(self.here().start + 2)
         elif self.at_key() and self.raw == "main_tree_to_execute":
             span = Span(self.here().start, self.starts[self.index + 2])
             notes, fixes = ("`Root` names the main tree",), (replace_fix("Write `Root`", span, "Root "),)

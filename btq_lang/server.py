@@ -15,7 +15,7 @@ from collections.abc import Sequence
 
 from btq_lang.lsp import register
 from btq_lang.lsp.editor import NOT_JSON, RequestRefused, Server, Traced
-from btq_lang.projects.options import add_server_options
+from btq_lang.projects.options import ServerOptions, add_server_options
 from btq_lang.util.version import __version__
 
 
@@ -26,10 +26,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser("btq-lsp", description=_DESCRIPTION, formatter_class=formatter)
     add_server_options(parser)
     parser.add_argument("-V", "--version", action="version", version=f"btq-lsp {__version__}")
-    return serve(parser.parse_args(arguments))
+    options = parser.parse_args(arguments)
+    return serve(ServerOptions(options.tcp, options.log))
 
 
-def serve(options: argparse.Namespace) -> int:
+def serve(options: ServerOptions) -> int:
     """Serve with these options; returns the exit code."""
     logging.basicConfig(stream=sys.stderr, level=options.log.upper())
     sys.setrecursionlimit(10_000)  # trees are up to 256 levels deep, and their outline is converted recursively

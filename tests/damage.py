@@ -28,11 +28,11 @@ from check_asserts import assert_sound  # noqa: E402
 from feature_asserts import answer_everything  # noqa: E402
 from mission_strategies import made_up, missions, odd_missions  # noqa: E402
 
-from btq_lang.btcpp.bundle import bundle  # noqa: E402
 from btq_lang.btcpp.document import write  # noqa: E402
 from btq_lang.btcpp.enforcement import enforced  # noqa: E402
 from btq_lang.btcpp.export import export  # noqa: E402
 from btq_lang.btcpp.importing import import_xml  # noqa: E402
+from btq_lang.btcpp.outputs import bundle  # noqa: E402
 from btq_lang.btcpp.restoring import restored  # noqa: E402
 from btq_lang.btcpp.side_file import BuiltFile, side_file  # noqa: E402
 from btq_lang.checks import check  # noqa: E402

@@ -13,10 +13,9 @@ from btq_lang.btcpp.document import write
 from btq_lang.btcpp.outputs import as_xml
 from btq_lang.checks import findings
 from btq_lang.evidence.identity import Candidate
-from btq_lang.evidence.json_document import render
+from btq_lang.evidence.json_document import read_verdicts, render
 from btq_lang.evidence.judging import Means
 from btq_lang.evidence.verifying import verify
-from btq_lang.evidence.written_verdicts import read_verdicts
 from btq_lang.ide.verdicts import ProjectVerdicts, verdict_findings
 from btq_lang.util.text import LineIndex
 from btq_lang.workspace.workspace import Workspace

@@ -15,7 +15,7 @@ from btq_lang.catalog.nav2.changes import CHANGES, INSTEAD, RENAMED, RENAMED_POR
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS
 from btq_lang.catalog.versions import ANY, VERSION_3, VERSIONS, BehaviorChange, at_least
 from btq_lang.catalog.versions import CHANGES as VERSION_CHANGES
-from btq_lang.checks.moved_engine import is_between
+from btq_lang.checks.target_changes import is_between
 from btq_lang.commands.explain_nav2 import models_of
 
 

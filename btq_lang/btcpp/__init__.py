@@ -8,10 +8,10 @@ importing   a document as a mission; `wording` spells its words, `version3` tran
 export      a mission as a document; `source` is what its parts share, `trees`, `models`, `attributes`, `descriptions`
             and `spelling` the parts
 enforcement the nodes that requirements add, and how each clause is enforced; `enforceability`: whether it can be,
-            `guards` what that takes, `around` its elements, `conditions` its scripts, `keys` its names,
-            `wrappers` adds the elements and removes them
-bundle      a mission and all that it includes as one document
-outputs     the texts that a build writes; `as_built` finds the mission that such texts were made of
+            `guards` what that takes, `conditions` its scripts, `keys` its names, `wrappers` the elements, which it
+            adds and removes
+outputs     the texts that a build writes, also of a mission with all that it includes; `as_built` finds the mission
+            that such texts were made of
 opening     files from the disk, XML too, as a workspace
 side_file   what of a mission its XML cannot hold; `instances` numbers the nodes as the engine does, and
             `side_elements` finds what it says of each element

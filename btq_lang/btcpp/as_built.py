@@ -59,25 +59,25 @@ def as_built(path: str, source: Source, called: Callable[[str], str] = shown) ->
     side = side_path(path)
     if path == side or not path.endswith(".xml") or not source.is_file(side):
         return None
-    made = _made(path, source)
-    if made is None or made[-1] == path:
+    origin = _origin_of(path, source)
+    if origin is None or origin[-1] == path:
         return None
     target = f"{os.path.splitext(path)[0]}.btq"
-    known: dict[str, str] = {}
+    texts: dict[str, str] = {}
     sources: dict[str, str] = {}
     manual_edits: list[tuple[str, ManualEdit]] = []
-    waiting = [(made, path, target)]
-    for (mission, includes, said_in), xml, place in waiting:
+    waiting = [(origin, path, target)]
+    for (mission, includes, recorded_in), xml, place in waiting:
         folder = os.path.dirname(xml)
         manual_edits += ((xml, each) for each in mission.manual_edits)
         others = {absolute(os.path.join(folder, each)): text for each, text in mission.others}
-        known |= {place: mission.text, **others}
-        sources |= dict.fromkeys((place, *others), said_in)
+        texts |= {place: mission.text, **others}
+        sources |= dict.fromkeys((place, *others), recorded_in)
         for built, included in _missing(mission.text, includes, xml, place, source):
-            below = _made(built, source) if included not in known else None
+            below = _origin_of(built, source) if included not in texts else None
             if below is not None:
                 waiting.append((below, built, included))
-    workspace = source.workspace(target, known)
+    workspace = source.workspace(target, texts)
     if workspace is None:
         return None
     changed = {xml: File(xml, source.text(xml) or "") for xml, _ in manual_edits}
@@ -89,22 +89,22 @@ def as_built(path: str, source: Source, called: Callable[[str], str] = shown) ->
     )
 
 
-def _made(path: str, source: Source) -> tuple[Restored, tuple[str | None, ...], str] | None:
+def _origin_of(path: str, source: Source) -> tuple[Restored, tuple[str | None, ...], str] | None:
     """What an XML file was made of, the paths that it includes, and the file that says this: its side file or, if it
     needs none, the XML itself."""
     side = side_path(path)
     xml = source.text(path)
-    said = source.text(side) if source.is_file(side) else None
+    side_text = source.text(side) if source.is_file(side) else None
     if xml is None:
         return None
-    done = import_xml(xml, for_people=False)
-    if not done.is_complete:
+    imported = import_xml(xml, for_people=False)
+    if not imported.is_complete:
         return None
-    includes = tuple(_includes(done.text))
-    mission = restored(xml, done.text, said) if said is not None else None
+    includes = tuple(_includes(imported.text))
+    mission = restored(xml, imported.text, side_text) if side_text is not None else None
     if mission is not None:
         return mission, includes, side
-    return Restored(done.text if is_generated(xml) else xml, True, path), includes, path
+    return Restored(imported.text if is_generated(xml) else xml, True, path), includes, path
 
 
 def _missing(
@@ -115,11 +115,11 @@ def _missing(
     if len(includes) != len(of_xml):
         return
     project = find_project(place).project
-    for said, named in zip(includes, of_xml, strict=True):
-        if said is None or named is None:
+    for source_name, xml_name in zip(includes, of_xml, strict=True):
+        if source_name is None or xml_name is None:
             continue
-        places = include_candidates(project, place, said)
-        built = absolute(os.path.join(os.path.dirname(xml), named))
+        places = include_candidates(project, place, source_name)
+        built = absolute(os.path.join(os.path.dirname(xml), xml_name))
         if not any(map(source.is_file, places)) and source.is_file(built):
             yield built, places[0]
 

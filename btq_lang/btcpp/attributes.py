@@ -51,9 +51,9 @@ def _is_attribute_name(source: ExportSource, key: str) -> bool:
     if not colon:
         return is_xml_name(key)
     roots = (entry.item for entry in source.file.parsed.entries if isinstance(entry.item, Root))
-    said = {pair.key.text for root in roots for pair in root.attributes}
-    is_known = prefix in ("xml", "xmlns") or f"xmlns:{prefix}" in said
-    return is_known and is_xml_name(prefix) and is_xml_name(local)
+    declared = {pair.key.text for root in roots for pair in root.attributes}
+    is_declared = prefix in ("xml", "xmlns") or f"xmlns:{prefix}" in declared
+    return is_declared and is_xml_name(prefix) and is_xml_name(local)
 
 
 def _quantity(source: ExportSource, entry: Entry, key: str, value: Word, builtin: NodeKind | None) -> str:

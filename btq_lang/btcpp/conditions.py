@@ -55,8 +55,8 @@ def condition_script(condition: Condition, stored: Stored) -> str:
     if isinstance(condition, All | Any):
         operator = "&&" if isinstance(condition, All) else "||"
         script = condition_script(condition.conditions[0], stored)
-        for each in condition.conditions[1:]:
-            script = f"({script} {operator} {condition_script(each, stored)})"
+        for operand in condition.conditions[1:]:
+            script = f"({script} {operator} {condition_script(operand, stored)})"
             no_longer_than_allowed(script)  # nested contexts make scripts grow without bounds
         return script
     if isinstance(condition, Negation):
@@ -150,8 +150,8 @@ def _comparison(compare: Compare, stored: Stored) -> str:
         isinstance(operand, SignalRead | Quantity | ResolvedTable | Flag | TextValue) for operand in compare.operands
     )
     unit = signals[0].unit if plain and len(units) == 1 else None
-    written = [number_script(operand, unit, stored) for operand in compare.operands]
-    pairs = zip(compare.operators, written, written[1:], strict=False)
+    scripts = [number_script(operand, unit, stored) for operand in compare.operands]
+    pairs = zip(compare.operators, scripts, scripts[1:], strict=False)
     return all_of(f"({left} {operator} {right})" for operator, left, right in pairs)
 
 

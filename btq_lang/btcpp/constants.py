@@ -39,11 +39,11 @@ def fitting(types: tuple[str, ...], raw: str) -> str:
 
 def types_below(scope: Scope, target: str, tree: str, port: str) -> tuple[str, ...]:
     """The types as which a port is read in its tree or in those below; if there are none, the declared one."""
-    met = tuple(dict.fromkeys(meeting.type for meeting in meetings(scope, target, tree, port)))
-    found = scope.find(Kind.TREE, tree)
-    if met or found is None or not isinstance(found.symbol.target, Tree):
-        return met
-    declared = declared_type(found.symbol.target.ports, port)
+    types_met = tuple(dict.fromkeys(meeting.type for meeting in meetings(scope, target, tree, port)))
+    definition = scope.find(Kind.TREE, tree)
+    if types_met or definition is None or not isinstance(definition.symbol.target, Tree):
+        return types_met
+    declared = declared_type(definition.symbol.target.ports, port)
     return (declared,) if declared else ()
 
 

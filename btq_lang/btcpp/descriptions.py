@@ -42,23 +42,23 @@ def description(
     return marked_description(own, map(escape, lines)) if lines else None
 
 
-def said_elsewhere(source: ExportSource) -> Mapping[int, tuple[str, ...]]:
+def lines_from_elsewhere(source: ExportSource) -> Mapping[int, tuple[str, ...]]:
     """The lines that `apply` and claims with a subject of their own add to nodes, by `id(node)`."""
     files = [source.workspace.files[path] for path in source.scope.paths]
-    if not any(_speaks_of_nodes(entry.item) for file in files for entry in file.parsed.entries):
+    if not any(_concerns_nodes(entry.item) for file in files for entry in file.parsed.entries):
         return {}
     from btq_lang.requirements.resolve import requirements  # few missions need it, and it resolves all requirements
 
-    found: dict[int, tuple[str, ...]] = {}
+    lines_by_node: dict[int, tuple[str, ...]] = {}
     for applied in requirements(source.workspace, source.path).applied:
         node = applied.node
         if node is not None and applied.how != "satisfies":
-            line = _defined(source, applied.requirement.name, applied.given)
-            found[id(node.node)] = (*found.get(id(node.node), ()), line)
-    return found
+            line = _defined(source, applied.requirement.name, applied.argument_list)
+            lines_by_node[id(node.node)] = (*lines_by_node.get(id(node.node), ()), line)
+    return lines_by_node
 
 
-def _speaks_of_nodes(item: object) -> bool:
+def _concerns_nodes(item: object) -> bool:
     return isinstance(item, Apply) or names_subject(item)
 
 
@@ -75,9 +75,11 @@ def requirement_line(
     name = requirement.name.text if requirement.name is not None else ""
     name += arguments
     head = f"{name} ({path.names[-1].text})" if path is not None else name
-    said = [requirement.text.text] if requirement.text is not None else []
-    said += [_source_text(file, entry.start + clause.start, entry.start + clause.end) for clause in requirement.clauses]
-    return _on_one_line(f"{head}: {'; '.join(said)}" if said else head)
+    parts = [requirement.text.text] if requirement.text is not None else []
+    parts += [
+        _source_text(file, entry.start + clause.start, entry.start + clause.end) for clause in requirement.clauses
+    ]
+    return _on_one_line(f"{head}: {'; '.join(parts)}" if parts else head)
 
 
 def _lines(source: ExportSource, entry: Entry, clause: NodeClause) -> Iterator[str]:

@@ -95,8 +95,8 @@ class Element:
         if attribute.place is not None:
             return attribute.place
         if self._places is None:  # looked up on demand, for few are needed
-            found = attribute_matches(self.source, max(self.start, 0), self.end)
-            self._places = {match[1]: (match.start(1), match.start(3)) for match in found}
+            matches = attribute_matches(self.source, max(self.start, 0), self.end)
+            self._places = {match[1]: (match.start(1), match.start(3)) for match in matches}
         return self._places.get(attribute.name, _NOWHERE)
 
 
@@ -181,12 +181,12 @@ def write(document: Document) -> str:
 
 def _has_text(element: Element) -> bool:
     """Whether its contents go on one line: a text, perhaps with comments."""
-    found = False
+    has_text = False
     for child in element.children:
         if isinstance(child, Element):
             return False
-        found = found or isinstance(child, XmlText)
-    return found
+        has_text = has_text or isinstance(child, XmlText)
+    return has_text
 
 
 def _inline(content: Content) -> str:

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable, Container
 from typing import Final, Literal, TypeAlias
 
-from btq_lang.btcpp.around import may_be_skipped
 from btq_lang.btcpp.conditions import NoScript, first_value_script, signal_script
 from btq_lang.btcpp.guards import Guarded, NotEnforced
+from btq_lang.btcpp.wrappers import may_be_skipped
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.model import (
@@ -33,8 +33,8 @@ Way: TypeAlias = Literal["enforced", "monitored", "reviewed"]
 
 
 def unasked(requirement: ResolvedRequirement) -> tuple[Way, str] | None:
-    """How the clauses of a requirement are checked that the engine need not enforce, and why; None if it is to enforce
-    them."""
+    """The way in which the clauses of a requirement are checked instead of enforced, and why; None if the engine is to
+    enforce them."""
     if requirement.is_verified_by_people:
         return "reviewed", f"verified by {requirement.method}"
     return None if requirement.demands_enforcement else ("monitored", "")
@@ -49,7 +49,7 @@ class Elsewhere(NotEnforced):
 
 
 class UnknownMission(NotEnforced):
-    """It is not known which tree is the mission."""
+    """The tree that is the mission is unknown."""
 
 
 class Judge:
@@ -81,8 +81,8 @@ class Judge:
     def why_not(self, applied: Applied, claim: ResolvedClaim) -> str | None:
         """Why the engine does not enforce a clause that it should; None if it does, or if the mission's root is
         unknown, which is reported of the mission."""
-        if (known := unasked(applied.requirement)) is not None:
-            return known[1]
+        if (outcome := unasked(applied.requirement)) is not None:
+            return outcome[1]
         try:
             self.needs(applied.requirement, claim, self.node(applied, claim), "_", "@_")
         except UnknownMission:
@@ -124,23 +124,23 @@ class Judge:
         Raises:
             NotEnforced: the engine cannot do it.
         """
-        made = Guarded(requirement, claim, node, name, stop, self._is_shared)
+        guarded = Guarded(requirement, claim, node, name, stop, self._is_shared)
         if VERBS[claim.verb].limits and claim.limit is not None and not self._budgets.composed(node).waits:
             raise NotEnforced(f"{node.shown} completes within one tick")
-        for each in dict.fromkeys(each for each, _ in made.wrappers):
-            if self._files is not None and each.path not in self._files:
-                raise Elsewhere(each)
-            self._check_around(each)
+        for guarded_node in dict.fromkeys(guarded_node for guarded_node, _ in guarded.wrappers):
+            if self._files is not None and guarded_node.path not in self._files:
+                raise Elsewhere(guarded_node)
+            self._check_around(guarded_node)
         first: dict[str, str] = {}
-        for signal in made.signals:
+        for signal in guarded.signals:
             first |= _first_value(signal)
-        if (first or made.cells or made.stop) and not self._is_shared:
+        if (first or guarded.cells or guarded.stop) and not self._is_shared:
             mission = self._mission()
             if mission is None:
                 raise UnknownMission("the main tree is unknown; name it with a line `Root <tree>`")
-            if made.stop is not None:
+            if guarded.stop is not None:
                 self._check_around(mission)
-        return made, first
+        return guarded, first
 
     def _check_around(self, node: ResolvedNode) -> None:
         """Check that a wrapper around a node does not change the behavior of the tree.
@@ -152,7 +152,7 @@ class Judge:
             raise NotEnforced(
                 f"a node below {node.shown} may skip it, and with a guard around it the tree would behave differently"
             )
-        _can_stand_around(node)
+        _check_node(node)
 
 
 def where_else(node: ResolvedNode, *, is_xml: bool) -> str:
@@ -167,23 +167,25 @@ def _is_skipped(store: Store[Workspace], viewpoint: str, node: ResolvedNode) -> 
     return Budgets(store, viewpoint).composed(node).skip is not None
 
 
-def _can_stand_around(node: ResolvedNode) -> None:
-    """The same, as far as the node itself is concerned."""
+def _check_node(node: ResolvedNode) -> None:
+    """Check that the node itself allows a guard around it.
+
+    Raises:
+        NotEnforced: it does not.
+    """
     names = [pair.key.text for pair in node.node.attributes]
-    if may_be_skipped(names) and (said := next((name for name in names if name in _POSTCONDITIONS), None)):
-        raise NotEnforced(
-            f"{node.shown} may be skipped and has `{said}`, so with a guard around it the tree would behave differently"
-        )
+    if may_be_skipped(names) and (attribute := next((name for name in names if name in _POSTCONDITIONS), None)):
+        skipped = f"{node.shown} may be skipped and has `{attribute}`"
+        raise NotEnforced(f"{skipped}, so with a guard around it the tree would behave differently")
     if node.behavior is not None and node.behavior.memory:
         raise NotEnforced(f"a guard around {node.shown} would reset it, and it would forget what it waits for")
     # These nodes never reset their condition: when it is ticked again, an action repeats its result without evaluating
     # `_failureIf`.  A wrapper would reset it.
-    asks = node.parent if node.parent is not None and node.parent.flow == "choice" else None
-    is_asked_anew = node.category in _ASKED_ANEW and "_failureIf" not in names and "_successIf" not in names
-    if asks is not None and node.index == 0 and not is_asked_anew:
-        raise NotEnforced(
-            f"{node.shown} is the condition of {asks.shown}, which would evaluate it differently with a guard around it"
-        )
+    chooser = node.parent if node.parent is not None and node.parent.flow == "choice" else None
+    is_evaluated = node.category in _EVALUATED_AGAIN and "_failureIf" not in names and "_successIf" not in names
+    if chooser is not None and node.index == 0 and not is_evaluated:
+        condition = f"{node.shown} is the condition of {chooser.shown}"
+        raise NotEnforced(f"{condition}, which would evaluate it differently with a guard around it")
 
 
 def _first_value(signal: ResolvedSignal) -> dict[str, str]:
@@ -195,5 +197,5 @@ def _first_value(signal: ResolvedSignal) -> dict[str, str]:
         raise NotEnforced(str(reason)) from reason
 
 
-_ASKED_ANEW: Final = frozenset(("Condition", "Control", "Decorator"))
+_EVALUATED_AGAIN: Final = frozenset(("Condition", "Control", "Decorator"))
 _POSTCONDITIONS: Final = ("_onSuccess", "_onFailure", "_post")

@@ -17,7 +17,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import Final
 
-from btq_lang.btcpp.around import START, Wrapper, first_values, leaf
 from btq_lang.btcpp.conditions import all_of
 from btq_lang.btcpp.document import Document, Element, XmlComment
 from btq_lang.btcpp.enforceability import Elsewhere, Judge, Way, unasked, where_else
@@ -25,7 +24,7 @@ from btq_lang.btcpp.export import Export, is_mission
 from btq_lang.btcpp.guards import NotEnforced
 from btq_lang.btcpp.keys import Keys
 from btq_lang.btcpp.marks import GUARDS_NOTE
-from btq_lang.btcpp.wrappers import wrapped
+from btq_lang.btcpp.wrappers import START, Wrapper, first_values, leaf, wrapped
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Place
 from btq_lang.requirements.model import Applied, ResolvedClaim, ResolvedRequirement
@@ -73,21 +72,22 @@ class Enforcement(Record):
 
 
 def enforced(workspace: Workspace, path: str, export: Export, bundled: bool = False) -> Enforcement:
-    """Add to a file's export, which may have all that the file includes, in place what its requirements need."""
+    """Add what a file's requirements need to its export, in place.  The export may have all that the file includes."""
     if not _has_requirements(workspace, path):
         return Enforcement(export, ())
-    found = requirements(workspace, path)
+    resolved = requirements(workspace, path)
     files = _written(workspace, path, bundled)
-    plan, others = _plans(workspace, found, path, files)
+    plan, others = _plans(workspace, resolved, path, files)
     wrappers: dict[int, Sequence[Wrapper]] = {**plan.wrappers}
-    if found.mission is not None and _begins(workspace, found, path, files) and (start := _start([plan, *others])):
-        key = id(found.mission.node)
+    mission = resolved.mission
+    if mission is not None and _begins(workspace, resolved, path, files) and (start := _start([plan, *others])):
+        key = id(mission.node)
         wrappers[key] = (*start, *wrappers.get(key, ()))
     document = export.document
     if wrappers:
         _put(document, {id(export.elements[key]): each for key, each in wrappers.items()})
         document = Document([XmlComment(GUARDS_NOTE), *document.contents])
-    return Enforcement(replace(export, document=document), plan.clauses, found.about_no_node())
+    return Enforcement(replace(export, document=document), plan.clauses, resolved.about_no_node())
 
 
 def clause_enforcements(
@@ -100,8 +100,8 @@ def clause_enforcements(
     """
     if not _has_requirements(workspace, path):
         return ()
-    found = requirements(workspace, path)
-    return _plans(workspace, found, path, _written(workspace, path, bundled))[0].clauses
+    resolved = requirements(workspace, path)
+    return _plans(workspace, resolved, path, _written(workspace, path, bundled))[0].clauses
 
 
 def _has_requirements(workspace: Workspace, path: str) -> bool:
@@ -109,9 +109,9 @@ def _has_requirements(workspace: Workspace, path: str) -> bool:
     return any(True for _ in workspace.scope(path).names(Kind.REQUIREMENT))
 
 
-def _begins(workspace: Workspace, found: Requirements, path: str, files: frozenset[str]) -> bool:
+def _begins(workspace: Workspace, resolved: Requirements, path: str, files: frozenset[str]) -> bool:
     """Whether the mission begins in one of these files."""
-    return found.mission is not None and found.mission.path in files and path not in workspace.included_files
+    return resolved.mission is not None and resolved.mission.path in files and path not in workspace.included_files
 
 
 def _written(workspace: Workspace, path: str, bundled: bool) -> frozenset[str]:
@@ -123,7 +123,7 @@ def _written(workspace: Workspace, path: str, bundled: bool) -> frozenset[str]:
 
 
 def _plans(
-    workspace: Workspace, found: Requirements, path: str, files: frozenset[str]
+    workspace: Workspace, resolved: Requirements, path: str, files: frozenset[str]
 ) -> tuple[_Plan, tuple[_Plan, ...]]:
     """The plans for a file, and for the files that it includes and that are built too."""
     others = tuple(
@@ -131,7 +131,7 @@ def _plans(
         for each in workspace.closure(path)
         if each not in files and is_mission(workspace, each)
     )
-    return _Plan(workspace, found, path, files, others).whole(), others
+    return _Plan(workspace, resolved, path, files, others).whole(), others
 
 
 class _Plan:
@@ -146,7 +146,7 @@ class _Plan:
     """
 
     def __init__(
-        self, workspace: Workspace, found: Requirements, path: str, files: frozenset[str], others: Sequence[_Plan]
+        self, workspace: Workspace, resolved: Requirements, path: str, files: frozenset[str], others: Sequence[_Plan]
     ) -> None:
         self.wrappers: Final[dict[int, list[Wrapper]]] = {}
         self.enforced: Final[dict[object, ClauseEnforcement]] = {}
@@ -154,50 +154,51 @@ class _Plan:
         self.first: Final[dict[str, str]] = {}
         self.stops: Final[dict[str, None]] = {}
         self._workspace: Final = workspace
-        self._found: Final = found
+        self._requirements: Final = resolved
         self._path: Final = path
         self._files: Final = files
         self._others: Final = others
         self._keys: Final = Keys()
         is_shared = path in workspace.included_files
-        mission = found.mission if _begins(workspace, found, path, files) else None
-        self._judge: Final = Judge(found.store, found.viewpoint, lambda: mission, files=files, is_shared=is_shared)
+        mission = resolved.mission if _begins(workspace, resolved, path, files) else None
+        store, viewpoint = resolved.store, resolved.viewpoint
+        self._judge: Final = Judge(store, viewpoint, lambda: mission, files=files, is_shared=is_shared)
         self.clauses: tuple[tuple[ClauseEnforcement, ...], ...] = ()
 
     def whole(self) -> _Plan:
         """The plan with all clauses in it."""
         self.clauses = tuple(
             tuple([self.enforce(applied, claim) for claim in applied.requirement.claims])
-            for applied in self._found.applied
+            for applied in self._requirements.applied
         )
         return self
 
     def enforce(self, applied: Applied, claim: ResolvedClaim) -> ClauseEnforcement:
         """How a clause is enforced; records the wrappers it needs."""
         requirement = applied.requirement
-        known_way = unasked(requirement)
+        unenforced = unasked(requirement)
         monitored = ClauseEnforcement(
             requirement.name,
             claim.text,
             claim.place,
             applied.node,
-            *(known_way or ("monitored", "")),
-            asked=known_way is None,
+            *(unenforced or ("monitored", "")),
+            asked=unenforced is None,
             subject=applied.shown,
         )
-        if known_way is not None:
+        if unenforced is not None:
             return monitored
         try:
             node = self._judge.node(applied, claim)
             identity = (requirement.name, claim.text, id(node.node), applied.arguments)
-            known = self.enforced.get(identity)
-            if known is None and node.path not in self._files:
-                known = next((each for other in self._others if (each := other.enforced.get(identity))), None)
-                if known is None:
+            enforcement = self.enforced.get(identity)
+            if enforcement is None and node.path not in self._files:
+                enforcement = next((each for other in self._others if (each := other.enforced.get(identity))), None)
+                if enforcement is None:
                     raise Elsewhere(node)
-            if known is None:
-                known = replace(monitored, way="enforced", why=self._guard(requirement, claim, node))
-                self.enforced[identity] = known
+            if enforcement is None:
+                enforcement = replace(monitored, way="enforced", why=self._guard(requirement, claim, node))
+                self.enforced[identity] = enforcement
         except Elsewhere as elsewhere:
             bundled = self._bundled.enforce(applied, claim)
             is_helped = bundled.way == "enforced"
@@ -205,13 +206,13 @@ class _Plan:
             return replace(monitored, why=where_else(elsewhere.node, is_xml=is_xml) if is_helped else bundled.why)
         except NotEnforced as reason:
             return replace(monitored, why=str(reason))
-        return known
+        return enforcement
 
     @cached_property
     def _bundled(self) -> _Plan:
         """The plan for a bundle: if a bundle could not enforce a clause either, its file is not the reason."""
         files = _written(self._workspace, self._path, True)
-        return _Plan(self._workspace, self._found, self._path, files, ())
+        return _Plan(self._workspace, self._requirements, self._path, files, ())
 
     def _guard(self, requirement: ResolvedRequirement, claim: ResolvedClaim, node: ResolvedNode) -> str:
         """Record what a clause needs, and return the note on it.
@@ -220,18 +221,18 @@ class _Plan:
             NotEnforced: the engine cannot do it.
         """
         name = self._keys.next(requirement.name)
-        made, first = self._judge.needs(requirement, claim, node, name, self._keys.stop(requirement.name))
+        guarded, first = self._judge.needs(requirement, claim, node, name, self._keys.stop(requirement.name))
         self._keys.take(name)
-        self.cells.update(made.cells)
+        self.cells.update(guarded.cells)
         self.first.update(first)
-        if made.stop is not None:
-            self.stops[made.stop] = None
-        for each, wrapper in made.wrappers:
-            self.wrappers.setdefault(id(each.node), []).append(wrapper)
-        notes = [*made.notes]
-        if unset := [*(signal.name for signal in made.signals if signal.initially is None), *made.entries]:
+        if guarded.stop is not None:
+            self.stops[guarded.stop] = None
+        for guarded_node, wrapper in guarded.wrappers:
+            self.wrappers.setdefault(id(guarded_node.node), []).append(wrapper)
+        notes = [*guarded.notes]
+        if unset := [*(signal.name for signal in guarded.signals if signal.initially is None), *guarded.entries]:
             notes.append(f"the mission ends if a guard reads {_listed(unset)} before anything writes it")
-        if aging := [signal.name for signal in made.signals if signal.fresh is not None]:
+        if aging := [signal.name for signal in guarded.signals if signal.fresh is not None]:
             notes.append(f"guards read the latest value of {_listed(aging)}, whatever its age")
         return "; ".join(notes)
 
@@ -262,8 +263,8 @@ def _start(plans: Iterable[_Plan]) -> tuple[Wrapper, ...]:
     code = all_of(f"({key} == false)" for key in stops)
     # The flags are set outside the reactive node, which would reset them at every tick; the condition after it catches
     # violations in the tree's last tick.
-    behind = (leaf("ScriptCondition", _ALL, "btq_end", code),)
-    init = Wrapper(START, _ALL, "Sequence", "btq_init", before=tuple(before), behind=behind)
+    after = (leaf("ScriptCondition", _ALL, "btq_end", code),)
+    init = Wrapper(START, _ALL, "Sequence", "btq_init", before=tuple(before), after=after)
     guard = (leaf("ScriptCondition", _ALL, "btq_go_on", code),)
     return init, Wrapper(START, _ALL, "ReactiveSequence", "btq_stop", before=guard)
 

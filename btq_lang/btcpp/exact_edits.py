@@ -29,14 +29,14 @@ def exact_edits(file: File, edit: Edit) -> tuple[Edit, ...] | None:
     if file.places is None or not file.is_understood or is_generated(file.source):
         return None
     xml, replaced = file.source, edit.span
-    said = file.text[replaced.start : replaced.end]
-    is_string = len(said) > 2 and said[0] == said[-1] == '"'
+    word = file.text[replaced.start : replaced.end]
+    is_string = len(word) > 2 and word[0] == word[-1] == '"'
     if is_string:  # by a word without quotes, which XML spells as it is
         replaced = Span(replaced.start + 1, replaced.end - 1)
     for start, end, begin, stop in file.places.containing(replaced):
         old = file.text[start:end]
-        if is_string and old == said and xml[begin - 1 : stop] == f"<{said[1:-1]}":  # in quotes here alone
-            ends = [Span(begin, stop), *closing_name(xml, begin, said[1:-1])] if _is_tag(edit.text, edit.text) else []
+        if is_string and old == word and xml[begin - 1 : stop] == f"<{word[1:-1]}":  # in quotes here alone
+            ends = [Span(begin, stop), *closing_name(xml, begin, word[1:-1])] if _is_tag(edit.text, edit.text) else []
             return tuple(Edit(span, edit.text) for span in ends) or None
         if replaced.start < replaced.end and old == xml[begin:stop]:
             new = file.text[start : replaced.start] + edit.text + file.text[replaced.end : end]

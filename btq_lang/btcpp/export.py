@@ -95,7 +95,7 @@ def xml_name(path: str) -> str:
 def _document(source: ExportSource, trees: Trees, included_as: IncludedAs, guessed: dict[str, str]) -> Document:
     entries = source.file.parsed.entries
     before: list[Content] = []
-    behind: list[Content] = []
+    after: list[Content] = []
     root = Element("root")
     contents = root.children
     end_of_block: list[Content] = []  # comments at the end of the Root's block
@@ -133,9 +133,9 @@ def _document(source: ExportSource, trees: Trees, included_as: IncludedAs, guess
     contents += end_of_block
     end = source.written(source.comments.get(len(source.file.text), NO_COMMENTS).before)
     has_block = any(entry.in_root for entry in entries)
-    (behind if has_block else contents).extend(end)
+    (after if has_block else contents).extend(end)
     root.attributes = tuple(_root_attributes(source, head))
-    return Document([*before, root, *behind])
+    return Document([*before, root, *after])
 
 
 def _models(
@@ -154,8 +154,8 @@ def _models(
         source.put(contents, element, around)
     element.children.extend(source.written(around.first, beside=True))
     for part in item.models:
-        made = source.raw(entry, part) if isinstance(part, Verbatim) else model_element(source, entry, part)
-        source.put(element.children, made, source.around(entry, part))
+        part_element = source.raw(entry, part) if isinstance(part, Verbatim) else model_element(source, entry, part)
+        source.put(element.children, part_element, source.around(entry, part))
     element.children.extend(source.written(around.last))
 
 
@@ -185,13 +185,13 @@ def _root_attributes(source: ExportSource, head: Entry | None) -> list[Attribute
         attributes = only_first(attributes + attributes_of(source, head, root.attributes))
     if source.verbatim:
         return attributes
-    given = {attribute.name for attribute in attributes}
-    if "BTCPP_format" not in given:
+    names = {attribute.name for attribute in attributes}
+    if "BTCPP_format" not in names:
         if root is not None and head is not None:
             source.repair(head, root, 'BTCPP_format="4" is added to the root')
         attributes.insert(0, _FORMAT)
     main = _main_tree(source)
-    if "main_tree_to_execute" not in given and main is not None:
+    if "main_tree_to_execute" not in names and main is not None:
         attributes.append(Attribute("main_tree_to_execute", escape(source.tree_id(main.symbol.name))))
     return attributes
 

@@ -29,11 +29,11 @@ def without_generated(document: Document, changes: list[VersionNote]) -> int:
     holding = holding_nodes(document.root)
     while stack:
         element = stack.pop()
-        _take_out(element, holding, enforcing)
+        _remove_guards(element, holding, enforcing)
         stack += element.elements
         for index, attribute in enumerate(element.attributes):
             if attribute.name == "_description" and DESCRIPTION_MARK in attribute.raw:
-                described += _cut(element, index)
+                described += _cut_description(element, index)
                 break
     parts: list[str] = []
     if enforcing:
@@ -46,9 +46,9 @@ def without_generated(document: Document, changes: list[VersionNote]) -> int:
     return len(described)
 
 
-def _take_out(parent: Element, holding: set[Element], found: list[Span]) -> None:
+def _remove_guards(parent: Element, holding: set[Element], spans: list[Span]) -> None:
     """Remove the nodes that enforce requirements from an element's children; keep the mission's own nodes in them."""
-    kept: list[Content] = []
+    remaining: list[Content] = []
     waiting = parent.children[::-1]
     while waiting:
         child = waiting.pop()
@@ -58,23 +58,23 @@ def _take_out(parent: Element, holding: set[Element], found: list[Span]) -> None
             if inside is None:  # it was edited, so it belongs to the user now
                 child.attributes = tuple(each for each in child.attributes if each.name not in (MARK, MOVED))
             else:
-                found.append(child.tag_span)
+                spans.append(child.tag_span)
                 waiting += reversed(inside)
         if inside is None:
-            kept.append(child)
-    parent.children[:] = kept
+            remaining.append(child)
+    parent.children[:] = remaining
 
 
-def _cut(element: Element, index: int) -> tuple[Span, ...]:
+def _cut_description(element: Element, index: int) -> tuple[Span, ...]:
     """Keep the user's part of a `_description`; return where more was cut."""
-    attribute, kept = element.attributes[index], [*element.attributes]
+    attribute, remaining = element.attributes[index], [*element.attributes]
     start, value_start = element.place(attribute)
     own = own_description(attribute.raw)
     if own == attribute.raw:
         return ()
     if own is None:
-        del kept[index]
+        del remaining[index]
     else:
-        kept[index] = Attribute(attribute.name, own, (start, value_start))
-    element.attributes = tuple(kept)
+        remaining[index] = Attribute(attribute.name, own, (start, value_start))
+    element.attributes = tuple(remaining)
     return (Span(start, value_start + len(attribute.raw) + 1),)

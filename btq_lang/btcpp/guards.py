@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from btq_lang.btcpp.around import CHECK, CONDITION, GUARD, INSIDE, LIMIT, VALUES, LeafTag, Wrapper, WrapperTag, leaf
 from btq_lang.btcpp.conditions import (
     NoScript,
     all_of,
@@ -22,6 +21,7 @@ from btq_lang.btcpp.conditions import (
 )
 from btq_lang.btcpp.document import Element
 from btq_lang.btcpp.keys import legal
+from btq_lang.btcpp.wrappers import CHECK, CONDITION, GUARD, INSIDE, LIMIT, VALUES, LeafTag, Wrapper, WrapperTag, leaf
 from btq_lang.catalog.units import Unit
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements.classic import entries_in
@@ -116,11 +116,11 @@ class Guarded:
         *,
         attributes: tuple[tuple[str, str], ...] = (),
         before: tuple[Element, ...] = (),
-        behind: tuple[Element, ...] = (),
+        after: tuple[Element, ...] = (),
         node: ResolvedNode | None = None,
     ) -> None:
         """Add a wrapper around the clause's node, or around another one."""
-        wrapper = Wrapper(rank, self.requirement.name, tag, f"{self.name}_{what}", attributes, before, behind)
+        wrapper = Wrapper(rank, self.requirement.name, tag, f"{self.name}_{what}", attributes, before, after)
         self.wrappers.append((node or self.node, wrapper))
 
     def leaf(self, tag: LeafTag, what: str, code: str, failed: str | None = None) -> Element:
@@ -222,10 +222,10 @@ def _limit(draft: Guarded, bound: Limit, when: str | None) -> None:
         draft.around(LIMIT, "Timeout", "limit", attributes=attributes)
         return
     # A Timeout fails also if its child fails in time: only a node that is not done by then was late.
-    done = draft.at_start("done", "false")
-    late = f"{draft.stop} := ({draft.stop} || (!{done}))"
+    completed = draft.at_start("done", "false")
+    late = f"{draft.stop} := ({draft.stop} || (!{completed}))"
     draft.around(LIMIT, "Timeout", "limit", attributes=(*attributes, ("_onFailure", late)))
-    draft.around(LIMIT, "Sequence", "done", attributes=(("_post", f"{done} := true"),))
+    draft.around(LIMIT, "Sequence", "done", attributes=(("_post", f"{completed} := true"),))
 
 
 def _milliseconds(value: Bounded) -> str:
@@ -259,7 +259,7 @@ def _leaves(draft: Guarded) -> None:
     code = draft.script(_condition(draft))
     if (when := draft.when()) is not None:
         code = f"((!{when}) || {code})"
-    draft.around(CHECK, "Sequence", "leaves", behind=(draft.condition("check", code),))
+    draft.around(CHECK, "Sequence", "leaves", after=(draft.condition("check", code),))
 
 
 def _uses(draft: Guarded) -> None:
@@ -276,7 +276,7 @@ def _uses(draft: Guarded) -> None:
     code = f"({used} {bound.relation} {number_script(bound.value, unit, draft.stored)})"
     if (when := draft.when()) is not None:
         code = f"((!{when}) || {code})"
-    draft.around(CHECK, "Sequence", "used", behind=(draft.condition("check", code),))
+    draft.around(CHECK, "Sequence", "used", after=(draft.condition("check", code),))
     draft.around(GUARD, "ReactiveSequence", "uses", before=(draft.condition("guard", code),))
 
 
@@ -295,8 +295,8 @@ def _tries(draft: Guarded) -> None:
     counter = draft.leaf("Script", "counter", f"{count} := ({count} + 1.0)")
     draft.around(INSIDE, "Sequence", "counted", before=(counter,))
     if holder is not None:
-        back = draft.leaf("Script", "zero", f"{count} := {real(0.0)}")
-        draft.around(INSIDE, "Sequence", "per", before=(back,), node=holder)
+        reset = draft.leaf("Script", "zero", f"{count} := {real(0.0)}")
+        draft.around(INSIDE, "Sequence", "per", before=(reset,), node=holder)
 
 
 def _follows(draft: Guarded) -> None:
@@ -306,18 +306,18 @@ def _follows(draft: Guarded) -> None:
     assert event is not None, "the clause names one"
     subject = event.subject
     is_start = isinstance(subject, MissionRun) and event.happening == "starts"
-    if not is_start and (not isinstance(subject, NodeTarget) or event.happening not in _SEEN):
+    if not is_start and (not isinstance(subject, NodeTarget) or event.happening not in _RECORDED_BY):
         raise NotEnforced("the engine runs no script at this event")
     if isinstance(subject, NodeTarget) and subject.through:
         raise NotEnforced("its event names only some instances of a node")
-    seen = draft.cell("seen", "true" if is_start else "false")
-    draft.around(CONDITION, "Sequence", "follows", before=(draft.condition("check", f"({seen} == true)"),))
-    taken = draft.leaf("Script", "taken", f"{seen} := false")
-    draft.around(INSIDE, "Sequence", "started", before=(taken,))
+    flag = draft.cell("seen", "true" if is_start else "false")
+    draft.around(CONDITION, "Sequence", "follows", before=(draft.condition("check", f"({flag} == true)"),))
+    reset = draft.leaf("Script", "taken", f"{flag} := false")
+    draft.around(INSIDE, "Sequence", "started", before=(reset,))
     if not isinstance(subject, NodeTarget):
         return
-    attribute = _SEEN[event.happening]
-    note = f"{seen} := true"
+    attribute = _RECORDED_BY[event.happening]
+    note = f"{flag} := true"
     if attribute is None:
         draft.around(INSIDE, "Sequence", "event", before=(draft.leaf("Script", "seen", note),), node=subject.node)
     else:
@@ -343,14 +343,14 @@ def _condition(draft: Guarded) -> Condition:
 
 def _is_above(node: ResolvedNode, below: ResolvedNode) -> bool:
     """Whether a node is above another one in its tree."""
-    at = below.parent
-    while at is not None and at is not node:
-        at = at.parent
-    return at is node
+    ancestor = below.parent
+    while ancestor is not None and ancestor is not node:
+        ancestor = ancestor.parent
+    return ancestor is node
 
 
 # The attribute of the node that records an event; None: a Script before it.
-_SEEN: Final[dict[str, str | None]] = {
+_RECORDED_BY: Final[dict[str, str | None]] = {
     "starts": None,
     "succeeds": "_onSuccess",
     "fails": "_onFailure",

@@ -15,8 +15,7 @@ from typing import Final, TypeAlias
 from btq_lang.btcpp.document import Attribute, Content, Document, Element, XmlComment, XmlText
 from btq_lang.btcpp.generated import may_be_generated, without_generated
 from btq_lang.btcpp.reader import read
-from btq_lang.btcpp.signs import signs
-from btq_lang.btcpp.version3 import VersionNote, translated
+from btq_lang.btcpp.version3 import VersionNote, signs, translated
 from btq_lang.btcpp.wording import comment, is_kept, kind, name, pair, spelt_parts, string, string_of, type_, value
 from btq_lang.catalog.nodes import PLACEHOLDERS
 from btq_lang.catalog.versions import is_before_4
@@ -99,26 +98,26 @@ def import_xml(
         engines: the versions of the engine that the XML is written for (`written_for`); None: as it says itself.
     """
     with NotCollecting():
-        done = read(text)
-        if done.document is None:
-            return Imported("", (), done.problems, OriginMap())
-        root = done.document.root
+        xml_read = read(text)
+        if xml_read.document is None:
+            return Imported("", (), xml_read.problems, OriginMap())
+        root = xml_read.document.root
         if root.tag != "root":
             note = 'put the tree into <root BTCPP_format="4"><BehaviorTree ID="…"> … </BehaviorTree></root>'
             if root.tag.casefold() == "root":
                 note = "the engine distinguishes capital letters: write <root> and </root>"
             message = f"the document element is <{root.tag}>, not <root>"
             problem = Diagnostic("xml-root", root.tag_span, message, notes=(note,))
-            return Imported("", (), (*done.problems, problem), OriginMap())
+            return Imported("", (), (*xml_read.problems, problem), OriginMap())
         writer = _Writer(text, for_people, included_as or (lambda path: path))
-        described = without_generated(done.document, writer.changes) if may_be_generated(text) else 0
+        described = without_generated(xml_read.document, writer.changes) if may_be_generated(text) else 0
         of_root = signs(root)
         engines = written_for(Project(), None, of_root) if engines is None else engines
         if not keep_v3 and engines and is_before_4(engines[-1]):
             translated(root, writer.changes)
-        writer.document(done.document)
+        writer.document(xml_read.document)
         changes = tuple(sorted(writer.changes, key=lambda change: change.span))
-        problems = (*done.problems, *writer.ignored)
+        problems = (*xml_read.problems, *writer.ignored)
         places = OriginMap() if writer.marks is None else OriginMap(writer.marks, writer.out, located)
         return Imported("".join(writer.out), changes, problems, places, described, frozenset(_defined(root)), of_root)
 
@@ -149,15 +148,15 @@ class _Writer:
     def document(self, document: Document) -> None:
         """Write the comments before the root, the root, its items, and the comments after it."""
         contents = document.contents
-        at = contents.index(document.root)
-        for content in contents[:at]:
+        root_index = contents.index(document.root)
+        for content in contents[:root_index]:
             self.comment_line(content, 0)
-        if at and self.symbols:  # for checks, a comment above the root silences rules on it
+        if root_index and self.symbols:  # for checks, a comment above the root silences rules on it
             self.out.append("\n")
-        behind = contents[at + 1 :]
-        level = 1 if behind else 0
+        following = contents[root_index + 1 :]
+        level = 1 if following else 0
         self.root(document.root, level)
-        for content in behind:
+        for content in following:
             self.comment_line(content, 0)
 
     def root(self, root: Element, level: int) -> None:
@@ -207,8 +206,8 @@ class _Writer:
                 start = element.place(path)[1]
                 span = Span(start, start + len(path.raw))
                 self.changes.append(VersionNote(span, f"includes `{named}`"))
-            said = string_of(named) if named != path.value else string(path.raw)
-            self.line(level, element, [tag, (said, path)], others)
+            word = string_of(named) if named != path.value else string(path.raw)
+            self.line(level, element, [tag, (word, path)], others)
         elif element.tag == "TreeNodesModel" and first is None:
             self.line(level, element, [tag])
             self.models(element, level + 1)
@@ -218,10 +217,10 @@ class _Writer:
 
     def prefixed(self, element: Element) -> None:
         """Report `<x:BehaviorTree>`, which has another meaning for tools that know namespaces."""
-        meant = element.tag.rpartition(":")[2]
-        if meant == element.tag or meant not in ("BehaviorTree", "include", "TreeNodesModel"):
+        local_name = element.tag.rpartition(":")[2]
+        if local_name == element.tag or local_name not in ("BehaviorTree", "include", "TreeNodesModel"):
             return
-        message = f"the engine ignores <{element.tag}>, because it does not support namespaces; write <{meant}>"
+        message = f"the engine ignores <{element.tag}>, because it does not support namespaces; write <{local_name}>"
         self.ignored.append(Diagnostic("xml-ignored", element.tag_span, message))
 
     def first(self, element: Element, key: str) -> Attribute | None:
@@ -241,7 +240,7 @@ class _Writer:
 
     def nodes(self, parent: Element, level: int) -> None:
         """Write all nodes below an element, with the comments between them; not recursively, for trees are deep."""
-        known, marks, out = self.node_lines, self.marks, self.out
+        node_lines, marks, out = self.node_lines, self.marks, self.out
         stack = [iter(parent.children)]
         above: Element | None = parent  # the element of the previous line
         while stack:
@@ -250,10 +249,10 @@ class _Writer:
             for child in stack[-1]:
                 if isinstance(child, Element):
                     key = child.tag, child.attributes
-                    said = known.get(key)
-                    if said is None:
-                        said = known[key] = self.node(child)
-                    line, head, attributes, pairs = said
+                    node_line = node_lines.get(key)
+                    if node_line is None:
+                        node_line = node_lines[key] = self.node(child)
+                    line, head, attributes, pairs = node_line
                     if 0 < len(line) <= room:
                         if marks is not None:
                             marks.append((len(out), len(indent), child, head, pairs, attributes, " "))
@@ -266,8 +265,8 @@ class _Writer:
                         level += 1
                         break
                 elif isinstance(child, XmlComment):
-                    if child.beside and above is not None and "\n" not in child.text and _may_stand_behind(above):
-                        self.comment_behind(child)
+                    if child.beside and above is not None and "\n" not in child.text and _may_follow(above):
+                        self.comment_after(child)
                     else:
                         self.comment_line(child, level)
                     above = None
@@ -351,10 +350,10 @@ class _Writer:
         head: list[Piece] = [(_DIRECTIONS[element.tag], None)]
         index = 0
         for key, sign, spelt in (("name", "", str), ("type", ":", type_), ("default", "=", value)):
-            each = attributes[index] if index < len(attributes) else None
-            if each is not None and each.name == key and (sign or is_name(each.raw)):
+            attribute = attributes[index] if index < len(attributes) else None
+            if attribute is not None and attribute.name == key and (sign or is_name(attribute.raw)):
                 head += [(sign, None)] if sign else []
-                head.append((spelt(each.raw), each))
+                head.append((spelt(attribute.raw), attribute))
                 index += 1
         text = "".join(part.text for part in element.children if isinstance(part, XmlText)) or None
         self.line(level, element, head, attributes[index:], text)
@@ -379,56 +378,56 @@ class _Writer:
         out = indent + head[0][0]
         for word, _ in head[1:]:
             out += f" {word}"
-        behind = "" if text is None else f" {string_of(text)}"
+        suffix = "" if text is None else f" {string_of(text)}"
         pairs: list[str] = []
         between = " "
         if attributes:
             pairs = [pair(each.name, each.raw) for each in attributes]
             group = " ".join(pairs)
-            line = f"{out} ({group}){behind}\n"
+            line = f"{out} ({group}){suffix}\n"
             if len(line) > self.columns or line.count("\n") > 1:  # it may be too long
                 columns = self.columns
                 column = len(out) - out.rfind("\n") if "\n" in out else len(out) + 1
-                if not _fits(f"({group}){behind}", column, columns) and (
-                    not behind or not _fits(f"({group})", column, columns) or _fits(f"){behind}", len(indent), columns)
+                if not _fits(f"({group}){suffix}", column, columns) and (
+                    not suffix or not _fits(f"({group})", column, columns) or _fits(f"){suffix}", len(indent), columns)
                 ):
                     between = f"\n{indent}{_INDENT}"
-                    line = f"{out} ({between}{between.join(pairs)}\n{indent}){behind}\n"
+                    line = f"{out} ({between}{between.join(pairs)}\n{indent}){suffix}\n"
             if self.has_returns and element is not None:
                 self.lost_returns(element, attributes)
         elif attributes is not None and head[0][0] == "Root":
             line = f"{out} ()\n"
         else:
-            line = f"{out}{behind}\n"
+            line = f"{out}{suffix}\n"
         if self.marks is not None:
             self.marks.append((len(self.out), len(indent), element, head, pairs, attributes, between))
         self.out.append(line)
 
     def verbatim(self, element: Element, level: int) -> None:
         """Write xml STRING: the element as it is spelt in the XML."""
-        said = self.source[element.start : element.close]
+        spelling = self.source[element.start : element.close]
         origins = (element.start, element.end), (element.end, element.close)
-        self.line(level, None, [("xml", origins[0]), (string_of(said), origins[1])])
+        self.line(level, None, [("xml", origins[0]), (string_of(spelling), origins[1])])
 
     def comment_line(self, content: Content, level: int) -> None:
         """Write a comment on a line of its own."""
         if isinstance(content, XmlComment):
-            said = comment(content.text)
-            self.place_comment(content, said, len(self.out), len(_INDENT) * level)
-            self.out.append(f"{_INDENT * level}{said}\n")
+            shown = comment(content.text)
+            self.place_comment(content, shown, len(self.out), len(_INDENT) * level)
+            self.out.append(f"{_INDENT * level}{shown}\n")
 
-    def comment_behind(self, content: XmlComment) -> None:
+    def comment_after(self, content: XmlComment) -> None:
         """Write a comment at the end of the previous line."""
-        above, said = self.out[-1][:-1], comment(content.text)
-        self.place_comment(content, said, len(self.out) - 1, len(above) + 2)
-        self.out[-1] = f"{above}  {said}\n"
+        above, shown = self.out[-1][:-1], comment(content.text)
+        self.place_comment(content, shown, len(self.out) - 1, len(above) + 2)
+        self.out[-1] = f"{above}  {shown}\n"
 
-    def place_comment(self, content: XmlComment, said: str, line: int, column: int) -> None:
+    def place_comment(self, content: XmlComment, shown: str, line: int, column: int) -> None:
         if self.marks is None and "*/" not in content.text:
             return
         end = content.start + len(content.text) + len("<!---->")
         if self.marks is not None:
-            self.marks.append((line, column, None, [(said, (content.start, end))], (), None, ""))
+            self.marks.append((line, column, None, [(shown, (content.start, end))], (), None, ""))
         if "*/" in content.text and not is_kept(content.text):
             message = "a `*/` in this comment is written `* /`, or the comment loses its last space"
             self.changes.append(VersionNote(Span(content.start, end), message))
@@ -436,12 +435,12 @@ class _Writer:
     # ---- what cannot be kept ----
 
     def lost_text(self, text: XmlText) -> None:
-        said = text.text.strip()
+        stripped = text.text.strip()
         begin = text.start + len(text.text) - len(text.text.lstrip())
-        shown = said if len(said) <= 20 else f"{said[:20]}…"
-        span = Span(begin, begin + len(said))
-        if len(self.ignored) >= _TEXTS_TOLD:
-            if len(self.ignored) == _TEXTS_TOLD:
+        shown = stripped if len(stripped) <= 20 else f"{stripped[:20]}…"
+        span = Span(begin, begin + len(stripped))
+        if len(self.ignored) >= _MOST_TEXTS:
+            if len(self.ignored) == _MOST_TEXTS:
                 self.ignored.append(
                     Diagnostic("xml-ignored", span, "the engine ignores this text and everything after it")
                 )
@@ -449,68 +448,72 @@ class _Writer:
             return
         message = f"the engine ignores this text: `{shown}`"
         note = "remove it, or put <!-- … --> around it; a node is written <Name/>"
-        if ":=" in said:
+        if ":=" in stripped:
             note = f'a script goes in a port: <Script code="{shown}"/>'
         self.ignored.append(Diagnostic("xml-ignored", span, message, notes=(note,)))
         self.changes.append(VersionNote(span, f"text that the engine ignores is left out: {shown}"))
 
     def lost_returns(self, element: Element, attributes: Sequence[Attribute]) -> None:
-        for each in attributes:
-            if "\r" in each.value.replace("\r\n", "") and "\r" not in each.raw:
-                start = element.place(each)[1]
-                span = Span(start, start + len(each.raw))
-                self.changes.append(VersionNote(span, f"a carriage return in `{each.name}` is written as a line end"))
+        for attribute in attributes:
+            if "\r" in attribute.value.replace("\r\n", "") and "\r" not in attribute.raw:
+                start = element.place(attribute)[1]
+                span = Span(start, start + len(attribute.raw))
+                self.changes.append(
+                    VersionNote(span, f"a carriage return in `{attribute.name}` is written as a line end")
+                )
 
 
 def located(marks: Sequence[Mark], starts: Sequence[int]) -> list[tuple[int, int, int, int]]:
     """Which parts of the lines were made of which parts of the XML: pieces for `Places`."""
     places: list[tuple[int, int, int, int]] = []
     for line, column, element, head, pairs, attributes, between in marks:
-        at = starts[line] + column
+        offset = starts[line] + column
         if element is not None:
-            places.append((at, at + len(head[0][0]), *element.tag_span))
+            places.append((offset, offset + len(head[0][0]), *element.tag_span))
         for word, origin in head:
             if isinstance(origin, tuple):
-                places.append(_unlike(word, at, *origin))
+                places.append(_unlike(word, offset, *origin))
             elif origin is not None and element is not None and (start := element.place(origin)[1]) >= 0:
-                places += _aligned(word, at, origin.raw, start)
-            at += len(word) + 1
+                places += _aligned(word, offset, origin.raw, start)
+            offset += len(word) + 1
         if not attributes or element is None:
             continue
-        at += len("(") + (len(between) if between != " " else 0)
-        for said, attribute in zip(pairs, attributes, strict=True):
+        offset += len("(") + (len(between) if between != " " else 0)
+        for pair_text, attribute in zip(pairs, attributes, strict=True):
             key, (name_start, start) = name(attribute.name), element.place(attribute)
             if start >= 0:
-                places += _aligned(key, at, attribute.name, name_start)
-                value_at = len(key) + len(" = ")
-                places += _aligned(said[value_at:], at + value_at, attribute.raw, start)
-            at += len(said) + len(between)
+                places += _aligned(key, offset, attribute.name, name_start)
+                value_offset = len(key) + len(" = ")
+                places += _aligned(pair_text[value_offset:], offset + value_offset, attribute.raw, start)
+            offset += len(pair_text) + len(between)
     return places
 
 
-def _aligned(said: str, at: int, raw: str, start: int) -> list[tuple[int, int, int, int]]:
+def _aligned(word: str, offset: int, raw: str, start: int) -> list[tuple[int, int, int, int]]:
     """The pieces of a word and what it was made of: one if both are the same, in quotes or not; otherwise one for each
     part of it that is, and one for each reference.  All of it if it is spelt in another way altogether."""
-    if said == raw:
-        return [(at, at + len(said), start, start + len(raw))]
-    if raw and said[1:-1] == raw:
-        return [(at + 1, at + 1 + len(raw), start, start + len(raw))]
+    if word == raw:
+        return [(offset, offset + len(word), start, start + len(raw))]
+    if raw and word[1:-1] == raw:
+        return [(offset + 1, offset + 1 + len(raw), start, start + len(raw))]
     parts = spelt_parts(raw)
-    if not raw or said[1:-1] != "".join([written for written, _ in parts]):
-        return [_unlike(said, at, start, start + len(raw))]
-    found: list[tuple[int, int, int, int]] = []
-    at += 1
+    if not raw or word[1:-1] != "".join([written for written, _ in parts]):
+        return [_unlike(word, offset, start, start + len(raw))]
+    pieces: list[tuple[int, int, int, int]] = []
+    offset += 1
     for written, part in parts:
         end = start + len(part)
-        found.append((at, at + len(part), start, end) if written == part else _unlike(written, at, start, end))
-        at += len(written)
+        pieces.append(
+            (offset, offset + len(part), start, end) if written == part else _unlike(written, offset, start, end)
+        )
+        offset += len(written)
         start = end
-    return found
+    return pieces
 
 
-def _unlike(said: str, at: int, start: int, end: int) -> tuple[int, int, int, int]:
+def _unlike(word: str, offset: int, start: int, end: int) -> tuple[int, int, int, int]:
     """The piece of a word that the XML spells in another way: never of the same length, which means the same text."""
-    return at, at + len(said), start, end - (end - start == len(said))
+    return offset, offset + len(word), start, end - (end - start == len(word))
 
 
 def _fits(text: str, column: int, columns: int) -> bool:
@@ -521,7 +524,7 @@ def _fits(text: str, column: int, columns: int) -> bool:
     return column + len(first) <= columns and all(len(line) <= columns for line in others)
 
 
-def _may_stand_behind(element: Element) -> bool:
+def _may_follow(element: Element) -> bool:
     """Whether a comment at the end of an element's line keeps its place: after the whole element, or first in an
     otherwise empty block."""
     return not element.children or any(isinstance(child, Element) for child in element.children)
@@ -549,7 +552,7 @@ def _is_metadata(element: Element) -> bool:
 
 
 _INDENT: Final = "    "
-_TEXTS_TOLD: Final = 100  # reported one by one; a file with more is hardly mended by hand
+_MOST_TEXTS: Final = 100  # reported one by one; a file with more is hardly mended by hand
 _COLUMNS: Final = 100  # the formatter's
 _DIRECTIONS: Final = {"input_port": "input", "output_port": "output", "inout_port": "inout"}
 _RETURN: Final = re.compile("&#(?:0*13|[xX]0*[dD]);")

@@ -21,7 +21,7 @@ class Instance(Record):
     """A node of the tree that runs.
 
     Attributes:
-        uid: its number; None after a SubTree whose tree is unknown, for so is its number of nodes.
+        uid: its number; None after a SubTree whose tree is unknown, because the number of its nodes is unknown too.
         path: as the engine's `fullPath`.
         element: the element that it is created from; one element may become many nodes.
         callers: the SubTree elements around it, the outermost first.
@@ -69,14 +69,14 @@ def _own_path(element: Element, uid: int | None) -> str:
 
 def _children(element: Element) -> list[Element]:
     """The child elements, in reverse order; an element that a mission spells out is parsed."""
-    found = []
+    children = []
     for child in element.children:
         if isinstance(child, Element):
-            found.append(child)
+            children.append(child)
         elif isinstance(child, Raw) and (document := read(child.text).document) is not None:
-            found.append(document.root)
-    found.reverse()
-    return found
+            children.append(document.root)
+    children.reverse()
+    return children
 
 
 _WITH_ID: Final = frozenset(("Action", "Condition", "Control", "Decorator", "SubTree"))

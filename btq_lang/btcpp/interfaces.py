@@ -56,20 +56,20 @@ class Interface(Record):
 def interfaces(workspaces: Iterable[Workspace], version: str, unknown: Container[str]) -> dict[str, Interface]:
     """The nodes that the files of some workspaces know, by name: the engine's in its order, then the others by name,
     without those that the checks call unknown unless a model declares them."""
-    found = {kind.tag: _of_engine(kind, version) for kind in BUILTINS.values() if available(kind, version)}
+    of_engine = {kind.tag: _of_engine(kind, version) for kind in BUILTINS.values() if available(kind, version)}
     declared: dict[str, Interface] = {}
     used: dict[str, Interface] = {}
     for workspace in workspaces:
         for path in sorted(workspace.files):
             for model in _models(workspace, path):
                 if model.name not in BUILTINS:
-                    before = declared.get(model.name)
-                    declared[model.name] = model if before is None else _merged(before, model)
+                    earlier = declared.get(model.name)
+                    declared[model.name] = model if earlier is None else _merged(earlier, model)
             for name, node in undeclared(workspace, path).items():
                 ports = {port.name: PortInterface(port.name) for port in node.ports if is_xml_name(port.name)}
                 used[name] = Interface(name, (node.category,), 0, None, ports, is_open=True)
     others = {**{name: each for name, each in used.items() if name not in unknown}, **declared}
-    return {**found, **{name: others[name] for name in sorted(others)}}
+    return {**of_engine, **{name: others[name] for name in sorted(others)}}
 
 
 def tree_names(workspaces: Iterable[Workspace]) -> list[str]:
@@ -98,28 +98,30 @@ def _models(workspace: Workspace, path: str) -> Iterator[Interface]:
         model = symbol.target
         if symbol.kind is Kind.MODEL and isinstance(model, Model) and model.category.raw != "SubTree":
             # Only the robot's program knows whether it requires an input.
-            known = (PortInterface(port.name, _values(port), doc=port.doc) for port in map(as_kind, model.ports))
-            ports = {each.name: each for each in known if is_port_name(each.name) and is_xml_name(each.name)}
+            declared = (PortInterface(port.name, _values(port), doc=port.doc) for port in map(as_kind, model.ports))
+            ports = {each.name: each for each in declared if is_port_name(each.name) and is_xml_name(each.name)}
             doc = model.text.text if model.text is not None else ""
             category = model.category.raw
             # A model without ports is often unfinished; the checks warn of ports then, and do not refuse them.
             yield Interface(symbol.name, (category,), *CHILDREN[category], ports, not ports, doc)
 
 
-def _merged(one: Interface, other: Interface) -> Interface:
-    most = None if one.most is None or other.most is None else max(one.most, other.most)
-    categories = tuple(dict.fromkeys((*one.categories, *other.categories)))
-    ports = merged_ports((one, other))
-    is_open = one.is_open or other.is_open
-    return Interface(one.name, categories, min(one.least, other.least), most, ports, is_open, one.doc or other.doc)
+def _merged(first: Interface, second: Interface) -> Interface:
+    most = None if first.most is None or second.most is None else max(first.most, second.most)
+    categories = tuple(dict.fromkeys((*first.categories, *second.categories)))
+    ports = merged_ports((first, second))
+    is_open = first.is_open or second.is_open
+    return Interface(
+        first.name, categories, min(first.least, second.least), most, ports, is_open, first.doc or second.doc
+    )
 
 
 def merged_ports(nodes: Iterable[Interface]) -> dict[str, PortInterface]:
-    """The ports of several nodes, as one that may be any of them has them: none is required."""
-    found: dict[str, PortInterface] = {}
+    """The ports of a node that may be any of several: none is required."""
+    ports: dict[str, PortInterface] = {}
     for node in nodes:
         for name, port in node.ports.items():
-            before = found.get(name, port)
-            values = port.values if port.values == before.values else ()
-            found[name] = PortInterface(name, values, doc=before.doc if before.doc == port.doc else "")
-    return found
+            earlier = ports.get(name, port)
+            values = port.values if port.values == earlier.values else ()
+            ports[name] = PortInterface(name, values, doc=earlier.doc if earlier.doc == port.doc else "")
+    return ports

@@ -38,16 +38,16 @@ class Keys:
 
     def stop(self, requirement: str) -> str:
         """The entry that halts the mission for a requirement, wherever it is violated."""
-        known = self._stops.get(requirement)
-        if known is None:
+        entry = self._stops.get(requirement)
+        if entry is None:
             plain = legal(requirement)
             name = f"@{plain}_stop"
             number = 1
             while name in self._stops.values():
                 number += 1
                 name = f"@{plain}_{number}_stop"
-            known = self._stops[requirement] = name
-        return known
+            entry = self._stops[requirement] = name
+        return entry
 
 
 def legal(name: str) -> str:

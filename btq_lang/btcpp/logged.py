@@ -46,20 +46,20 @@ def as_written(xml: str) -> Document:
 
 
 def _attributes(element: Element, prefix: str, defaults: Mapping[tuple[str, str], str]) -> tuple[Attribute, ...]:
-    """What was written at a node, of which the tree has a path."""
+    """The attributes as they were written at a node; `prefix`: the path of its tree."""
     kind = element.get("ID") or element.tag if element.tag in CATEGORIES else element.tag
-    left = [
-        each
-        for each in element.attributes
-        if each.name not in _ADDED
-        and not (each.name == "name" and each.value == kind)
-        and defaults.get((kind, each.name)) != each.value
+    remaining = [
+        attribute
+        for attribute in element.attributes
+        if attribute.name not in _ADDED
+        and not (attribute.name == "name" and attribute.value == kind)
+        and defaults.get((kind, attribute.name)) != attribute.value
     ]
     if element.tag == "SubTree":
         own = (element.get("_fullpath") or "").removeprefix(f"{prefix}/" if prefix else "")
         if own and own != f"{element.get('ID')}::{element.get('_uid')}":
-            left.insert(1, Attribute("name", escape(own)))
-    return tuple(left)
+            remaining.insert(1, Attribute("name", escape(own)))
+    return tuple(remaining)
 
 
 _ADDED: Final = ("_uid", "_fullpath")

@@ -36,7 +36,7 @@ def first_mistake(text: str) -> Mistake | None:
 
 
 def _mistakes(text: str) -> Iterator[Mistake]:
-    """All of them, though those after the first may be its consequences."""
+    """All mistakes; those after the first may be its consequences."""
     first = 1 if text.startswith("\ufeff") else 0
     depth, has_root = 0, False
     doctype: re.Match[str] | None = None
@@ -68,12 +68,12 @@ def _mistakes(text: str) -> Iterator[Mistake]:
         yield Mistake(where, "malformed declarations in a DOCTYPE", "the engine does not read them: remove them")
 
 
-def _outside(at: int, kind: str | None, has_root: bool) -> Mistake:
-    """What is on the top level, where no text may be and one element only."""
+def _outside(offset: int, kind: str | None, has_root: bool) -> Mistake:
+    """Content at the top level, which may have one element and no text."""
     what = {"tag": "a tag", "section": "a CDATA section"}.get(kind or "", "text")
     where = "after" if has_root else "before"
     advice = "one element contains the whole file: remove the text after it" if has_root else _REMOVE_BEFORE
-    return Mistake(Span(at, at + 1), f"{what} {where} the document element", advice)
+    return Mistake(Span(offset, offset + 1), f"{what} {where} the document element", advice)
 
 
 def _instruction(text: str, start: int, end: int, is_first: bool) -> Iterator[Mistake]:
@@ -105,16 +105,16 @@ def _tag(text: str, start: int, end: int, entities: frozenset[str] | None) -> It
     if name is None:
         yield _unexpected(text, start + 1 + is_end)
         return
-    at = name.end()
+    offset = name.end()
     while True:
-        blanks = _BLANKS(text, at)
+        blanks = _BLANKS(text, offset)
         assert blanks is not None  # it matches nothing at least
-        at = blanks.end()
-        if text[at] in "/>":
+        offset = blanks.end()
+        if text[offset] in "/>":
             return
-        name = _NAME(text, at)
+        name = _NAME(text, offset)
         if name is None:
-            yield _unexpected(text, at)
+            yield _unexpected(text, offset)
             return
         if is_end:
             yield Mistake(Span(*name.span()), "an attribute in an end tag", "remove it")
@@ -125,15 +125,15 @@ def _tag(text: str, start: int, end: int, entities: frozenset[str] | None) -> It
             odd = _ODD.search(text, name.end())
             yield _unexpected(text, odd.start() if odd else name.end())
             return
-        at = text.index(equals[1], equals.end())
-        yield from _characters(text, _BAD_IN_VALUE, equals.end(), at, entities)
-        at += 1
+        offset = text.index(equals[1], equals.end())
+        yield from _characters(text, _BAD_IN_VALUE, equals.end(), offset, entities)
+        offset += 1
 
 
 def _characters(
     text: str, bad: re.Pattern[str], start: int, end: int, entities: frozenset[str] | None = None
 ) -> Iterator[Mistake]:
-    """What is wrong with characters, of which some are not allowed."""
+    """The characters that are not allowed in a part of the text."""
     for match in bad.finditer(text, start, end):
         if match[0] == "&":
             yield from _reference(text, match.start(), entities)
@@ -143,11 +143,11 @@ def _characters(
             yield _unexpected(text, match.start())
 
 
-def _reference(text: str, at: int, entities: frozenset[str] | None) -> Iterator[Mistake]:
-    """What is wrong with a reference, or with the sign that one begins with."""
-    match = _REFERENCE(text, at)
+def _reference(text: str, offset: int, entities: frozenset[str] | None) -> Iterator[Mistake]:
+    """What is wrong with a reference, or with a `&` that begins none."""
+    match = _REFERENCE(text, offset)
     if match is None:
-        yield Mistake(Span(at, at + 1), "`&` does not begin a reference", "write `&` as `&amp;`")
+        yield Mistake(Span(offset, offset + 1), "`&` does not begin a reference", "write `&` as `&amp;`")
     elif match["name"] is None:
         digits = (match["decimal"] or match["hexadecimal"]).lstrip("0")
         code = int(digits or "0", 10 if match["decimal"] else 16) if len(digits) < _MOST_DIGITS else _BEYOND
@@ -158,16 +158,16 @@ def _reference(text: str, at: int, entities: frozenset[str] | None) -> Iterator[
         yield Mistake(Span(*match.span()), f"the entity `{match['name']}` is not defined", advice)
 
 
-def _unexpected(text: str, at: int) -> Mistake:
+def _unexpected(text: str, offset: int) -> Mistake:
     """A character where XML does not allow it."""
-    character = text[at]
+    character = text[offset]
     if character in " \t\r\n":
         advice = "put no space between `<` and the name"
-        return Mistake(Span(at, at + 1), "a space before the name of a tag", advice)
+        return Mistake(Span(offset, offset + 1), "a space before the name of a tag", advice)
     if character in "\v\f" or FORBIDDEN.match(character):
-        return Mistake(Span(at, at + 1), f"the character U+{ord(character):04X}", _REMOVE)
+        return Mistake(Span(offset, offset + 1), f"the character U+{ord(character):04X}", _REMOVE)
     shown = f"`{character}`" if character.isprintable() else f"U+{ord(character):04X}"
-    return Mistake(Span(at, at + 1), f"{shown} in a name", "write letters, digits, `_`, `-` and `.`")
+    return Mistake(Span(offset, offset + 1), f"{shown} in a name", "write letters, digits, `_`, `-` and `.`")
 
 
 _REMOVE_BEFORE: Final = "remove the text before the document element"

@@ -47,21 +47,21 @@ def node_guards(root: Element) -> Guards:
 
 def manual_edits(root: Element, built: Guards) -> tuple[ManualEdit, ...]:
     """The manual edits since a build, in the order of the file."""
-    known = {guard for guards in built.values() for guard in guards.items()}
+    built_guards = {guard for guards in built.values() for guard in guards.items()}
     marked = {_name(each): each for each in root.walk() if each.get(MARK) is not None and _name(each)}
     nodes = {key: (node, guards) for key, node, guards in _nodes(root)}
-    found = [
+    edits = [
         ManualEdit(name, sum_, marked[name].tag_span)
         for _, guards in nodes.values()
         for name, sum_ in guards.items()
-        if (name, sum_) not in known
+        if (name, sum_) not in built_guards
     ]
     for key, before in built.items():
         node, guards = nodes.get(key, (None, {}))
         was_another = bool(guards) and guards.keys().isdisjoint(before)  # of its kind, before it was deleted
         if node is not None and not was_another:
-            found += [ManualEdit(name, "", node.tag_span) for name in before if name not in marked]
-    return tuple(sorted(found, key=lambda each: each.span))
+            edits += [ManualEdit(name, "", node.tag_span) for name in before if name not in marked]
+    return tuple(sorted(edits, key=lambda each: each.span))
 
 
 def _nodes(root: Element) -> Iterator[tuple[str, Element, dict[str, str]]]:

@@ -40,30 +40,30 @@ def model_element(source: ExportSource, entry: Entry, model: Model) -> Element:
     for part in model.body:
         around = source.around(entry, part)
         if isinstance(part, Meta):
-            made = Element("Metadata", attributes_of(source, entry, part.attributes))
+            metadata = Element("Metadata", attributes_of(source, entry, part.attributes))
             if fields is None:
                 fields = Element("MetadataFields")
                 contents += source.written(around.before)
                 contents.append(fields)
-                source.put(fields.children, made, replace(around, before=()))
+                source.put(fields.children, metadata, replace(around, before=()))
             else:
-                source.put(fields.children, made, around)
+                source.put(fields.children, metadata, around)
             continue
         fields = None
-        made_part = (
+        part_element = (
             source.raw(entry, part)
             if isinstance(part, Verbatim)
             else port_element(source, entry, part, model.name if model.category.raw == "SubTree" else None)
         )
-        source.put(contents, made_part, around)
+        source.put(contents, part_element, around)
     contents += source.written(own.last)
     return element
 
 
 def port_element(source: ExportSource, entry: Entry, port: Port, tree: Word | None = None) -> Element:
     """`input station : string = "charger" "where to go"`; tree: that has the port, if it is a tree's."""
-    said = (("name", port.name), ("type", port.type), ("default", port.default))
-    attributes = [Attribute(name, spelt(word)) for name, word in said if word is not None]
+    words = (("name", port.name), ("type", port.type), ("default", port.default))
+    attributes = [Attribute(name, spelt(word)) for name, word in words if word is not None]
     if tree is not None and port.name is not None and port.default is not None and not source.verbatim:
         raw = attributes[-1].raw
         fit = fitting(source.types_below(tree.text, port.name.text), raw)
@@ -111,12 +111,12 @@ class ModelCollector:
             return
         raw = source.spelt_tree(tree.name)
         model = next((each for each in self._elements() if _declares(each, raw)), None)
-        known = {port.get("name") for port in model.elements} if model is not None else set()
+        declared = {port.get("name") for port in model.elements} if model is not None else set()
         if model is None:
             model = Element("SubTree", [Attribute("ID", raw)])
             self.loose.append(model)
         for port in tree.ports:
-            if port.name is None or port.name.text not in known:
+            if port.name is None or port.name.text not in declared:
                 source.put(model.children, port_element(source, entry, port, tree.name), source.around(entry, port))
 
     def _elements(self) -> Iterator[Element]:
@@ -133,8 +133,8 @@ def undeclared(workspace: Workspace, path: str) -> dict[str, CustomNode]:
     missing = [name for name in custom_nodes_of(workspace, path) if not is_declared(workspace, path, name)]
     if not missing:
         return {}
-    known = custom_nodes(workspace, path)
-    return {name: known[name] for name in sorted(missing, key=lambda name: (_ORDER[known[name].category], name))}
+    nodes = custom_nodes(workspace, path)
+    return {name: nodes[name] for name in sorted(missing, key=lambda name: (_ORDER[nodes[name].category], name))}
 
 
 def suggested_model(name: str, node: CustomNode) -> Element:
@@ -145,9 +145,9 @@ def suggested_model(name: str, node: CustomNode) -> Element:
 
 def made_models(workspace: Workspace, path: str) -> frozenset[str]:
     """The nodes of an XML file whose models look like those that a build adds."""
-    known = custom_nodes(workspace, path)
+    nodes = custom_nodes(workspace, path)
     return frozenset(
-        name for name, model in _models(workspace.files[path]) if name in known and _may_be_made(model, known[name])
+        name for name, model in _models(workspace.files[path]) if name in nodes and _may_be_made(model, nodes[name])
     )
 
 

@@ -1,4 +1,7 @@
-"""Files in this language or in XML."""
+"""Files in this language or in XML.
+
+It is apart from `importing`, which is large, and which most missions do not need.
+"""
 
 from __future__ import annotations
 
@@ -18,6 +21,7 @@ def file_of(path: str, text: str) -> File:
         return File(path, text)
     from btq_lang.btcpp.importing import import_xml  # large, and most missions do without XML
 
-    done = import_xml(text, keep_v3=True, for_people=False)
-    origin = Origin(text, done.places, done.diagnostics, done.is_complete, done.defines, signs=done.signs)
-    return File(path, done.text, origin)
+    imported = import_xml(text, keep_v3=True, for_people=False)
+    is_complete, defines = imported.is_complete, imported.defines
+    origin = Origin(text, imported.places, imported.diagnostics, is_complete, defines, signs=imported.signs)
+    return File(path, imported.text, origin)

@@ -82,7 +82,7 @@ def read(text: str, with_prefixes: bool = True) -> XmlRead:
 
 
 def _refused(text: str, root: Element, is_strict: bool, has_prefixes: bool) -> Iterator[Diagnostic]:
-    """The first thing that other XML tools refuse of a text that the engine reads."""
+    """The first mistake in a text that the engine reads and other XML tools refuse."""
     mistakes: list[Mistake | None] = []
     if not is_strict:
         from btq_lang.btcpp.malformed import first_mistake  # few files need it, and its patterns take long to compile
@@ -122,7 +122,7 @@ class _Reader:
         The text is cut at every `<`, and pieces are cached by their text: most tags of a mission occur more than once.
         """
         text, opened = self.text, self.open
-        known: dict[str, Tag] = {}
+        tags: dict[str, Tag] = {}
         top: list[Content] = []
         contents = top  # of the innermost open element
         pieces = chain.from_iterable(_pieces(text))
@@ -134,10 +134,10 @@ class _Reader:
             following += len(piece) + 1
             if start < last_end:  # this `<` is in a comment, or in a value
                 continue
-            said = piece.rstrip(_BLANKS)
-            tag = known.get(said)
+            stripped = piece.rstrip(_BLANKS)
+            tag = tags.get(stripped)
             if tag is None:
-                end = start + 1 + len(said)
+                end = start + 1 + len(stripped)
                 match = _TAG(text, start)
                 if match is None:
                     last_end = self.other(start, last_end, contents, is_first=not top)
@@ -146,7 +146,7 @@ class _Reader:
                     continue
                 tag = self.tag(match, start, end)
                 if match.end() <= end:
-                    known[said] = tag
+                    tags[stripped] = tag
             name, attributes, is_leaf, length, has_text = tag
             last_end = start + length
             if attributes is None:
@@ -205,13 +205,13 @@ class _Reader:
         if end < 0:
             end = len(self.text)
         between = self.text[start:end]
-        said = between.strip(_BLANKS)
-        if not said:
+        stripped = between.strip(_BLANKS)
+        if not stripped:
             return
         is_last = end == len(self.text)
         if is_last and not self.open and any(isinstance(content, Element) for content in contents):
-            begin = start + between.index(said)
-            self.broken(Span(begin, begin + len(said)), "unexpected text after the document element", "remove it")
+            begin = start + between.index(stripped)
+            self.broken(Span(begin, begin + len(stripped)), "unexpected text after the document element", "remove it")
         if not is_last:
             contents.append(XmlText(unescape(_line_ends(between)), start))
 
@@ -261,10 +261,10 @@ class _Reader:
             )
         return end
 
-    def closing(self, mark: str, at: int, start: int, message: str) -> int:
-        end = self.text.find(mark, at)
+    def closing(self, mark: str, begin: int, start: int, message: str) -> int:
+        end = self.text.find(mark, begin)
         if end < 0:
-            self.broken(Span(start, min(at, len(self.text))), message, f"write {mark} where it ends")
+            self.broken(Span(start, min(begin, len(self.text))), message, f"write {mark} where it ends")
         return end
 
     # ---- mistakes ----
@@ -296,29 +296,30 @@ class _Reader:
             if self.text.startswith("--", start + 1) or self.text.startswith("!-", start + 1):
                 note = "a comment is written <!-- … -->"
             self.broken(Span(start, start + 1), "unexpected `<`: no tag begins here", note)
-        at = name.end()
+        offset = name.end()
         while True:
-            at = _SPACE(text, at).end()  # type: ignore[union-attr]  # it matches nothing at least
-            if at >= size:
+            offset = _SPACE(text, offset).end()  # type: ignore[union-attr]  # it matches nothing at least
+            if offset >= size:
                 self.broken(Span(start, name.end()), f"missing > for <{name[0]}", "write > or /> where the tag ends")
-            key = _NAME(text, at)
+            key = _NAME(text, offset)
             equals = _EQUALS(text, key.end()) if key is not None else None
-            if equals is None and text[at - 1] in "\"'" and text[at] not in "\"',;":
-                span = Span(at, key.end() if key is not None else at + 1)
+            if equals is None and text[offset - 1] in "\"'" and text[offset] not in "\"',;":
+                span = Span(offset, key.end() if key is not None else offset + 1)
                 note = "write a quote in a value as &quot;, in a script as '"
                 self.broken(span, f"the value before `{text[span.start : span.end]}` ends at its second quote", note)
             if key is None:
-                shown = text[at] if text[at].isprintable() else repr(text[at])
+                shown = text[offset] if text[offset].isprintable() else repr(text[offset])
                 note = 'attributes are written name="value", and a tag ends with > or />'
-                self.broken(Span(at, at + 1), f"expected an attribute or the end of <{name[0]}>, found `{shown}`", note)
+                message = f"expected an attribute or the end of <{name[0]}>, found `{shown}`"
+                self.broken(Span(offset, offset + 1), message, note)
             if equals is None:
                 note = f'write {key[0]}="…", or remove it'
-                self.broken(Span(at, key.end()), f"missing value in quotes for the attribute `{key[0]}`", note)
+                self.broken(Span(offset, key.end()), f"missing value in quotes for the attribute `{key[0]}`", note)
             end = text.find(equals[1], equals.end())
             if end < 0:
                 message = f"missing closing {equals[1]} for the value of `{key[0]}`"
                 self.broken(Span(equals.end() - 1, equals.end()), message, f"write {equals[1]} where it ends")
-            at = end + 1
+            offset = end + 1
 
 
 def _pieces(text: str) -> Iterator[list[str]]:

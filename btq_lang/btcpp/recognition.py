@@ -27,8 +27,8 @@ def is_mission(xml: str) -> bool:
 def defined_in(xml: str) -> frozenset[str]:
     """The names that a text may define as trees or models, and perhaps some more."""
     models = xml.find("<TreeNodesModel")
-    found = [*_TREE.finditer(xml), *(_ID.finditer(xml, models) if models >= 0 else ())]
-    return frozenset(unescape(match[1] if match[1] is not None else match[2]) for match in found)
+    matches = [*_TREE.finditer(xml), *(_ID.finditer(xml, models) if models >= 0 else ())]
+    return frozenset(unescape(match[1] if match[1] is not None else match[2]) for match in matches)
 
 
 def included_in(xml: str) -> tuple[str, ...]:
@@ -38,8 +38,8 @@ def included_in(xml: str) -> tuple[str, ...]:
 
 def _prolog(xml: str) -> int:
     """Where the document element begins."""
-    found = _PROLOG.match(xml)
-    return found.end() if found is not None else 0
+    match = _PROLOG.match(xml)
+    return match.end() if match is not None else 0
 
 
 def listed_trees(xml: str) -> tuple[tuple[str, ...], str | None] | None:

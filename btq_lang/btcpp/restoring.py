@@ -84,7 +84,7 @@ def restored(xml: str, imported: str, side: str) -> Restored | None:
 
     try:
         data = json.loads(side)
-        is_known = data["format"] == FORMAT and data["version"] in VERSIONS
+        is_supported = data["format"] == FORMAT and data["version"] in VERSIONS
         mission, built = data["mission"]["text"], data["xml"]["sha256"]
         place = data["mission"]["file"]
         others = tuple((each["file"], each["text"]) for each in data.get("sources", ()))
@@ -94,7 +94,7 @@ def restored(xml: str, imported: str, side: str) -> Restored | None:
         }
     except (ValueError, LookupError, TypeError, RecursionError):
         return None
-    if not is_known or not all(_is_text(each) for each in (mission, place, *chain(*others))):
+    if not is_supported or not all(_is_text(each) for each in (mission, place, *chain(*others))):
         return None
     if hashlib.sha256(xml.encode("utf-8", "replace")).hexdigest() == built:
         return Restored(mission, True, place, others=others)
@@ -109,28 +109,28 @@ def _is_text(value: object) -> bool:
     return isinstance(value, str) and not any("\ud800" <= char <= "\udfff" for char in value)
 
 
-def _merged(now: Parsed, sources: Sequence[tuple[str | None, Parsed]], place: str) -> Restored:
+def _merged(imported: Parsed, sources: Sequence[tuple[str | None, Parsed]], place: str) -> Restored:
     """The XML as it is now, with what the mission and the files of its bundle said beyond it."""
     edits: list[Edit] = []
     lost: list[LostClauses] = []
-    known = {name: (entry, _parts(entry)) for entry, name in _trees(now)}
-    for file, then in sources:
-        items = [_lines(then, entry) for entry in then.entries if isinstance(entry.item, _WITHOUT_ELEMENT)]
+    imported_trees = {name: (entry, _parts(entry)) for entry, name in _trees(imported)}
+    for file, built in sources:
+        items = [_lines(built, entry) for entry in built.entries if isinstance(entry.item, _WITHOUT_ELEMENT)]
         if items:
-            at = _place_of_items(now)
-            edits.append(Edit(Span(at, at), "".join(f"{item}\n" for item in items)))
-        lines = LineIndex(then.text)
-        for entry, name in _trees(then):
-            there, parts = known.get(name, (entry, {}))
+            offset = _place_of_items(imported)
+            edits.append(Edit(Span(offset, offset), "".join(f"{item}\n" for item in items)))
+        lines = LineIndex(built.text)
+        for entry, name in _trees(built):
+            imported_entry, parts = imported_trees.get(name, (entry, {}))
             for key, part in _parts(entry).items():
                 if part.clauses:
-                    text = _clauses(then, entry, part.clauses)
-                    edit = _attaching(now, there, parts.get(key), text)
+                    text = _clauses(built, entry, part.clauses)
+                    edit = _attaching(imported, imported_entry, parts.get(key), text)
                     edits += [edit] if edit is not None else []
                     if edit is None:
                         line = lines.position(entry.start + part.clauses[0].start).line + 1
                         lost.append(LostClauses(text, file, line))
-    return Restored(apply_edits(now.text, edits), False, place, tuple(lost))
+    return Restored(apply_edits(imported.text, edits), False, place, tuple(lost))
 
 
 def _trees(parsed: Parsed) -> Iterator[tuple[Entry, str]]:
@@ -142,17 +142,17 @@ def _trees(parsed: Parsed) -> Iterator[tuple[Entry, str]]:
 def _parts(entry: Entry) -> dict[object, Tree | Node]:
     """A tree, and its nodes by kind, name, and number among the nodes that share those."""
     assert isinstance(entry.item, Tree)
-    found: dict[object, Tree | Node] = {None: entry.item}
+    parts: dict[object, Tree | Node] = {None: entry.item}
     counts = Counter[tuple[str, str]]()
     for node in entry.item.walk():
         called = _called(node)
         counts[called] += 1
-        found[called, counts[called]] = node
-    return found
+        parts[called, counts[called]] = node
+    return parts
 
 
 def _called(node: Node) -> tuple[str, str]:
-    """The ID and the name of a node in XML; a word of the published language and a node so called are one."""
+    """The ID and the name of a node in XML; the ID of a placeholder is the one that its name becomes."""
     name = node.name.text if node.name is not None else ""
     if is_placeholder(node):
         ID = legal_name(name)
@@ -162,14 +162,14 @@ def _called(node: Node) -> tuple[str, str]:
 
 def _place_of_items(parsed: Parsed) -> int:
     """The offset after the Root line and the includes, at the start of a line."""
-    at = 0
+    offset = 0
     for entry in parsed.entries:
         if isinstance(entry.item, Root | Include):
             end = parsed.text.find("\n", entry.start + entry.item.end)
-            at = end + 1 if end >= 0 else len(parsed.text)
+            offset = end + 1 if end >= 0 else len(parsed.text)
         elif isinstance(entry.item, Tree | Models):
             break
-    return at
+    return offset
 
 
 def _lines(parsed: Parsed, entry: Entry) -> str:
@@ -204,8 +204,8 @@ def _on_one_line(text: str) -> str:
 
 
 def _attaching(parsed: Parsed, entry: Entry, part: Tree | Node | None, text: str) -> Edit | None:
-    """The edit that puts clauses after a node, or on a line of their own above the node of a tree; None if it is not
-    there."""
+    """The edit that puts clauses after a node, or on a line of their own above the node of a tree; None if there is no
+    such node."""
     if isinstance(part, Node):
         end = entry.start + part.end
         return Edit(Span(end, end), f" {text}")

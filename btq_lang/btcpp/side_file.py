@@ -19,6 +19,7 @@ from btq_lang.btcpp.manual_edits import node_guards
 from btq_lang.btcpp.marks import MARK
 from btq_lang.catalog.units import Unit
 from btq_lang.diagnostics.model import Place
+from btq_lang.requirements import model
 from btq_lang.requirements.model import Applied, InContext, NodeTarget, ResolvedRequirement, ResolvedSignal
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.requirements.resolve import requirements
@@ -79,13 +80,13 @@ def side_file(workspace: Workspace, built: BuiltFile) -> str | None:
         return None
     import hashlib
 
-    found = requirements(workspace, built.path)
+    resolved = requirements(workspace, built.path)
     loose: dict[str, list[Json]] = {}
-    for requirement, claim in found.about_no_node():
+    for requirement, claim in resolved.about_no_node():
         loose.setdefault(requirement.name, []).append(claim.text)
     place = _Places(workspace, posixpath.dirname(built.place))
     main = built.documents[-1].root.get("main_tree_to_execute")
-    running = RunningTree(built, found.nodes, main)
+    running = RunningTree(built, resolved.nodes, main)
     return _text(
         {
             "format": FORMAT,
@@ -98,22 +99,23 @@ def side_file(workspace: Workspace, built: BuiltFile) -> str | None:
             "files": [place.name(path) for path in paths],
             **({"sources": _sources(workspace, paths)} if len(built.documents) < len(paths) else {}),
             "main_tree": main,
-            "signals": [_plain(signal, place) for signal in found.signals.values()],
+            "signals": [_plain(signal, place) for signal in resolved.signals.values()],
             "contexts": [
                 {"name": name, "condition": _plain(condition, place)}
-                for name, condition in found.contexts.items()
+                for name, condition in resolved.contexts.items()
                 if condition is not None
             ],
-            "requirements": [_requirement(each, loose.get(each.name), place) for each in found.all.values()],
+            "requirements": [_requirement(each, loose.get(each.name), place) for each in resolved.all.values()],
             "applied": [
                 _applied(each, built.clauses[index] if built.clauses else (), running, place)
-                for index, each in enumerate(found.applied)
+                for index, each in enumerate(resolved.applied)
             ],
             "traces": [
-                {"requirement": each.requirement, "nodes": running.uids(NodeTarget(each.node))} for each in found.traces
+                {"requirement": each.requirement, "nodes": running.uids(NodeTarget(each.node))}
+                for each in resolved.traces
             ],
             **_guards(built.documents[-1].root),
-            "concerns": list(_concerns(found.nodes, running)),
+            "concerns": list(_concerns(resolved.nodes, running)),
             "nodes": [_node(instance, node, place) for instance, node in running.all],
         }
     )
@@ -181,14 +183,14 @@ class RunningTree:
 
     def _leads_to(self, instance: Instance, through: tuple[str, ...]) -> bool:
         """Whether the way to an instance passes the names, in order."""
-        left = list(through)
+        remaining = list(through)
         for caller in reversed(instance.callers):
-            at = self._written.get(id(caller))
-            while left and at is not None:
-                if left[-1] in at.names or (at.parent is None and left[-1] == at.tree):
-                    left.pop()
-                at = at.parent
-        return not left
+            node = self._written.get(id(caller))
+            while remaining and node is not None:
+                if remaining[-1] in node.names or (node.parent is None and remaining[-1] == node.tree):
+                    remaining.pop()
+                node = node.parent
+        return not remaining
 
 
 def _guards(root: Element) -> dict[str, Json]:
@@ -198,10 +200,10 @@ def _guards(root: Element) -> dict[str, Json]:
 
 
 def _node(instance: Instance, node: ResolvedNode | None, place: _Places) -> Json:
-    found: dict[str, Json] = {"uid": instance.uid, "path": instance.path}
+    record: dict[str, Json] = {"uid": instance.uid, "path": instance.path}
     if (generated := instance.element.get(MARK)) is not None:
-        found["enforces"] = generated
-    return {**found, **place.of(node.place)} if node is not None else found
+        record["enforces"] = generated
+    return {**record, **place.of(node.place)} if node is not None else record
 
 
 def _requirement(requirement: ResolvedRequirement, loose: list[Json] | None, place: _Places) -> Json:
@@ -212,21 +214,21 @@ def _requirement(requirement: ResolvedRequirement, loose: list[Json] | None, pla
 
 def _applied(applied: Applied, clauses: tuple[ClauseEnforcement, ...], running: RunningTree, place: _Places) -> Json:
     subject = applied.subject
-    found: dict[str, Json] = {"requirement": applied.requirement.name, "how": applied.how}
+    record: dict[str, Json] = {"requirement": applied.requirement.name, "how": applied.how}
     if applied.arguments:
-        found["arguments"] = {each.name: _plain(each.value, place) for each in applied.arguments}
-        found["claims"] = [_plain(each, place) for each in applied.requirement.claims]
+        record["arguments"] = {each.name: _plain(each.value, place) for each in applied.arguments}
+        record["claims"] = [_plain(each, place) for each in applied.requirement.claims]
     if isinstance(subject, NodeTarget):
-        found["nodes"] = running.uids(subject)
+        record["nodes"] = running.uids(subject)
     else:
-        found["subject"] = _plain(subject, place)
+        record["subject"] = _plain(subject, place)
         if applied.node is not None:
-            found["nodes"] = running.uids(NodeTarget(applied.node))
+            record["nodes"] = running.uids(NodeTarget(applied.node))
     if clauses:
-        found["clauses"] = [
+        record["clauses"] = [
             {"clause": each.clause, "held": each.way, **({"why": each.why} if each.why else {})} for each in clauses
         ]
-    return found
+    return record
 
 
 def _concerns(nodes: Nodes, running: RunningTree) -> Iterator[Json]:
@@ -277,19 +279,49 @@ def _plain(value: object, place: _Places) -> Json:
         return {"name": value.node.head.text, **place.of(value.place)}
     if isinstance(value, InContext):
         return {"is": "incontext", "name": value.name}
-    found: dict[str, Json] = {}
+    record: dict[str, Json] = {}
     if not isinstance(value, ResolvedRequirement | ResolvedSignal):
-        found["is"] = type(value).__name__.lower()
+        record["is"] = _KINDS[type(value)]
     for field in fields_of(value):
         part = getattr(value, field)
         if part is None or part == () or field in _LEFT_OUT or (field == "every" and not part):
             continue
         key = _RENAMED.get(field, field) if isinstance(value, ResolvedRequirement) else field
-        found[key] = part.name if isinstance(part, ResolvedSignal) else _plain(part, place)
+        record[key] = part.name if isinstance(part, ResolvedSignal) else _plain(part, place)
     if isinstance(value, ResolvedRequirement | ResolvedSignal):
-        found |= place.of(value.place)
-    return found
+        record |= place.of(value.place)
+    return record
 
 
 _LEFT_OUT: Final = frozenset(("place", "path", "item"))
 _RENAMED: Final = {"name": "id", "action": "on_violation", "method": "verified_by"}
+# The format keeps these names, whatever the classes are called.
+_KINDS: Final[dict[type, str]] = {
+    model.NodeTarget: "target",
+    model.MissionRun: "mission",
+    model.Quantity: "value",
+    model.Flag: "flag",
+    model.TextValue: "text",
+    model.SignalRead: "read",
+    model.ResolvedParameter: "parameter",
+    model.Aggregate: "aggregate",
+    model.Minus: "minus",
+    model.Arithmetic: "arithmetic",
+    model.ResolvedCase: "case",
+    model.ResolvedTable: "table",
+    model.Compare: "compare",
+    model.All: "all",
+    model.Any: "any",
+    model.Negation: "not",
+    model.Running: "running",
+    model.ClassicScript: "script",
+    model.Limit: "limit",
+    model.ResolvedEvent: "event",
+    model.Interval: "span",
+    model.DurationSum: "total",
+    model.EveryNode: "every",
+    model.ResolvedClaim: "claim",
+    model.ResolvedScope: "scope",
+    model.ResolvedOdds: "odds",
+    model.ResolvedWindow: "window",
+}

@@ -72,8 +72,8 @@ class ExportSource:
 
     def _stays(self, tree: str) -> bool:
         """Whether a tree is in XML that is not written, so that its name cannot change."""
-        found = None if self.is_bundled else self.scope.find(Kind.TREE, tree)
-        return found is not None and found.path != self.path and found.path in self.workspace.foreign
+        definition = None if self.is_bundled else self.scope.find(Kind.TREE, tree)
+        return definition is not None and definition.path != self.path and definition.path in self.workspace.foreign
 
     def spelt_tree(self, name: Word) -> str:
         """A tree's name as the value of an attribute."""
@@ -84,10 +84,10 @@ class ExportSource:
         """The comments of an element."""
         return self.comments.get(entry.start + part.start, NO_COMMENTS)
 
-    def respelt(self, entry: Entry, part: Placed, said: str, written: str) -> None:
+    def respelt(self, entry: Entry, part: Placed, original: str, written: str) -> None:
         """Record that a constant of a subtree's port is spelt as another type."""
         why = "4.9.1 and later would read it as another type than the node below expects"
-        self.repair(entry, part, f"`{said}` is written as `{written}`: {why}")
+        self.repair(entry, part, f"`{original}` is written as `{written}`: {why}")
 
     def raw(self, entry: Entry, verbatim: Verbatim) -> Raw:
         """An element that the file spells out."""
@@ -105,15 +105,15 @@ class ExportSource:
 
     def written(self, remarks: tuple[SourceComment, ...], beside: bool = False) -> list[XmlComment]:
         """Comments as XML has them."""
-        made = []
+        xml_comments = []
         for remark in remarks:
             text = as_comment(remark.text)
             if "--" in remark.text:
                 self._changed_comments.append(remark)
             if not remark.is_block and text[:1] in _BLANKS:
                 text += " "
-            made.append(XmlComment(text, beside))
-        return made
+            xml_comments.append(XmlComment(text, beside))
+        return xml_comments
 
     def finish(self) -> None:
         """Record what concerns the file as a whole."""

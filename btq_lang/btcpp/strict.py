@@ -1,7 +1,7 @@
 """Whether other XML tools read a text: lxml's judgement, or where it is not installed that of Python's own expat.
 
 One invariant: the judge builds no tree, opens neither files nor connections, and limits how much the entities of a
-DOCTYPE grow.  Why it refuses a text is not asked: `malformed` finds that, the same for both judges.
+DOCTYPE grow.  Why it refuses a text is for `malformed`, which finds the same for both judges.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def judge() -> Callable[[str], bool]:
 
     def by_lxml(text: str) -> bool:
         parser = etree.XMLParser(
-            target=_Nobody(),
+            target=_IgnoringTarget(),
             encoding="utf-8",
             resolve_entities=False,
             no_network=True,
@@ -44,7 +44,7 @@ def judge() -> Callable[[str], bool]:
     return by_lxml
 
 
-class _Nobody:
+class _IgnoringTarget:
     """A target that ignores what lxml reads, so that no tree is built; such a parser does not check prefixes."""
 
     def close(self) -> None:

@@ -11,7 +11,7 @@ from typing import Final
 
 from btq_lang.btcpp.attributes import attributes_of, only_first
 from btq_lang.btcpp.constants import fitting
-from btq_lang.btcpp.descriptions import description, said_elsewhere
+from btq_lang.btcpp.descriptions import description, lines_from_elsewhere
 from btq_lang.btcpp.document import Attribute, Element, escape
 from btq_lang.btcpp.source import ExportSource
 from btq_lang.catalog.kinds import CATEGORIES
@@ -37,7 +37,7 @@ class Trees:
         self._source: Final = source
         self._tags: Final[dict[str, tuple[str, NodeKind | None]]] = {}
         self._placeholders: Final[dict[str, tuple[str, str]]] = {}  # the text and the ID of a name, by spelling
-        self._said_elsewhere: Final = {} if source.verbatim else said_elsewhere(source)
+        self._other_lines: Final = {} if source.verbatim else lines_from_elsewhere(source)
         self._names: set[str] = set()  # of the SubTrees in the current tree
 
     def element(self, entry: Entry, tree: Tree) -> Element:
@@ -76,13 +76,13 @@ class Trees:
             if isinstance(child, Verbatim):
                 source.put(contents, source.raw(entry, child), around)
                 continue
-            made = self._node(entry, child, element)
+            child_element = self._node(entry, child, element)
             if around is NO_COMMENTS:
-                contents.append(made)
+                contents.append(child_element)
             else:
-                source.put(contents, made, around)
+                source.put(contents, child_element, around)
             if child.children or child.clauses or around is not NO_COMMENTS:
-                yield child, made
+                yield child, child_element
         if own.last:
             contents += source.written(own.last)
 
@@ -94,7 +94,7 @@ class Trees:
             element = self._placeholder(entry, node)
         else:
             element = self._compact(entry, node, parent)
-        if node.clauses or id(node) in self._said_elsewhere:
+        if node.clauses or id(node) in self._other_lines:
             self._describe(entry, node, element)
         self.elements[id(node)] = element
         return element
@@ -103,13 +103,13 @@ class Trees:
         """`MoveBase (…)`."""
         kind = node.kind
         assert kind is not None, "a node without a category has a kind"
-        known = self._tags.get(kind.raw)
-        if known is None:
+        cached = self._tags.get(kind.raw)
+        if cached is None:
             tag = self._tag(kind, node)
-            known = tag, BUILTINS.get(tag)
+            cached = tag, BUILTINS.get(tag)
             if not is_by_children(kind.raw):
-                self._tags[kind.raw] = known
-        tag, builtin = known
+                self._tags[kind.raw] = cached
+        tag, builtin = cached
         if tag in CATEGORIES:  # in quotes: the tag of an explicit form
             return self._explicit(entry, node, tag, parent)
         if tag == "SubTreePlus":
@@ -210,8 +210,8 @@ class Trees:
         raw = fitting(source.types_below(tree, attribute.name), attribute.raw)
         if raw == attribute.raw:
             return attribute
-        said = next((pair.value for pair in node.attributes if pair.key.text == attribute.name), None)
-        source.respelt(entry, said or node, attribute.raw, raw)
+        written_value = next((pair.value for pair in node.attributes if pair.key.text == attribute.name), None)
+        source.respelt(entry, written_value or node, attribute.raw, raw)
         return Attribute(attribute.name, raw)
 
     def _with_unique_name(self, entry: Entry, name: Word, attributes: list[Attribute]) -> list[Attribute]:
@@ -241,8 +241,8 @@ class Trees:
         attributes = element.attributes
         index = next((index for index, each in enumerate(attributes) if each.name == "_description"), None)
         own = None if index is None else attributes[index].raw
-        raw = description(self._source, entry, part.clauses, own, self._said_elsewhere.get(id(part), ()))
+        raw = description(self._source, entry, part.clauses, own, self._other_lines.get(id(part), ()))
         if raw is None:
             return
-        at = len(attributes) if index is None else index
-        element.attributes = (*attributes[:at], Attribute("_description", raw), *attributes[at + 1 :])
+        position = len(attributes) if index is None else index
+        element.attributes = (*attributes[:position], Attribute("_description", raw), *attributes[position + 1 :])

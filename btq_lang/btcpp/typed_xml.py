@@ -71,8 +71,8 @@ def without(xml: str, tag: TypedTag) -> Iterator[str]:
     if tag.part in ("attribute", "value"):
         pairs = "".join(f" {key}={raw}" for key, raw in dict(tag.attributes).items())
         alone, opening = f"<{tag.name}{pairs}/>", f"<{tag.name}{pairs}>"
-    for kept in (opening, alone) if tag.has_end else (alone, opening):
-        yield before + kept + after
+    for replacement in (opening, alone) if tag.has_end else (alone, opening):
+        yield before + replacement + after
     yield before + alone + "".join(f"</{each}>" for each in reversed(tag.parents))
 
 
@@ -88,23 +88,23 @@ def _in_tag(match: re.Match[str], offset: int, parents: tuple[str, ...]) -> Type
     if match["start"] == "</":
         return None
     attributes: list[tuple[str, str]] = []
-    found: tuple[str, Span, str] | None = None  # the part, the word and the key
-    for each in _ATTRIBUTE.finditer(match.string, start + len(name), match.end("rest")):
-        raw = each["raw"]
+    typed_part: tuple[str, Span, str] | None = None  # the part, the word and the key
+    for attribute in _ATTRIBUTE.finditer(match.string, start + len(name), match.end("rest")):
+        raw = attribute["raw"]
         is_open = raw is not None and (len(raw) < 2 or raw[-1] != raw[0])
-        if each.start("key") <= offset <= each.end("key"):
-            found = "attribute", Span(*each.span("key")), ""
-        elif raw is not None and each.start("raw") < offset and (offset < each.end("raw") or is_open):
-            end = max(offset, each.start("raw") + 1) if is_open else each.end("raw") - 1
-            found = "value", Span(each.start("raw") + 1, end), each["key"]
+        if attribute.start("key") <= offset <= attribute.end("key"):
+            typed_part = "attribute", Span(*attribute.span("key")), ""
+        elif raw is not None and attribute.start("raw") < offset and (offset < attribute.end("raw") or is_open):
+            end = max(offset, attribute.start("raw") + 1) if is_open else attribute.end("raw") - 1
+            typed_part = "value", Span(attribute.start("raw") + 1, end), attribute["key"]
         elif raw is not None and not is_open:
-            attributes.append((each["key"], raw))
-    if found is None and match.string[offset - 1] in _BLANKS:
+            attributes.append((attribute["key"], raw))
+    if typed_part is None and match.string[offset - 1] in _BLANKS:
         before = match.string[start + len(name) : offset].rstrip(_BLANKS)
-        found = ("attribute", Span(offset, offset), "") if not before.endswith("=") else None
-    if found is None:
+        typed_part = ("attribute", Span(offset, offset), "") if not before.endswith("=") else None
+    if typed_part is None:
         return None
-    return TypedTag(found[0], found[1], name, tuple(attributes), found[2], parents, span, has_end)
+    return TypedTag(typed_part[0], typed_part[1], name, tuple(attributes), typed_part[2], parents, span, has_end)
 
 
 _BLANKS: Final = " \t\r\n"

@@ -91,9 +91,9 @@ def comment(text: str) -> str:
         return f"#{text.rstrip(_BLANKS)}"
     if "\n" not in text:
         begins_blank = text[:1] in _FIRST_BLANKS
-        said = text[:-1] if begins_blank and text[-1:] == " " and len(text) > 1 else text
-        if said == said.rstrip(_BLANKS) and begins_blank == (said is not text):
-            return f"#{said}"
+        line = text[:-1] if begins_blank and text[-1:] == " " and len(text) > 1 else text
+        if line == line.rstrip(_BLANKS) and begins_blank == (line is not text):
+            return f"#{line}"
     return f"/*{text.replace('*/', '* /')}*/"
 
 
@@ -102,8 +102,8 @@ def is_kept(text: str) -> bool:
     written = comment(text)
     if written.startswith("/*"):
         return written[2:-2] == text
-    said = written[1:]
-    return (f"{said} " if said[:1] in _FIRST_BLANKS else said) == text
+    line = written[1:]
+    return (f"{line} " if line[:1] in _FIRST_BLANKS else line) == text
 
 
 def _written(part: re.Match[str]) -> str:

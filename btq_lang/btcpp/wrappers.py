@@ -1,4 +1,4 @@
-"""Puts elements around the element of a node, and removes them.
+"""The elements that enforce requirements: made, put around the element of a node, and removed.
 
 One invariant: `unwrapped` is the inverse of `wrapped`, and knows what it needs from the elements alone: every added
 element has the attribute `_btq`, with the requirement that it enforces, and the outermost one records which attributes
@@ -7,15 +7,92 @@ it took from the node and their positions.  It does not know why an element is a
 
 from __future__ import annotations
 
-from collections.abc import Container, Sequence
-from typing import Final
+from collections.abc import Container, Iterable, Mapping, Sequence
+from typing import Final, Literal, TypeAlias
 
-from btq_lang.btcpp.around import Wrapper, marked, may_be_skipped
-from btq_lang.btcpp.document import Attribute, Content, Element, XmlComment
+from btq_lang.btcpp.document import Attribute, Content, Element, XmlComment, escape
 from btq_lang.btcpp.marks import MARK
 from btq_lang.catalog.kinds import CATEGORIES
+from btq_lang.util.record import Record
 
 MOVED: Final = "_btq_moved"
+
+WrapperTag: TypeAlias = Literal["Sequence", "ReactiveSequence", "Timeout"]
+LeafTag: TypeAlias = Literal["Script", "ScriptCondition"]
+
+# The kinds that enforce a clause: a log shows by them what stopped a node.
+LIMITING: Final = "Timeout"  # halts the node after a time
+WATCHING: Final = "ReactiveSequence"  # halts the node when a condition beside it changes
+EVALUATING: Final = "ScriptCondition"  # that condition, or the one that refuses a start
+
+# From the outside in: the wrappers that several requirements put around one node are sorted by this rank.
+START: Final = 0  # the beginning of the mission
+VALUES: Final = 1  # values that are read when the node starts
+CONDITION: Final = 2  # condition that must hold when the node starts
+CHECK: Final = 3  # condition that must hold when the node has succeeded
+GUARD: Final = 4  # condition that must hold while the node runs
+LIMIT: Final = 5
+INSIDE: Final = 6  # scripts that record the start and end of the node itself
+
+
+def marked(tag: str, requirement: str, attributes: Mapping[str, str], children: Iterable[Content] = ()) -> Element:
+    """An element that enforces a requirement; the values of its attributes are unescaped."""
+    spelt = [Attribute(name, escape(value)) for name, value in attributes.items()]
+    return Element(tag, [*spelt, Attribute(MARK, escape(requirement))], children)
+
+
+def leaf(tag: LeafTag, requirement: str, name: str, code: str, failed: str | None = None) -> Element:
+    """A Script or a ScriptCondition beside a node; `failed`: script that runs when it fails.
+
+    It does not succeed but is skipped, because a Sequence is skipped only if all its children are: a node that skips
+    itself must not become one that has succeeded.  So a Script runs as the condition of its being skipped.
+    """
+    skipped = code if tag == EVALUATING else f"{code}; true"
+    failing = {"_onFailure": failed} if failed is not None else {}
+    return marked(tag, requirement, {"name": name, "code": code, "_skipIf": skipped, **failing})
+
+
+def first_values(requirement: str, values: Mapping[str, str]) -> Element:
+    """Gives values to entries that are still unwritten when the tree runs for the first time.
+
+    A script cannot test whether an entry exists, so a node does: `WasEntryUpdated` fails if its entry was never
+    written. It also fails if the entry was not written since the last test, hence the `RunOnce`.  The entry has no
+    braces because a port creates an entry of its own type, in which no script can store a text.
+
+    Args:
+        values: by entry, as scripts name it (`@speed`); each a script.
+    """
+    writes = [
+        marked("WasEntryUpdated", requirement, {"entry": entry, "_onFailure": f"{entry} := {value}"})
+        for entry, value in values.items()
+    ]
+    # All of them are evaluated, whichever fails.
+    inside = marked("ForceSuccess", requirement, {}, [marked("ParallelAll", requirement, {}, writes)])
+    return marked("RunOnce", requirement, {"name": "btq_first"}, [inside])
+
+
+class Wrapper(Record):
+    """An element around a node.
+
+    Attributes:
+        rank: one of the constants above.
+        requirement: that it enforces.
+        attributes: except its name; values are unescaped.
+        before, after: its other children, before and after the node.
+    """
+
+    rank: int
+    requirement: str
+    tag: WrapperTag
+    name: str
+    attributes: tuple[tuple[str, str], ...] = ()
+    before: tuple[Element, ...] = ()
+    after: tuple[Element, ...] = ()
+
+
+def may_be_skipped(names: Sequence[str]) -> bool:
+    """Whether attributes of these names can make the engine skip their node."""
+    return "_skipIf" in names or "_while" in names
 
 
 def wrapped(element: Element, wrappers: Sequence[Wrapper]) -> Element:
@@ -23,13 +100,14 @@ def wrapped(element: Element, wrappers: Sequence[Wrapper]) -> Element:
     at least one wrapper, in the order of the definitions of the requirements."""
     ordered = sorted(wrappers, key=lambda wrapper: wrapper.rank)
     moved = _moved(element)
-    made = element
+    outermost = element
     for wrapper in reversed(ordered):
-        made = _around(made, wrapper)
+        outermost = _around(outermost, wrapper)
     if moved:
-        said = " ".join(f"{attribute.name}:{index}" for index, attribute in moved)
-        made.attributes = (*made.attributes, *(attribute for _, attribute in moved), Attribute(MOVED, said))
-    return made
+        positions = " ".join(f"{attribute.name}:{index}" for index, attribute in moved)
+        conditions = [attribute for _, attribute in moved]
+        outermost.attributes = (*outermost.attributes, *conditions, Attribute(MOVED, positions))
+    return outermost
 
 
 def unwrapped(element: Element, holding: Container[Element]) -> list[Content] | None:
@@ -49,11 +127,11 @@ def holding_nodes(root: Element) -> set[Element]:
     outside_in = [root]
     for element in outside_in:
         outside_in += element.elements
-    found: set[Element] = set()
+    holding: set[Element] = set()
     for element in reversed(outside_in):
-        if element.get(MARK) is None or not found.isdisjoint(element.elements):
-            found.add(element)
-    return found
+        if element.get(MARK) is None or not holding.isdisjoint(element.elements):
+            holding.add(element)
+    return holding
 
 
 def _moved(element: Element) -> list[tuple[int, Attribute]]:
@@ -72,7 +150,7 @@ def _around(element: Element, wrapper: Wrapper) -> Element:
     if wrapper.tag == "ReactiveSequence" and element.tag in CATEGORIES and element.tag != "SubTree":
         # The engine refuses an explicit form directly in a ReactiveSequence.
         inside = marked("Sequence", wrapper.requirement, {"name": f"{wrapper.name}_node"}, [element])
-    children = (*wrapper.before, inside, *wrapper.behind)
+    children = (*wrapper.before, inside, *wrapper.after)
     return marked(wrapper.tag, wrapper.requirement, {"name": wrapper.name, **dict(wrapper.attributes)}, children)
 
 
@@ -89,13 +167,13 @@ def _innermost(element: Element, holding: Container[Element]) -> Element:
 def _give_back(outermost: Element, node: Element) -> None:
     moved = outermost.get(MOVED) or ""
     own = {attribute.name: attribute for attribute in outermost.attributes}
-    for said in moved.split():
-        name, _, index = said.partition(":")
+    for entry in moved.split():
+        name, _, index = entry.partition(":")
         if name in own and index.isdecimal() and node.get(name) is None:
             place = outermost.place(own[name])
-            at = int(index)
+            position = int(index)
             given_back = Attribute(name, own[name].raw, place)
-            node.attributes = (*node.attributes[:at], given_back, *node.attributes[at:])
+            node.attributes = (*node.attributes[:position], given_back, *node.attributes[position:])
 
 
 _PRECONDITIONS: Final = ("_failureIf", "_successIf", "_skipIf", "_while")

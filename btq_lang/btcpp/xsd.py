@@ -122,18 +122,18 @@ def _types_of_models() -> Iterator[Element]:
     text = _x("element", {"name": "description", "type": "xs:string"})
     identity = _attribute("ID", "the name of the node", is_required=True)
     yield _x("complexType", {"name": "model"}, _some(*ports, text, fields), identity, *any_attribute)
-    says = (
+    attributes = (
         _attribute("name", "the name of the port", is_required=True),
         _attribute("type", "its type in C++"),
         _attribute("default", "its value where a node gives it none"),
     )
-    yield _x("complexType", {"name": "port", "mixed": "true"}, *says, *any_attribute)
+    yield _x("complexType", {"name": "port", "mixed": "true"}, *attributes, *any_attribute)
 
 
 def _tree_names(trees: Sequence[str]) -> Element:
     """The type of attributes that name a tree: any text, and the known trees to propose."""
-    known = _x("simpleType", {}, _restriction(trees))
-    return _x("simpleType", {"name": "tree"}, _x("union", {"memberTypes": "xs:string"}, *([known] if trees else [])))
+    proposed = _x("simpleType", {}, _restriction(trees))
+    return _x("simpleType", {"name": "tree"}, _x("union", {"memberTypes": "xs:string"}, *([proposed] if trees else [])))
 
 
 def _attribute(

@@ -44,6 +44,12 @@ def statement(word: str) -> str:
     return _STATEMENTS.get(word, "")
 
 
+def branch(word: str) -> str:
+    """How a tree has the branches that a word of programming languages begins, in the words of a message; empty for
+    other words.  A node of a program may be called so."""
+    return _BRANCHES.get(word, "")
+
+
 def is_of_leaves(word: str) -> bool:
     """Whether programs have leaves of that name too: a word after it may then be a label."""
     return _plain(word) in _OF_LEAVES
@@ -121,6 +127,11 @@ _STATEMENTS: Final = {
     ),
     **dict.fromkeys(("then", "finally", "do", "begin"), "a Sequence `->` runs its children one after another"),
     **dict.fromkeys(("end", "endif", "fi", "done", "pass"), "indentation shows where a node's children end"),
+}
+_BRANCHES: Final = {
+    **dict.fromkeys(("Else", "Otherwise"), "the third child of an IfThenElse is the else branch"),
+    **dict.fromkeys(("Elif", "ElseIf"), "the third child of an IfThenElse is its else branch: another IfThenElse"),
+    "Then": "the second child of an IfThenElse, after the condition, is the then branch",
 }
 _OF_LEAVES: Final = frozenset(
     (

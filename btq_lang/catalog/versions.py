@@ -56,7 +56,7 @@ class BehaviorChange(Record):
         keeps: the value of `port` that keeps the old meaning.
         until: the first release that does not do it any more; empty if all do.
         after: the first release that did what is changed; empty if all before did.
-        when: what else there must be in the tree: a condition that checks/moved_engine.py or moved_nodes.py knows.
+        when: what else there must be in the tree: a condition that checks/target_changes.py knows.
     """
 
     since: str

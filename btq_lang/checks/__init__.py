@@ -1,25 +1,24 @@
 """The checks: what is wrong with a file beyond its syntax.
 
-One invariant: a check is a function of the view of an item, and yields diagnostics whose spans count from that item; it
-never raises, whatever the file.  A module holds the rules of one subject, and `CHECKS` below maps types
-of items to functions.  A check gets all it needs from its view, and so from the query store (workspace/queries.py),
-which caches results from one edit to the next.  Not known here: what an edit changed, and how findings are printed.
+One invariant: a check is a function of the view of an item.  It yields diagnostics whose spans count from that item,
+and never raises.  A module holds the rules of one subject, and `CHECKS` maps types of items to functions.  A check gets
+all it needs from its view, and so from the query store (workspace/queries.py), which caches results from one edit to
+the next.  Checks do not know what an edit changed, nor how findings are printed.
 
     view.py, sorted_nodes.py   what a check sees: its item, and the nodes of a tree, sorted by what checks look for
     lookups.py   what only checks look up in the files, beside workspace/inputs.py
-    kinds.py, names.py, ports.py, children.py, one_parent.py, own_lines.py   what the engine would refuse
+    kinds.py, names.py, ports.py, own_nodes.py, children.py, misplaced_children.py   what the engine would refuse
     trees.py, includes.py, elements.py, missing_ids.py, stale_models.py   likewise, of whole trees, models and files
-    positional.py, literals.py, outputs.py, scripts.py, counts.py, empty.py   values, of ports too
-    entries.py, pointers.py, writers.py, keys.py, misspelt.py, meant_entries.py, mixed_types.py   blackboard entries
-    flow.py, unset.py, arguments.py   entries across trees: what is read that nothing sets, given that nothing reads
+    positional.py, literals.py, port_values.py, scripts.py, strings.py   values, of ports too
+    entries.py, pointers.py, writers.py, misspelt.py, meant_entries.py, mixed_types.py   blackboard entries
+    calls.py, flow.py, unset.py, arguments.py   entries across trees: read and never set, given and never read
     engines.py, version3.py   which versions of the engine a file is for
-    moving.py, moved_engine.py, moved_nodes.py   what another version of the engine or distribution of Nav2 changes
-    statuses.py, results.py, unreachable.py, reactive.py, preconditions.py, swallowing.py   what nodes return, and traps
-    nav2_nodes.py, isolated.py, shared_servers.py, resets.py, unread.py   nodes of Nav2: trees for goals, and traps
-    measures.py, clauses.py, bounds.py, limits.py   requirements by themselves
-    requirements.py, qualities.py, repeated.py, prose.py   names of requirements and qualities
-    demanded.py, demands.py, budgets.py, signals.py, renewals.py, unenforced.py   requirements at their nodes
-    calls.py, origins.py, strings.py, wording.py, placeholders.py   shared; XML
+    moving.py, target_changes.py   what another version of the engine or distribution of Nav2 changes
+    statuses.py, results.py, unreachable.py, reactive.py, preconditions.py, resets.py   what nodes return, and traps
+    nav2_nodes.py, unread.py   nodes of Nav2: what they need and share, trees for goals, error codes
+    requirements.py, clauses.py, bounds.py, qualities.py, prose.py, wording.py   requirements by themselves
+    demanded.py, demands.py, budgets.py, limits.py, signals.py, renewals.py, enforcement.py   at their nodes
+    origins.py, placeholders.py   diagnostics shown on XML; classic placeholders
     suppressions.py, silencing.py   silenced rules
 """
 
@@ -33,34 +32,28 @@ from btq_lang.checks import (
     bounds,
     children,
     clauses,
-    counts,
     demands,
     elements,
-    empty,
     includes,
-    isolated,
-    keys,
     kinds,
     literals,
     lookups,
     meant_entries,
-    measures,
     misspelt,
     mixed_types,
     moving,
     names,
-    outputs,
+    nav2_nodes,
     placeholders,
+    port_values,
     ports,
     preconditions,
     prose,
     qualities,
     reactive,
-    repeated,
     requirements,
     resets,
     scripts,
-    shared_servers,
     stale_models,
     trees,
     unreachable,
@@ -98,7 +91,7 @@ _OF_MODELS: tuple[Check, ...] = (
     *_OF_PORTS,
     literals.number_for_text,
     names.forbidden_name,
-    empty.empty_text,
+    names.empty_text,
 )
 _OF_CLAUSES: tuple[Check, ...] = (
     requirements.requirement_without_text,
@@ -123,7 +116,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
     syntax.Verbatim: (elements.refused_element, elements.ignored_element),
     syntax.Root: (
         trees.unknown_tree,
-        empty.empty_text,
+        names.empty_text,
         ports.duplicate_attribute,
         version3.version_3_file,
         elements.ignored_element,
@@ -152,11 +145,11 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         *_OF_PORTS,
         literals.old_entry,
         literals.json_in_braces,
-        keys.key_in_braces,
+        port_values.key_in_braces,
         literals.number_for_text,
         mixed_types.entry_with_two_types,
-        outputs.literal_for_output,
-        counts.count_of_nothing,
+        port_values.literal_for_output,
+        port_values.count_of_nothing,
         children.child_count,
         children.switch_cases,
         children.parallel_threshold,
@@ -173,8 +166,8 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         requirements.unknown_requirement,
         requirements.conflicting_requirement,
         *_OF_CLAUSES,
-        repeated.named_twice,
-        empty.empty_text,
+        clauses.named_twice,
+        names.empty_text,
         qualities.quality_name,
         prose.prose_constraint,
         reactive.reactive_multiple_async,
@@ -185,42 +178,42 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         preconditions.skipped_condition,
         unreachable.unreachable_child,
         unread.tree_of_goal,
-        isolated.isolated_node,
-        shared_servers.shared_server,
+        nav2_nodes.isolated_node,
+        nav2_nodes.shared_server,
         resets.memory_lost,
         resets.last_success_lost,
         unread.default_instead,
         unread.error_code_not_collected,
         unread.foreign_error_code,
         moving.moving_on,
-        measures.unresolved,
+        requirements.unresolved,
     ),
     syntax.Model: _OF_MODELS,
     syntax.Models: _OF_MODELS,
     syntax.Signal: (
         kinds.duplicate_definition,
-        empty.empty_text,
+        names.empty_text,
         requirements.unused_word,
-        measures.unresolved,
+        requirements.unresolved,
     ),
     syntax.Context: (
         kinds.duplicate_definition,
         requirements.unused_word,
-        measures.unresolved,
+        requirements.unresolved,
     ),
     syntax.Requirement: (
         requirements.conflicting_requirement,
         requirements.unused_requirement,
         *_OF_CLAUSES,
-        empty.empty_text,
+        names.empty_text,
         qualities.quality_name,
         prose.prose_constraint,
-        measures.unresolved,
-        measures.requirement_without_subject,
+        requirements.unresolved,
+        requirements.requirement_without_subject,
     ),
-    syntax.Apply: (requirements.unknown_requirement, repeated.named_twice, measures.unresolved),
+    syntax.Apply: (requirements.unknown_requirement, clauses.named_twice, requirements.unresolved),
     syntax.Qualities: (qualities.quality_name,),
-    syntax.QualityDecl: (kinds.duplicate_definition, empty.empty_text, qualities.quality_name),
+    syntax.QualityDecl: (kinds.duplicate_definition, names.empty_text, qualities.quality_name),
 }
 
 
@@ -240,10 +233,10 @@ _OF_STRUCTURE: frozenset[Check] = frozenset(
         resets.last_success_lost,
     )
 )
-# Of models, of which a file has many, `_OF_PORTS` need only the ports, and these only the ports of trees' models.
+# A file has many models: `_OF_PORTS` concern those with ports, and these checks those of trees with ports.
 _OF_PORTS_OF_TREES: frozenset[Check] = frozenset((literals.number_for_text, names.forbidden_name))
-_OF_NODES = tuple(each for each in CHECKS[syntax.Model] if each not in _OF_PORTS_OF_TREES)
-_WITHOUT_PORTS = tuple(each for each in _OF_NODES if each not in _OF_PORTS)
+_OF_NODES = tuple(rule for rule in CHECKS[syntax.Model] if rule not in _OF_PORTS_OF_TREES)
+_WITHOUT_PORTS = tuple(rule for rule in _OF_NODES if rule not in _OF_PORTS)
 
 
 def check(workspace: Workspace, path: str) -> tuple[Diagnostic, ...]:
@@ -251,8 +244,8 @@ def check(workspace: Workspace, path: str) -> tuple[Diagnostic, ...]:
 
         >>> from btq_lang import Workspace, check
         >>> workspace = Workspace.of({"main.btq": "BehaviorTree Main\\n    Sequnce\\n        Action Dock\\n"})
-        >>> (found,) = check(workspace, "main.btq")
-        >>> found.rule, found.fixes[0].title
+        >>> (diagnostic,) = check(workspace, "main.btq")
+        >>> diagnostic.rule, diagnostic.fixes[0].title
         ('unknown-node', 'Replace `Sequnce` with `Sequence`')
 
     Args:
@@ -265,8 +258,8 @@ def check(workspace: Workspace, path: str) -> tuple[Diagnostic, ...]:
     Raises:
         KeyError: the file does not exist.
     """
-    (found,) = check_each(workspace, (path,))
-    return found
+    (diagnostics,) = check_each(workspace, (path,))
+    return diagnostics
 
 
 def check_each(workspace: Workspace, paths: Iterable[str]) -> Iterator[tuple[Diagnostic, ...]]:
@@ -279,31 +272,33 @@ def check_each(workspace: Workspace, paths: Iterable[str]) -> Iterator[tuple[Dia
     store.sweep(always=True)  # cached results refer to each other, and so to the workspace
 
 
-def findings(store: Store[Workspace], path: str, seen: Iterable[Reported] = ()) -> FileFindings:
+def findings(store: Store[Workspace], path: str, of_logs: Iterable[Reported] = ()) -> FileFindings:
     """The same for a file of the store's workspace, with the diagnostics of each item.
 
     Args:
-        seen: what logs show, which no check reads, as the project configures it.
+        of_logs: what logs show, which no check reads, as the project configures it.
     """
-    # Without a text, as XML that cannot be read, it has no items: what was found in them is kept until it can be read.
-    # Of C++, the text has the models, of which only what is wrong in the C++ itself is reported.
+    # XML that cannot be read has no text, and so no items: their findings are kept until it can be read again.
+    # The text of a C++ file is its models, but only what is wrong in the C++ itself is reported.
     file = store.state.files[path]
     reported = store.ask(reported_in_file, path, False) if file.text and not file.is_cpp else ()
-    return findings_of(store.state, path, (*reported, *seen))
+    return findings_of(store.state, path, (*reported, *of_logs))
 
 
 def findings_of(workspace: Workspace, path: str, reported: Iterable[Reported]) -> FileFindings:
     """The diagnostics of a file's items, without those that comments silence; those of XML are placed in the XML."""
-    found = FileFindings([(each, each.starts(workspace)) for each in reported])
+    file_findings = FileFindings([(item, item.starts(workspace)) for item in reported])
     file = workspace.files[path]
     if not file.has_directives and not workspace.foreign:
-        return found
-    diagnostics: Iterable[Diagnostic] = found.diagnostics
+        return file_findings
+    diagnostics: Iterable[Diagnostic] = file_findings.diagnostics
     if file.has_directives:
         from btq_lang.checks.suppressions import Suppressions  # few files have any
 
         suppressions = Suppressions(file)
-        diagnostics = [each for each in (*diagnostics, *suppressions.useless) if not suppressions.silence(each)]
+        diagnostics = [
+            diagnostic for diagnostic in (*diagnostics, *suppressions.useless) if not suppressions.silence(diagnostic)
+        ]
     if workspace.foreign:
         from btq_lang.checks.origins import shown_on_origins  # few workspaces have any
 
@@ -333,11 +328,11 @@ def reported_in_file(store: Store[Workspace], viewpoint: str, is_alone: bool) ->
     Args:
         is_alone: leave out what is wrong in the files that it includes.
     """
-    # What demands add depends on all files in scope: items to which they add nothing should not depend on that.  In a
-    # target they may add something else.
+    # Demands depend on all files in scope: an item to which they add no finding should not.  In a target they may add
+    # other findings.
     demanded = store.ask(demands.demands_by_item, viewpoint)
     has_target = View(store, viewpoint).project.moves_to is not None
-    found = [
+    by_item = [
         store.ask(
             _reported,
             viewpoint,
@@ -347,9 +342,9 @@ def reported_in_file(store: Store[Workspace], viewpoint: str, is_alone: bool) ->
         )
         for facts in store.ask(lookups.items, viewpoint)
     ]
-    wrong = tuple([each for each in found if each is not None])
+    wrong = tuple([reported for reported in by_item if reported is not None])
     signs = store.ask(lookups.signs, viewpoint) if wrong and not View(store, viewpoint).project.written_for else None
-    is_refused = version3.refuses([one for each in wrong for one in each.diagnostics], signs)
+    is_refused = version3.refuses([diagnostic for reported in wrong for diagnostic in reported.diagnostics], signs)
     return (_newer(store, viewpoint) if is_refused and store.ask(is_newer_than_engine, viewpoint) else ()) or wrong
 
 
@@ -359,8 +354,8 @@ def _newer(store: Store[Workspace], viewpoint: str) -> tuple[Reported, ...]:
     if root is None:
         return ()
     view = View(store, viewpoint, root)
-    wanted = tuple(configured(view.project, viewpoint, (version3.version_4_file(view),)))
-    return (Reported(wanted, (viewpoint, root.item)),) if wanted else ()
+    selected = tuple(configured(view.project, viewpoint, (version3.version_4_file(view),)))
+    return (Reported(selected, (viewpoint, root.item)),) if selected else ()
 
 
 def _reported(
@@ -369,22 +364,22 @@ def _reported(
     view = View(store, viewpoint, facts)
     entry = view.entry
     checks = (*checks_of(entry), demands.demands) if is_demanded else checks_of(entry)
-    found: Iterable[Diagnostic] = [diagnostic for each in checks for diagnostic in each(view)]
+    diagnostics: Iterable[Diagnostic] = [diagnostic for rule in checks for diagnostic in rule(view)]
     if view.project.moves_to is not None:
-        from btq_lang.checks.moved_engine import new_in_target  # few checks have a target
+        from btq_lang.checks.target_changes import new_in_target  # few checks have a target
 
-        found = [*found, *new_in_target(view, checks, [*found])]
+        diagnostics = [*diagnostics, *new_in_target(view, checks, [*diagnostics])]
     if type(facts.item) is syntax.Include and not is_alone:
-        found = [*found, *includes.include_with_errors(view, _errors_in)]
+        diagnostics = [*diagnostics, *includes.include_with_errors(view, _errors_in)]
     if entry.diagnostics:
-        from btq_lang.checks.own_lines import on_own_lines  # few items have mistakes in their syntax
+        from btq_lang.checks.misplaced_children import on_own_lines  # few items have mistakes in their syntax
         from btq_lang.checks.positional import with_ports
 
         reported = meant_entries.with_entries(view, with_ports(view, on_own_lines(view, entry.diagnostics)))
-        found = (*reported, *_on_sound_lines(found, entry, view.text))
-    elif not found:
+        diagnostics = (*reported, *_on_sound_lines(diagnostics, entry, view.text))
+    elif not diagnostics:
         return None
-    wanted = tuple(configured(view.project, viewpoint, trees.as_uncreated(view, found)))
+    wanted = tuple(configured(view.project, viewpoint, trees.as_uncreated(view, diagnostics)))
     return Reported(wanted, (viewpoint, facts.item)) if wanted else None
 
 
@@ -394,9 +389,9 @@ def _errors_in(store: Store[Workspace], viewpoint: str) -> tuple[tuple[Place, st
     view = View(store, viewpoint)
     if not view.is_xml:
         return view.ask(lookups.syntax_errors)
-    found = findings_of(view.ask(inputs.everything), viewpoint, view.ask(reported_in_file, True)).diagnostics
-    errors = [each for each in found if each.effective_severity is Severity.ERROR]
-    return tuple([(Place(each.span, viewpoint), each.message) for each in errors])
+    diagnostics = findings_of(view.ask(inputs.everything), viewpoint, view.ask(reported_in_file, True)).diagnostics
+    errors = [diagnostic for diagnostic in diagnostics if diagnostic.effective_severity is Severity.ERROR]
+    return tuple([(Place(diagnostic.span, viewpoint), diagnostic.message) for diagnostic in errors])
 
 
 def checks_of(entry: syntax.Entry) -> tuple[Check, ...]:
@@ -408,14 +403,16 @@ def checks_of(entry: syntax.Entry) -> tuple[Check, ...]:
     if type(item) is syntax.Model and item.category.raw != "SubTree":
         return _OF_NODES
     if entry.diagnostics and any(problem.rule in _STRUCTURE_IS_LOST for problem in entry.diagnostics):
-        checks = tuple(each for each in checks if each not in _OF_STRUCTURE)
+        checks = tuple(rule for rule in checks if rule not in _OF_STRUCTURE)
     return checks
 
 
-def _on_sound_lines(found: Iterable[Diagnostic], entry: syntax.Entry, text: str) -> Iterator[Diagnostic]:
+def _on_sound_lines(diagnostics: Iterable[Diagnostic], entry: syntax.Entry, text: str) -> Iterator[Diagnostic]:
     """The diagnostics that are not on a line with a syntax error, whose meaning is unknown."""
-    broken = {_line(text, each) for each in entry.diagnostics if each.effective_severity is Severity.ERROR}
-    return (each for each in found if _line(text, each) not in broken)
+    broken = {
+        _line(text, diagnostic) for diagnostic in entry.diagnostics if diagnostic.effective_severity is Severity.ERROR
+    }
+    return (diagnostic for diagnostic in diagnostics if _line(text, diagnostic) not in broken)
 
 
 def _line(text: str, diagnostic: Diagnostic) -> int:

@@ -23,12 +23,12 @@ from btq_lang.workspace.workspace import Workspace
 
 
 def unread_argument(view: View) -> Iterator[Diagnostic]:
-    """An argument of a SubTree that nothing in its tree names, once for each tree; one that the tree's declared ports
-    lack is an unknown port."""
+    """An argument of a SubTree that nothing in its tree names, once for each tree.  If the tree declares ports, the
+    argument is an unknown port instead."""
     reported: set[tuple[str, str]] = set()
-    for seen in view.seen.subtrees:
-        tree = seen.id.text if seen.id is not None else ""
-        for pair in seen.node.attributes:
+    for resolved in view.seen.subtrees:
+        tree = resolved.id.text if resolved.id is not None else ""
+        for pair in resolved.node.attributes:
             name = pair.key.text
             if not is_port_name(name) or (tree, name) in reported or not view.ask(lookups.is_defined, Kind.TREE, tree):
                 continue
@@ -38,14 +38,16 @@ def unread_argument(view: View) -> Iterator[Diagnostic]:
             if view.ask(_is_named, tree, name):
                 continue
             reported.add((tree, name))
-            meant = [each for each in view.ask(_meant, tree, name) if seen.node.attribute(each) is None]
-            fixes = tuple([replace_fix(f"Replace `{name}` with `{each}`", pair.key.span, each) for each in meant])
+            meant = [
+                entry for entry in view.ask(_similar_entries, tree, name) if resolved.node.attribute(entry) is None
+            ]
+            fixes = tuple([replace_fix(f"Replace `{name}` with `{entry}`", pair.key.span, entry) for entry in meant])
             message = f"nothing in `{tree}` reads `{name}`{did_you_mean(tuple(meant))}"
             yield Diagnostic("unread-argument", pair.key.span, message, fixes=fixes)
 
 
 def unread_port(view: View) -> Iterator[Diagnostic]:
-    """The same for a declared port, at its declaration, if a SubTree gives it."""
+    """A declared port that SubTrees give a value and nothing in the tree names, reported at its declaration."""
     for owner in view.owners:
         is_of_tree = isinstance(owner, Tree) or owner.category.raw == "SubTree"
         tree = owner.name.text if is_of_tree and owner.name is not None else ""
@@ -65,9 +67,8 @@ def _is_given(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> 
 
 
 @of_scope
-def _meant(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> tuple[str, ...]:
-    """The entries of a tree whose names are similar."""
-    return near(name, [each for each in store.ask(below, viewpoint, tree).uses if each.isidentifier()])
+def _similar_entries(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> tuple[str, ...]:
+    return near(name, [entry for entry in store.ask(below, viewpoint, tree).uses if entry.isidentifier()])
 
 
 @on_circle(True)
@@ -75,10 +76,10 @@ def _meant(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> tup
 def _is_named(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
     """Whether anything in a tree may read or write an entry."""
     view = View(store, viewpoint)
-    own, found = view.ask(handling, tree), view.ask(inputs.definition, Kind.TREE, tree)
-    if own.is_open or own.has_strangers or found is None or name in view.ask(_words, tree):
+    own, definition = view.ask(handling, tree), view.ask(inputs.definition, Kind.TREE, tree)
+    if own.is_open or own.has_strangers or definition is None or name in view.ask(_words, tree):
         return True
-    if any(seen.kind is None and not seen.is_subtree for seen in view.seen_in(*found).all):
+    if any(resolved.kind is None and not resolved.is_subtree for resolved in view.seen_in(*definition).all):
         from btq_lang.catalog.nav2.navigator import ENTRIES  # few arguments are not named
 
         if name in ENTRIES:
@@ -88,12 +89,12 @@ def _is_named(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> 
 
 @of_scope
 def _words(store: Store[Workspace], viewpoint: str, tree: str) -> frozenset[str]:
-    """All words in the values of a tree's attributes: programs read names of entries from some, whatever their form."""
+    """All words in the values of a tree's attributes: a program may read the name of an entry from any of them."""
     view = View(store, viewpoint)
-    found = view.ask(inputs.definition, Kind.TREE, tree)
+    definition = view.ask(inputs.definition, Kind.TREE, tree)
     words: set[str] = set()
-    for seen in view.seen_in(*found).given if found is not None else ():
-        for pair in seen.node.attributes:
+    for resolved in view.seen_in(*definition).given if definition is not None else ():
+        for pair in resolved.node.attributes:
             if pair.value is not None:
                 words.update(_WORD(pair.value.text) if pair.value.text not in ("=", "{=}") else (pair.key.text,))
     return frozenset(words)

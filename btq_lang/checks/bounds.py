@@ -1,5 +1,10 @@
-"""Bounds that can never be kept or never be broken, whatever the robot does, and `uses` of signals without
-consumption."""
+"""Bounds that can never be kept or never be broken, and `uses` of signals without consumption.
+
+A clause about the mission comes out the same in every run if it asks what happens before or after the run: a run is
+judged by itself, and the mission starts once in it, before all else, and ends after all else.
+
+One invariant: what is only likely to come out the same is not reported.
+"""
 
 from __future__ import annotations
 
@@ -10,9 +15,8 @@ from typing import Final
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import Dimension, parse_unit
-from btq_lang.catalog.verbs import VERBS
+from btq_lang.catalog.verbs import VERBS, words
 from btq_lang.checks import lookups
-from btq_lang.checks.one_run import same_in_every_run
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related, write_fix
 from btq_lang.syntax import tree as syntax
@@ -22,13 +26,13 @@ from btq_lang.util.text import Span
 
 
 def impossible_bound(view: View) -> Iterator[Diagnostic]:
-    """A fractional number of attempts, a negative time, and what comes out the same in every run."""
+    """A fractional number of attempts, a negative time, and a claim that every run answers alike."""
     for requirement, claim in _claims(view):
         bound, verb = claim.bound, claim.verb.raw
         operand = VERBS[verb].operand
         is_count = operand in _COUNTED
-        if (found := same_in_every_run(view, claim)) is not None:
-            yield found
+        if (diagnostic := same_in_every_run(view, claim)) is not None:
+            yield diagnostic
         elif bound is not None:
             for amount in syntax.walk(bound):
                 if not isinstance(amount, syntax.Amount):
@@ -57,8 +61,8 @@ def uses_of_gauge(view: View) -> Iterator[Diagnostic]:
             continue
         if signal.behaviour and signal.behaviour.raw != "gauge":
             continue
-        at = signal.behaviour.span if signal.behaviour else Span(*[(signal.source or signal.unit).end] * 2)
-        place = Place(at, declaration.path, declaration.owner.item)
+        span = signal.behaviour.span if signal.behaviour else Span(*[(signal.source or signal.unit).end] * 2)
+        place = Place(span, declaration.path, declaration.owner.item)
         words = ("level", "counter") if signal.unit.text == "%" else ("counter", "level")
         message = f"`{claim.resource.text}` is neither a counter nor a level, so its use is undefined"
         fixes = tuple(
@@ -78,7 +82,7 @@ def _claims(view: View) -> Iterator[tuple[syntax.Requirement, syntax.Claim]]:
 
 
 def _value(amount: syntax.Amount) -> tuple[float, str]:
-    """A value, if it is a count or a time; others are reported elsewhere or are a parameter's."""
+    """A number, and "count" or "time"; an empty text for any other value, which another rule reports."""
     word = amount.word
     number, what = 0.0, ""
     if word.kind == NUMBER:
@@ -115,11 +119,11 @@ def _shown(amount: syntax.Amount) -> str:
 
 
 def _is_enforceable(view: View, written: syntax.Requirement) -> bool:
-    """Whether the engine is to enforce its times, which are then reported as limit-too-small."""
+    """Whether the engine is to enforce the times of a requirement; limit-too-small reports them then."""
     from btq_lang.requirements.definitions import requirement  # few files have claims about times
 
-    found, _ = view.ask(requirement, written.name.text) if written.name is not None else (None, ())
-    return found is not None and found.is_enforceable
+    resolved, _ = view.ask(requirement, written.name.text) if written.name is not None else (None, ())
+    return resolved is not None and resolved.is_enforceable
 
 
 @cache
@@ -128,5 +132,89 @@ def _dimensions() -> dict[Dimension, str]:
     return {unit.dimension: what for symbol, what in units if (unit := parse_unit(symbol)) is not None}
 
 
+def same_in_every_run(view: View, claim: syntax.Claim) -> Diagnostic | None:
+    """The diagnostic for a claim that every run answers alike; None if runs may differ."""
+    problem = _of_subject(view, claim) or _of_event(view, claim) or _of_span(view, claim)
+    if problem is None:
+        return None
+    message, note = problem
+    return Diagnostic("impossible-bound", Span(claim.start, claim.end), message, notes=(note,))
+
+
+def _of_subject(view: View, claim: syntax.Claim) -> tuple[str, str] | None:
+    """The message and the note for a claim about how often, or after what, a mission starts."""
+    verb, event = claim.verb.raw, claim.event
+    if not (verb in _STARTS and _is_mission(view, claim.subject)):
+        return None
+    if event is None:
+        message = f"a mission starts only once in a run, so `{verb}` does not apply to it"
+        return message, "name the node whose starts to count: `MoveBase tries at most 3`"
+    note = "name the node that is meant: `Dock starts within 2 s after Batch succeeds`"
+    if verb == "follows" and event.condition is not None:
+        note = "for what must hold when it starts, write `mission needs …`"
+    return "a mission starts before all else in its run, not after it", note
+
+
+def _of_event(view: View, claim: syntax.Claim) -> tuple[str, str] | None:
+    """The message and the note for a claim about what happens after the mission has ended, or what runs before it."""
+    event = claim.event
+    if event is None or not _is_of_mission(view, event):
+        return None
+    if event.happening != "starts":
+        return f"nothing happens in a run after `{_event_text(event)}`", _BY_ITSELF
+    if claim.verb.raw != "ends" or not _starts_first(view) or _is_mission(view, claim.subject):
+        return None
+    ending = _path_text(claim.subject) if isinstance(claim.subject, syntax.Path) else "…"
+    note = f"for the time from there on, write `from mission starts to {ending} finishes takes at most …`"
+    return f"no other node runs yet at `{_event_text(event)}`", note
+
+
+def _of_span(view: View, claim: syntax.Claim) -> tuple[str, str] | None:
+    """The message and the note for a claim about a time that begins when the mission ends, or ends when it starts."""
+    if not isinstance(claim.subject, syntax.Between):
+        return None
+    for event, side, is_outside in ((claim.subject.first, "after", False), (claim.subject.last, "before", True)):
+        if event is not None and (event.happening == "starts") is is_outside and _is_of_mission(view, event):
+            return f"nothing happens in a run {side} `{_event_text(event)}`", _BY_ITSELF
+    return None
+
+
+def _is_of_mission(view: View, event: syntax.Event) -> bool:
+    return event.condition is None and bool(event.happening) and (event.path is None or _is_mission(view, event.path))
+
+
+def _is_mission(view: View, subject: syntax.Subject | None) -> bool:
+    """Whether a subject means the mission, by that word or by the name of its root.  The root must have children, and
+    no other tree may run it: a single action is rather a part of a mission."""
+    if not isinstance(subject, syntax.Path):
+        return isinstance(subject, syntax.Mission)
+    from btq_lang.requirements.nodes import callers, find, mission  # few clauses need them
+
+    root = view.ask(mission)
+    if root is None or not root.children or view.is_used_elsewhere or view.ask(callers, root.tree):
+        return False
+    return [target.node for target in view.ask(find, tuple(name.text for name in subject.names))] == [root]
+
+
+def _starts_first(view: View) -> bool:
+    """Whether the mission's root is known to start before its children in a log."""
+    from btq_lang.requirements.nodes import mission  # as above
+
+    root = view.ask(mission)
+    return root is not None and root.flow in _SEEN_FIRST
+
+
+def _event_text(event: syntax.Event) -> str:
+    return f"{_path_text(event.path) if event.path is not None else 'mission'} {event.happening}"
+
+
+def _path_text(path: syntax.Path) -> str:
+    return "/".join(name.raw for name in path.names)
+
+
 _COUNTED: Final = ("count", "rate")
 _TIMED: Final = ("duration", "deadline", "rate", "reaction")
+# Verbs about when, and how often, a node starts.
+_STARTS: Final = words(operands=("count", "rate", "event")) | {"starts"}
+_SEEN_FIRST: Final = ("sequence", "fallback", "parallel", "parallel-all", "choice", "retry", "repeat")
+_BY_ITSELF: Final = "each run is judged by itself"

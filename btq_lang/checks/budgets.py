@@ -1,5 +1,5 @@
-"""Budgets that do not add up: the demands on the children do not fit into the demand on their parent.  Also odds that
-the nodes below do not ensure, and odds that no window is long enough to show."""
+"""Budgets that do not add up: the demands on the children exceed the demand on their parent; odds that the nodes below
+do not ensure, and odds that no window is long enough to show."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from btq_lang.workspace.resolved import ResolvedNode
 
 
 def budget_exceeded(demanded: Demanded) -> Iterator[Found]:
-    """The children may take more than their parent may: in the worst case, or always."""
+    """Children that may take longer than their parent is allowed to: in the worst case, or always."""
     for applied, claim, node, place in demanded.claims:
         most = claim.highest if VERBS[claim.verb].limits else None
         if most is None or not (node.children or node.category == "SubTree"):
@@ -70,13 +70,13 @@ def odds_beyond_children(demanded: Demanded) -> Iterator[Found]:
             continue
         if odds is None and VERBS[claim.verb].limits != "success":
             continue
-        wanted = odds.probability if odds is not None else 1.0
+        demanded_share = odds.probability if odds is not None else 1.0
         ensured = _ensured(demanded.budgets, claim, node)
-        if ensured is None or ensured[0] >= wanted - 1e-9:
+        if ensured is None or ensured[0] >= demanded_share - 1e-9:
             continue
         likely, parts, rest = ensured
         message = (
-            f"{_called(applied, node)} must meet `{claim.text}` in {_percent(wanted)} of activations, but "
+            f"{_called(applied, node)} must meet `{claim.text}` in {_percent(demanded_share)} of activations, but "
             f"the requirements of the nodes below it guarantee only {_percent(likely)}{rest}"
         )
         related = tuple(Related(part.place, f"fails in up to {_percent(share)}") for part, share in parts if share)
@@ -106,7 +106,7 @@ def window_too_small(requirement: ResolvedRequirement) -> Iterator[Found]:
 
 
 def _held_against(claim: ResolvedClaim, budget: Budget) -> Range | None:
-    """The part of a budget that a claim is about."""
+    """The range of durations in a budget that a claim limits: until success, or until completion."""
     return budget.success if VERBS[claim.verb].limits == "success" else budget.completes
 
 
@@ -117,8 +117,8 @@ def _share(term: DurationTerm) -> str:
 def _ensured(
     budgets: Budgets, claim: ResolvedClaim, node: ResolvedNode
 ) -> tuple[float, list[tuple[ResolvedNode, float]], str] | None:
-    """The probability that the demands below a node make a claim true, what each child may miss, and what that leaves
-    out; None if it is unknown, or the duration is too long anyway."""
+    """The probability that the demands below a node make a claim true, the share that each child may miss, and a remark
+    on what the probability leaves out; None if it is unknown, or if the duration is too long anyway."""
     most = claim.highest
     limit = most[0] if most is not None else inf
     limits = VERBS[claim.verb].limits
@@ -139,7 +139,7 @@ def _ensured(
 
 
 def _called(applied: Applied, node: ResolvedNode) -> str:
-    """The name to show: the mission, or a tree if its root has no name of its own."""
+    """The name of a node in a message: the mission, or its tree if it is a root without a name."""
     if isinstance(applied.subject, MissionRun):
         return "`mission`"
     is_unnamed_root = node.parent is None and node.node.name is None and node.tree is not None

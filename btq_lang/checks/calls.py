@@ -50,16 +50,16 @@ def is_uncreated(store: Store[Workspace], viewpoint: str, tree: str) -> bool:
 
 
 def circle(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[str, ...] | None:
-    """The shortest way from a tree back to itself, both ends included; of trees that reach each other only the first
-    has one: there it is reported."""
+    """The shortest way from a tree back to itself, both ends included.  Of the trees of a circle only the first has
+    one, as it is reported there."""
     return store.ask(_circles, viewpoint).get(tree)
 
 
 def has_gaps(store: Store[Workspace], viewpoint: str) -> bool:
-    """Whether a SubTree names no tree or an unknown one, so that it is not known which trees are reached."""
+    """Whether a SubTree names no tree or an unknown one, so that the reached trees are unknown."""
     view = View(store, viewpoint)
-    known = dict(view.ask(_graph))
-    return not view.ask(inputs.is_complete) or any(name not in known for called, _ in known.values() for name in called)
+    graph = dict(view.ask(_graph))
+    return not view.ask(inputs.is_complete) or any(name not in graph for called, _ in graph.values() for name in called)
 
 
 @of_scope
@@ -73,24 +73,24 @@ def _graph(store: Store[Workspace], viewpoint: str) -> tuple[tuple[str, Runs], .
 @of_scope
 def _callers(store: Store[Workspace], viewpoint: str) -> dict[str, tuple[str, ...]]:
     graph = store.ask(_graph, viewpoint)
-    meant = [(name, names) for name, (_, names) in graph]
-    return _turned((*[(name, called) for name, (called, _) in graph], *meant))
+    probable = [(name, names) for name, (_, names) in graph]
+    return _turned((*[(name, called) for name, (called, _) in graph], *probable))
 
 
 @hub
 def _circles(store: Store[Workspace], viewpoint: str) -> dict[str, tuple[str, ...]]:
-    """All circles: hardly any mission has one, so that after an edit no tree looks for its own again.
+    """All circles.  Hardly any mission has one, so after an edit no tree looks for its own again.
 
-    The trees of the file come first: included XML may not know that it is in one.
+    The trees of the file come first, for included XML may not see that it is in a circle.
     """
     graph = {name: called for name, (called, _) in store.ask(_graph, viewpoint)}
     names = dict.fromkeys((*store.ask(lookups.own_trees, viewpoint), *graph))
     places = {name: place for place, name in enumerate(names)}
-    found: dict[str, tuple[str, ...]] = {}
+    circles: dict[str, tuple[str, ...]] = {}
     for knot in knots(graph):
         first = min(knot, key=places.__getitem__)
-        found[first] = _way_back(first, {name: [each for each in graph[name] if each in knot] for name in knot})
-    return found
+        circles[first] = _way_back(first, {name: [called for called in graph[name] if called in knot] for name in knot})
+    return circles
 
 
 @hub
@@ -99,38 +99,38 @@ def _missed(store: Store[Workspace], viewpoint: str) -> Set[str]:
     mains = view.ask(lookups.main_trees)
     if not mains or view.ask(has_gaps) or not view.is_read:
         return frozenset()
-    known = dict(view.ask(_graph))
-    if known.keys().isdisjoint(mains):
+    graph = dict(view.ask(_graph))
+    if graph.keys().isdisjoint(mains):
         return frozenset()  # which is reported
-    return known.keys() - _run_from(mains, known)
+    return graph.keys() - _run_from(mains, graph)
 
 
 @hub
 def _uncreated(store: Store[Workspace], viewpoint: str) -> Set[str]:
-    """Those of all trees in scope; an unknown tree matters only if a main tree reaches it."""
+    """The trees in scope that no main tree runs; empty if a main tree reaches an unknown one."""
     view = View(store, viewpoint)
     mains = view.ask(lookups.main_trees)
     if not mains or not view.ask(inputs.is_complete) or not view.is_read:
         return frozenset()
-    known = dict(view.ask(_graph))
-    created = _run_from(mains, known)
-    return known.keys() - created if known.keys() >= created else frozenset()
+    graph = dict(view.ask(_graph))
+    created = _run_from(mains, graph)
+    return graph.keys() - created if graph.keys() >= created else frozenset()
 
 
-def _run_from(mains: tuple[str, ...], known: Mapping[str, Runs]) -> Set[str]:
+def _run_from(mains: tuple[str, ...], graph: Mapping[str, Runs]) -> Set[str]:
     """Trees and all that they run, directly or not, including those that they probably mean to run."""
-    return {*reached(mains, lambda name: chain(*known.get(name, ())))}
+    return {*reached(mains, lambda name: chain(*graph.get(name, ())))}
 
 
 def _way_back(start: str, graph: Mapping[str, Iterable[str]]) -> tuple[str, ...]:
     """The shortest way from a tree to itself, both ends included."""
-    before: dict[str, str] = {}
+    predecessors: dict[str, str] = {}
     for tree in reached([start], graph.__getitem__):
         for called in graph[tree]:
-            before.setdefault(called, tree)
-    way = [start, before[start]]
+            predecessors.setdefault(called, tree)
+    way = [start, predecessors[start]]
     while way[-1] != start:
-        way.append(before[way[-1]])
+        way.append(predecessors[way[-1]])
     return tuple(reversed(way))
 
 
@@ -147,23 +147,25 @@ def _turned(graph: Iterable[tuple[str, Iterable[str]]]) -> dict[str, tuple[str, 
 @of_scope
 def _runs(store: Store[Workspace], viewpoint: str, tree: str) -> Runs:
     view = View(store, viewpoint)
-    found = view.ask(inputs.definition, Kind.TREE, tree)
-    if found is None:
+    definition = view.ask(inputs.definition, Kind.TREE, tree)
+    if definition is None:
         return (), ()
-    uses = found[1].summary.uses
+    uses = definition[1].summary.uses
     called = dict.fromkeys([use.name for use in uses if use.kind is Kind.TREE])
-    subtrees = view.seen_in(*found).subtrees
-    declared = {seen.id.text for seen in subtrees if seen.id is not None}  # by a model, perhaps
-    meant = [name for use in uses for name in (_meant(use), _for_goal(use)) if name and name not in declared]
+    subtrees = view.seen_in(*definition).subtrees
+    declared = {resolved.id.text for resolved in subtrees if resolved.id is not None}  # by a model, perhaps
+    meant_trees = [name for use in uses for name in (_meant_tree(use), _for_goal(use)) if name and name not in declared]
     trees = {
-        name for name in (*meant, *declared) if name not in called and view.ask(lookups.is_defined, Kind.TREE, name)
+        name
+        for name in (*meant_trees, *declared)
+        if name not in called and view.ask(lookups.is_defined, Kind.TREE, name)
     }
     called.update(dict.fromkeys(sorted(declared & trees)))
-    called.update(dict.fromkeys("" for seen in subtrees if seen.id is None))
-    return tuple(called), tuple([name for name in meant if name in trees])
+    called.update(dict.fromkeys("" for resolved in subtrees if resolved.id is None))
+    return tuple(called), tuple([name for name in meant_trees if name in trees])
 
 
-def _meant(use: Use) -> str:
+def _meant_tree(use: Use) -> str:
     """The tree that a node's kind may mean: `PickPlace`, `Subtree PickPlace`."""
     node = use.node
     if node is not None and node.label is not None and use.name.casefold() == "subtree":

@@ -10,8 +10,7 @@ from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.nodes import is_by_children
 from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks.kinds import OF_SUBTREE, declared_category, model_related
-from btq_lang.checks.one_parent import TOO_FAR, below, dedented, sequence_above
-from btq_lang.checks.own_lines import label_as_child
+from btq_lang.checks.misplaced_children import TOO_FAR, below, dedented, label_as_child, sequence_above
 from btq_lang.checks.ports import is_case
 from btq_lang.checks.view import View, misspelt_clause
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
@@ -29,121 +28,135 @@ _QUOTED = re.compile("'([^']*)'")
 def child_count(view: View) -> Iterator[Diagnostic]:
     """More or fewer children than the node takes."""
     nodes = view.nodes
-    for index, seen in enumerate(nodes):
-        category = seen.stated_category
+    for index, resolved in enumerate(nodes):
+        category = resolved.stated_category
         if category is None:
             continue
-        least, most = seen.behavior.children if seen.behavior is not None else CHILDREN[category]
-        count = len(seen.node.children)
-        if (least <= count and (most is None or count <= most)) or _is_by_children(seen):
+        least, most = resolved.behavior.children if resolved.behavior is not None else CHILDREN[category]
+        count = len(resolved.node.children)
+        if (least <= count and (most is None or count <= most)) or _is_by_children(resolved):
             continue
-        declared = declared_category(seen)
-        if seen.kind is None and seen.node.category is not None and declared not in (None, seen.node.category.raw):
+        declared = declared_category(resolved)
+        if (
+            resolved.kind is None
+            and resolved.node.category is not None
+            and declared not in (None, resolved.node.category.raw)
+        ):
             continue  # the wrong one of the two is reported first
-        if any(misspelt_clause(child) for child in seen.node.nodes):
+        if any(misspelt_clause(child) for child in resolved.node.nodes):
             continue  # a child that is meant as a clause is reported
         if (
             most is not None
             and count > most
-            and any(view.is_torn(child.start, child.end) for child in seen.node.children)
+            and any(view.is_torn(child.start, child.end) for child in resolved.node.children)
         ):
             continue  # a line that could not be read was taken for a child
         if count == 0 and view.entry.diagnostics:
             after = nodes[index + 1].node.start if index + 1 < len(nodes) else len(view.text)
-            if view.is_torn(seen.node.start, after - 1):
+            if view.is_torn(resolved.node.start, after - 1):
                 continue  # its child may be on a line that could not be read
         notes: tuple[str, ...] = ()
-        if seen.behavior is not None and seen.behavior.late_count and count:
+        if resolved.behavior is not None and resolved.behavior.late_count and count:
             notes = ("the engine loads this and throws when the node is ticked",)
-        if seen.flow == "switch" and count == least - 1:
+        if resolved.flow == "switch" and count == least - 1:
             notes += ("its last child is the default: add one, such as an AlwaysFailure",)
-        notes += tuple(_remapped(view, seen))
-        related = model_related(view, seen, "declared by its model") if seen.node.category is None else ()
+        if category == "Control" and most is not None and 1 < most < count and resolved.flow != "switch":
+            notes += (_in_one(resolved, most),)
+        notes += tuple(_remapped(view, resolved))
+        related = model_related(view, resolved, "declared by its model") if resolved.node.category is None else ()
         if most is not None and count > most:
-            extra = seen.node.children[most]
+            extra = resolved.node.children[most]
             span = extra.head.span if isinstance(extra, Node) else Span(extra.start, extra.end)
             related += (Related(Place(span), "first extra child"),)
-        message = f"{_called(seen)} requires {_range(least, most)}, found {count or 'none'}"
-        fixes = sequence_above(view, seen.node.children) if most == 1 < count else ()
-        if most is not None and count > most and (moved := dedented(view, seen, seen.node.children[most:])):
+        message = f"{_called(resolved)} requires {_range(least, most)}, found {count or 'none'}"
+        fixes = sequence_above(view, resolved.node.children) if most == 1 < count else ()
+        if most is not None and count > most and (moved := dedented(view, resolved, resolved.node.children[most:])):
             notes, fixes = (*notes, TOO_FAR), moved + fixes
-        if count == 0 and seen.behavior is not None:
-            as_child, fixes = label_as_child(view, seen)
-            beside, below_it = ((), ()) if as_child else _beside(view, seen, most)
+        if count == 0 and resolved.behavior is not None:
+            as_child, fixes = label_as_child(view, resolved)
+            beside, below_it = ((), ()) if as_child else _beside(view, resolved, most)
             notes, fixes = notes + as_child + beside, fixes + below_it
-        yield Diagnostic("child-count", seen.node.head.span, message, related=related, notes=notes, fixes=fixes)
+        yield Diagnostic("child-count", resolved.node.head.span, message, related=related, notes=notes, fixes=fixes)
 
 
-def _beside(view: View, seen: ResolvedNode, most: int | None) -> tuple[tuple[str, ...], tuple[Fix, ...]]:
+def _in_one(resolved: ResolvedNode, most: int) -> str:
+    """What to do with more children than a control node takes: one child of it takes several."""
+    if resolved.flow == "choice":
+        return "put the nodes of each branch below a Sequence"
+    first = f"the first {most - 1}" if most > 2 else "the first one"
+    return f"put those after {first} below one Sequence, or a RoundRobin, which takes turns"
+
+
+def _beside(view: View, resolved: ResolvedNode, most: int | None) -> tuple[tuple[str, ...], tuple[Fix, ...]]:
     """The note and the fix for a node whose children are not indented below it, but beside it."""
-    owner = seen.parent.node if seen.parent is not None else view.item
-    siblings = owner.children[seen.index + 1 :] if isinstance(owner, Node | Tree) else ()
+    owner = resolved.parent.node if resolved.parent is not None else view.item
+    siblings = owner.children[resolved.index + 1 :] if isinstance(owner, Node | Tree) else ()
     if not siblings or view.is_xml:
         return (), ()
     if most == 1:
-        return (CHILD,), below(view, seen.node, siblings[:1])
+        return (CHILD,), below(view, resolved.node, siblings[:1])
     return (BELOW,), ()  # at the top of a tree, tree_root_count indents them
 
 
 def switch_cases(view: View) -> Iterator[Diagnostic]:
     """A Switch whose cases and children do not match: a child for each case, and one more for the default."""
-    for seen in view.seen.of_flow("switch"):
-        if seen.kind is None:
+    for resolved in view.seen.of_flow("switch"):
+        if resolved.kind is None:
             continue
-        node = seen.node
+        node = resolved.node
         count = len(node.children)
-        by_children = _is_by_children(seen)
+        by_children = _is_by_children(resolved)
         if by_children and not 3 <= count <= 7:
-            message = f"{seen.shown_kind} has {count or 'no'} child{'ren' if count != 1 else ''}"
+            message = f"{resolved.shown_kind} has {count or 'no'} child{'ren' if count != 1 else ''}"
             note = "the engine supports 2 to 6 cases, each with a child, and one more child for the default"
             yield Diagnostic("switch-cases", node.head.span, message, notes=(note,))
             continue
-        number = count - 1 if by_children else seen.kind.children[0] - 1
-        wanted = [f"case_{case}" for case in range(1, number + 1)]
-        given = {pair.key.text: pair.key for pair in node.attributes}
-        extra = [key for name, key in given.items() if is_case(seen, name) and name not in wanted]
+        number = count - 1 if by_children else resolved.kind.children[0] - 1
+        cases = [f"case_{case}" for case in range(1, number + 1)]
+        keys = {pair.key.text: pair.key for pair in node.attributes}
+        extra = [key for name, key in keys.items() if is_case(resolved, name) and name not in cases]
         # Without a variable no case counts, which is reported: the children that can never run.
-        missing = [name for name in wanted if name not in given] if "variable" in given else []
+        missing = [name for name in cases if name not in keys] if "variable" in keys else []
         if extra:
-            message = f"{seen.shown_kind} has no case `{extra[0].text}`"
-            note = f"its cases are `case_1` to `{wanted[-1]}`"
+            message = f"{resolved.shown_kind} has no case `{extra[0].text}`"
+            note = f"its cases are `case_1` to `{cases[-1]}`"
             if by_children:
                 note = f"with {count} children {note}: one child for each, and the last for the default"
             yield Diagnostic("switch-cases", extra[0].span, message, notes=(note,))
         elif missing:
-            message = f"{seen.shown_kind} lacks {' and '.join(f'`{name}`' for name in missing)}"
+            message = f"{resolved.shown_kind} lacks {' and '.join(f'`{name}`' for name in missing)}"
             note = "the engine does not report this and runs the default child"
             yield Diagnostic("switch-cases", node.head.span, message, notes=(note,), severity=Severity.WARNING)
-        yield from _constants(seen)
+        yield from _constants(resolved)
 
 
-def _constants(seen: ResolvedNode) -> Iterator[Diagnostic]:
+def _constants(resolved: ResolvedNode) -> Iterator[Diagnostic]:
     """A variable without braces, and cases in the quotes of scripts, which a Switch compares as they are."""
-    for pair in seen.node.attributes:
+    for pair in resolved.node.attributes:
         key, value = pair.key.text, pair.value
         if value is None or is_pointer(value.text):
             continue
         if key == "variable" and value.text:
-            message = f"{seen.shown_kind} compares the text `{value.text}`, not the entry of that name"
+            message = f"{resolved.shown_kind} compares the text `{value.text}`, not the entry of that name"
             entry = f"{{{value.text}}}"
             fixes = (replace_fix(f"Write the entry `{entry}`", value.span, entry),) if is_name(value.text) else ()
             notes = () if fixes else ("write the entry that chooses the child, `{key}`",)
             yield Diagnostic("switch-cases", value.span, message, notes=notes, fixes=fixes, severity=Severity.WARNING)
-        elif is_case(seen, key) and (quoted := _QUOTED.fullmatch(value.text)):
+        elif is_case(resolved, key) and (quoted := _QUOTED.fullmatch(value.text)):
             plain = quoted[1]
-            message = f"{seen.shown_kind} compares the quotes of `{value.text}` too: only scripts have quoted texts"
+            message = f"{resolved.shown_kind} compares the quotes of `{value.text}` too: only scripts have quoted texts"
             fixes = (replace_fix(f"Write `{plain}`", value.span, written(plain)),) if plain else ()
             yield Diagnostic("switch-cases", value.span, message, fixes=fixes, severity=Severity.WARNING)
 
 
 def parallel_threshold(view: View) -> Iterator[Diagnostic]:
     """A threshold that the children of a Parallel cannot reach: the engine throws when it is ticked."""
-    for seen in view.seen.of_flow("parallel", "parallel-all"):
-        count = len(seen.node.children)
-        if seen.kind is None or count == 0:
+    for resolved in view.seen.of_flow("parallel", "parallel-all"):
+        count = len(resolved.node.children)
+        if resolved.kind is None or count == 0:
             continue  # the missing child is reported instead
-        for port in seen.kind.ports:
-            value = seen.node.attribute(port.name) if port.role in ("successes", "failures") else None
+        for port in resolved.kind.ports:
+            value = resolved.node.attribute(port.name) if port.role in ("successes", "failures") else None
             threshold = int(value.text) if value is not None and _INTEGER.fullmatch(value.text) else 0
             if value is None or threshold <= count:
                 continue
@@ -153,25 +166,25 @@ def parallel_threshold(view: View) -> Iterator[Diagnostic]:
             yield Diagnostic("parallel-threshold", value.span, message, notes=notes, fixes=fixes)
 
 
-def _remapped(view: View, seen: ResolvedNode) -> Iterator[str]:
+def _remapped(view: View, resolved: ResolvedNode) -> Iterator[str]:
     """How a SubTree is written that has the elements of version 2."""
-    for child in seen.node.nodes if seen.is_subtree else ():
+    for child in resolved.node.nodes if resolved.is_subtree else ():
         inside, outside = child.attribute("internal"), child.attribute("external")
         if child.head.text in OF_SUBTREE and inside is not None and outside is not None:
             entry = outside.text if is_before_4(view.target) else f"{{{outside.text}}}"
             yield f'<{child.head.text}> is of version 2 of the engine: write `{inside.text}="{entry}"` at the SubTree'
 
 
-def _is_by_children(seen: ResolvedNode) -> bool:
+def _is_by_children(resolved: ResolvedNode) -> bool:
     """Whether its kind was chosen by the number of its children, as for a `Switch`."""
-    kind = seen.node.kind
+    kind = resolved.node.kind
     return kind is not None and is_by_children(kind.raw)
 
 
-def _called(seen: ResolvedNode) -> str:
+def _called(resolved: ResolvedNode) -> str:
     """A node with its category, if the number of its children follows only from that."""
-    is_known = seen.behavior is not None or seen.is_placeholder or seen.is_subtree
-    return seen.shown_kind if is_known else f"the {seen.category} {seen.shown_kind}"
+    is_known = resolved.behavior is not None or resolved.is_placeholder or resolved.is_subtree
+    return resolved.shown_kind if is_known else f"the {resolved.category} {resolved.shown_kind}"
 
 
 def _range(least: int, most: int | None) -> str:

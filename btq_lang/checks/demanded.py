@@ -1,4 +1,4 @@
-"""Shared by the rules about demands: which claims apply to which nodes, where to report them, and in which words."""
+"""What the rules about demands share: the claims that apply to nodes, the places to report them, and wording."""
 
 from __future__ import annotations
 

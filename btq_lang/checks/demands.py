@@ -11,7 +11,7 @@ from itertools import chain
 from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.checks.measures import is_measured
+from btq_lang.checks.requirements import is_measured
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.util.text import Span
@@ -36,17 +36,17 @@ def demands_by_item(store: Store[Workspace], viewpoint: str) -> ByItem:
     if not store.ask(is_measured, viewpoint):
         return {}
     of_trees, _ = store.ask(_of_trees, viewpoint)
-    found = (*of_trees, *store.ask(_of_requirements, viewpoint), *store.ask(_of_signals, viewpoint))
+    findings = (*of_trees, *store.ask(_of_requirements, viewpoint), *store.ask(_of_signals, viewpoint))
     # Each once, for a claim may apply to nodes of many trees.  They are compared, for hashing one would hash the whole
     # items that its places are in.
-    known: dict[tuple[int, str, Span, str], list[Diagnostic]] = {}
-    for place, diagnostic in found:
-        same = known.setdefault((id(place.anchor), diagnostic.rule, diagnostic.span, diagnostic.message), [])
-        if diagnostic not in same:
-            same.append(diagnostic)
+    distinct: dict[tuple[int, str, Span, str], list[Diagnostic]] = {}
+    for place, diagnostic in findings:
+        similar = distinct.setdefault((id(place.anchor), diagnostic.rule, diagnostic.span, diagnostic.message), [])
+        if diagnostic not in similar:
+            similar.append(diagnostic)
     by_item: ByItem = {}
-    for (item, *_), same in known.items():
-        by_item.setdefault(item, []).extend(same)
+    for (item, *_), similar in distinct.items():
+        by_item.setdefault(item, []).extend(similar)
     return by_item
 
 
@@ -55,16 +55,16 @@ def _in_item(store: Store[Workspace], viewpoint: str, facts: Facts) -> Sequence[
 
 
 def _of_trees(store: Store[Workspace], viewpoint: str) -> tuple[tuple[Found, ...], tuple[Guard, ...]]:
-    """The same as of a tree, for all in scope."""
-    of_each = [store.ask(_of_tree, viewpoint, *tree) for tree in store.ask(inputs.trees, viewpoint)]
-    return tuple(chain(*[found for found, _ in of_each])), tuple(chain(*[guards for _, guards in of_each]))
+    """The findings and the guards of all trees in scope."""
+    results = [store.ask(_of_tree, viewpoint, *tree) for tree in store.ask(inputs.trees, viewpoint)]
+    return tuple(chain(*[findings for findings, _ in results])), tuple(chain(*[guards for _, guards in results]))
 
 
 def _of_tree(
     store: Store[Workspace], viewpoint: str, path: str, facts: Facts
 ) -> tuple[tuple[Found, ...], tuple[Guard, ...]]:
     """The findings about the nodes of a tree, and the claims about them for which the engine reads signals."""
-    from btq_lang.checks import budgets, limits, renewals, signals, swallowing, unenforced  # few files need them
+    from btq_lang.checks import budgets, enforcement, limits, renewals, signals  # few files need them
     from btq_lang.checks.demanded import Demanded
 
     demanded = Demanded(View(store, viewpoint), path, facts)
@@ -78,33 +78,33 @@ def _of_tree(
         budgets.budget_exceeded,
         budgets.timeout_never_succeeds,
         budgets.odds_beyond_children,
-        swallowing.swallowed_failure,
-        unenforced.not_enforced,
+        enforcement.swallowed_failure,
+        enforcement.not_enforced,
         renewals.guard_never_renewed,
     )
-    found = (each for rule in rules for each in rule(demanded))
-    return _here(viewpoint, found), tuple(signals.guards(demanded))
+    findings = (finding for rule in rules for finding in rule(demanded))
+    return _in_file(viewpoint, findings), tuple(signals.guards(demanded))
 
 
 def _of_requirements(store: Store[Workspace], viewpoint: str) -> tuple[Found, ...]:
-    """What is wrong with requirements, whatever they apply to."""
+    """The findings about requirements that do not depend on nodes."""
     names = store.ask(inputs.names, viewpoint, Kind.REQUIREMENT)
     return tuple(chain(*[store.ask(_of_requirement, viewpoint, name) for name in names]))
 
 
 def _of_requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Found, ...]:
-    """What is wrong with a requirement, whatever it applies to."""
-    from btq_lang.checks import budgets, limits, unenforced  # as above
+    """The findings about a requirement that do not depend on nodes."""
+    from btq_lang.checks import budgets, enforcement, limits  # as above
     from btq_lang.requirements.definitions import requirement
 
     view = View(store, viewpoint)
-    of_name, _ = store.ask(requirement, viewpoint, name)
-    if of_name is None:
+    resolved, _ = store.ask(requirement, viewpoint, name)
+    if resolved is None:
         return ()
-    found = [*limits.goal_beyond_bound(view, of_name), *budgets.window_too_small(of_name)]
-    if of_name.demands_enforcement:
-        found += unenforced.not_enforced_between(view, name)
-    return _here(viewpoint, found)
+    findings = [*limits.goal_beyond_bound(view, resolved), *budgets.window_too_small(resolved)]
+    if resolved.demands_enforcement:
+        findings += enforcement.not_enforced_between(view, name)
+    return _in_file(viewpoint, findings)
 
 
 def _of_signals(store: Store[Workspace], viewpoint: str) -> tuple[Found, ...]:
@@ -112,9 +112,9 @@ def _of_signals(store: Store[Workspace], viewpoint: str) -> tuple[Found, ...]:
     from btq_lang.checks.signals import of_signals  # as above
 
     _, guards = store.ask(_of_trees, viewpoint)
-    return _here(viewpoint, of_signals(View(store, viewpoint), guards))
+    return _in_file(viewpoint, of_signals(View(store, viewpoint), guards))
 
 
-def _here(viewpoint: str, found: Iterable[Found]) -> tuple[Found, ...]:
+def _in_file(viewpoint: str, findings: Iterable[Found]) -> tuple[Found, ...]:
     """The findings in the file that is checked."""
-    return tuple([(place, diagnostic) for place, diagnostic in found if place.path == viewpoint])
+    return tuple([(place, diagnostic) for place, diagnostic in findings if place.path == viewpoint])

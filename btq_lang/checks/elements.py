@@ -1,7 +1,7 @@
-"""Elements beside the trees, models and includes: what the engine refuses in them, and what it drops without a word.
+"""Elements of XML that the engine refuses, or drops without a word, outside of trees.
 
-One invariant: what is here is refused or dropped whatever the trees are; an element that it knows nothing of, and that
-is like no other, may be of another tool, and is a hint.
+One invariant: the result does not depend on trees.  An unknown element that resembles no known one may be of another
+tool, so it is a hint.
 
 Source: loadDocImpl, loadSubtreeModel and VerifyXML in src/xml_parsing.cpp of 3.8.6, 4.6.2, 4.8.4 and 4.10.0.
 """
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def refused_element(view: View) -> Iterator[Diagnostic]:
-    """What keeps the engine from loading the file."""
+    """An element, or a missing attribute, with which the engine does not load the file."""
     item = view.item
     is_model_read = any(map(PORTS_OF_SUBTREE.holds, view.engines))
     is_palette = lookups.is_palette(item)
@@ -58,7 +58,7 @@ def refused_element(view: View) -> Iterator[Diagnostic]:
 
 
 def ignored_element(view: View) -> Iterator[Diagnostic]:
-    """What the engine drops, though it is not what was meant."""
+    """An element or an attribute that the engine drops."""
     item = view.item
     for element, part in _spelt((item,)):
         yield from _below_root(element, part)
@@ -74,12 +74,15 @@ def ignored_element(view: View) -> Iterator[Diagnostic]:
 
 
 def _near_key(port: Port, name: str) -> str:
-    """The end of a message about a port that lacks an attribute: what may be meant for it."""
+    """The end of a message about a port that lacks an attribute, if another one is nearly called so."""
     return did_you_mean((name,)) if any(near(pair.key.text, (name,)) for pair in port.attributes) else ""
 
 
 def _near_attribute(element: Element, name: str) -> str:
-    is_meant = any(each.name.casefold() == name.casefold() or near(each.name, (name,)) for each in element.attributes)
+    is_meant = any(
+        attribute.name.casefold() == name.casefold() or near(attribute.name, (name,))
+        for attribute in element.attributes
+    )
     return did_you_mean((name,)) if is_meant else ""
 
 
@@ -90,9 +93,9 @@ def _below_root(element: Element, part: Placed) -> Iterator[Diagnostic]:
     meant = near(tag, _OF_ROOT, 1)
     ignored = f"the engine ignores <{tag}>"
     if meant in (("BehaviorTree",), ("include",)):
-        named = element.get("ID" if meant == ("BehaviorTree",) else "path")
+        name = element.get("ID" if meant == ("BehaviorTree",) else "path")
         what = "the tree" if meant == ("BehaviorTree",) else "the trees of"
-        lost = f", and with it {what} `{named}`" if named else ""
+        lost = f", and with it {what} `{name}`" if name else ""
         yield _ignored(part, f"{ignored}{lost}; did you mean <{meant[0]}>?", severity=Severity.ERROR)
     elif meant:
         yield _ignored(part, f"{ignored}; did you mean <{meant[0]}>?")
@@ -132,9 +135,9 @@ def _below_model(element: Element, part: Placed) -> Iterator[Diagnostic]:
         yield _ignored(part, ignored, severity=Severity.HINT)
         return
     name = element.get("name") or element.get("label")
-    written = f'<{port} name="{name}"/>' if name is not None else f"<{port}>"
-    notes = (f"version 2 wrote <{tag}>; now it is `{written}`",) if tag == "Parameter" else ()
-    yield _ignored(part, f"{ignored}; did you mean `{written}`?", *notes)
+    shown = f'<{port} name="{name}"/>' if name is not None else f"<{port}>"
+    notes = (f"version 2 wrote <{tag}>; now it is `{shown}`",) if tag == "Parameter" else ()
+    yield _ignored(part, f"{ignored}; did you mean `{shown}`?", *notes)
 
 
 def _port_meant(tag: str) -> str | None:
@@ -158,11 +161,11 @@ def _attributes(view: View) -> Iterator[Diagnostic]:
     if isinstance(item, Root | Include):
         lists.append((item.attributes, _OF_ROOT_TAG if isinstance(item, Root) else _OF_INCLUDE))
     for pairs, keys in lists:
-        given = {pair.key.text for pair in pairs}
+        present = {pair.key.text for pair in pairs}
         for pair in pairs:
             key = pair.key.text
             is_other = key not in keys and key not in _TOOL_ATTRIBUTES
-            free = keys.difference(given)
+            free = keys.difference(present)
             meant = (
                 (near(key, free, 1) or tuple(free.intersection(_CALLED.get(key.casefold(), ())))) if is_other else ()
             )
@@ -171,7 +174,7 @@ def _attributes(view: View) -> Iterator[Diagnostic]:
 
 
 def _spelt(parts: tuple[object, ...]) -> Iterator[tuple[Element, Verbatim]]:
-    """The elements among some parts that the language has no words for, as far as they can be read."""
+    """The elements that the language has no words for, as far as they can be read."""
     for part in parts:
         if isinstance(part, Verbatim) and part.text is not None:
             from btq_lang.btcpp.reader import read  # few files have such elements
@@ -204,7 +207,7 @@ _OF_TOOLS: Final = frozenset(("MetadataFields", "Metadata", "description"))  # o
 _OF_PORT: Final = frozenset(("name", "type", "default", "description"))
 _OF_ROOT_TAG: Final = frozenset(("BTCPP_format", "main_tree_to_execute"))
 _OF_INCLUDE: Final = frozenset(("path", "ros_pkg"))
-# Other words for them, which no tool is known to write.
+# Other words for these attributes; no known tool writes them.
 _CALLED: Final = {
     **dict.fromkeys(
         ("main_tree", "maintree", "main_tree_id", "main", "main_tree_name", "entry_point"), ("main_tree_to_execute",)

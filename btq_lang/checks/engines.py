@@ -17,13 +17,13 @@ def engines_of(store: Store[Workspace], viewpoint: str) -> tuple[str, ...]:
 
 
 def declared_engines(store: Store[Workspace], viewpoint: str) -> tuple[str, ...]:
-    """The versions that a file is written for, whatever takes it; empty if nothing says so."""
+    """The versions that a file is written for, by its own words and its project; empty if nothing says so."""
     distribution, signs = store.ask(lookups.distribution, viewpoint), store.ask(lookups.signs, viewpoint)
     return written_for(store.ask(inputs.project), distribution, signs)
 
 
 def is_for_version_3(store: Store[Workspace], viewpoint: str) -> bool:
-    """Whether a file is written for version 3, whatever takes it."""
+    """Whether a file is written for version 3."""
     engines = store.ask(declared_engines, viewpoint)
     return bool(engines) and is_before_4(engines[-1])
 
@@ -35,7 +35,8 @@ def is_for_version_4(store: Store[Workspace], viewpoint: str) -> bool:
 
 
 def old_words(store: Store[Workspace], viewpoint: str) -> tuple[str, ...]:
-    """What in an XML file only version 3 of the engine understands; empty if its project names that version."""
+    """The words of an XML file that only version 3 of the engine understands; empty if its project names that
+    version."""
     signs = store.ask(lookups.signs, viewpoint)
     if signs is None or not signs.old:
         return ()

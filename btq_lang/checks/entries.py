@@ -1,7 +1,7 @@
 """What the nodes of trees do with blackboard entries, and which names in which trees are one entry.
 
-One invariant: unknown ports count as everything: a port without a model may read and write.  What the robot's program
-does with entries, and whether a name is right, is not known here.
+One invariant: a port without a model may read and write.  This module does not know what the robot's program does with
+entries, nor whether a name is right.
 """
 
 from __future__ import annotations
@@ -72,37 +72,40 @@ def blackboards(store: Store[Workspace], viewpoint: str) -> Blackboards:
 def handling(store: Store[Workspace], viewpoint: str, tree: str) -> Handling:
     """What a tree does with entries."""
     view = View(store, viewpoint)
-    found = view.ask(inputs.definition, Kind.TREE, tree)
-    item = found[1].item if found is not None else None
-    if found is None or not isinstance(item, Tree):
+    definition = view.ask(inputs.definition, Kind.TREE, tree)
+    item = definition[1].item if definition is not None else None
+    if definition is None or not isinstance(item, Tree):
         return Handling((), (), frozenset(), (), True, False)
     model = view.ask(lookups.meaning, Kind.MODEL, tree)
     declared = model.ports if model is not None else ()
-    nodes = view.seen_in(*found)
-    touches = [Touch(each.name, each.reads, each.writes, each.creates) for each in view.ask(mentions, *found)]
+    nodes = view.seen_in(*definition)
+    touches = [
+        Touch(mention.name, mention.reads, mention.writes, mention.creates)
+        for mention in view.ask(mentions, *definition)
+    ]
     return Handling(
         tuple([port.name.text for port in (*item.ports, *declared) if port.name is not None]),
         tuple(touches),
         frozenset(_bare_values(nodes.given)),
-        tuple([call for seen in nodes.all if (call := _call(view, seen)) is not None]),
+        tuple([call for resolved in nodes.all if (call := _call(view, resolved)) is not None]),
         _has_verbatim(item, nodes.all)
-        or bool(store.ask(inputs.entry, *found).diagnostics)
+        or bool(store.ask(inputs.entry, *definition).diagnostics)
         or any(map(_names_by_value, nodes.given))
         or any(not touch.name.removeprefix("@").isidentifier() for touch in touches),
-        any(_is_stranger(view, seen) for seen in nodes.all),
+        any(_is_stranger(view, resolved) for resolved in nodes.all),
     )
 
 
 def _mentions(view: View, path: str, tree: Facts) -> Iterator[EntryMention]:
-    for seen, pair, value in view.seen_in(path, tree).values():
+    for resolved, pair, value in view.seen_in(path, tree).values():
         if "{" in value.raw and (name := pointed_at(pair.key.text, value.text)) is not None:
             inner = value.span if name == pair.key.text else _inside(value, name)
-            yield EntryMention(name, inner, seen, *_use(view, seen, pair), False)
-        elif is_script(seen, pair):
-            yield from _in_script(view, seen, value)
-        elif seen.kind is not None and (port := seen.kind.port(pair.key.text)) and port.content == "key":
+            yield EntryMention(name, inner, resolved, *_use(view, resolved, pair), False)
+        elif is_script(resolved, pair):
+            yield from _in_script(view, resolved, value)
+        elif resolved.kind is not None and (port := resolved.kind.port(pair.key.text)) and port.content == "key":
             creates = port.direction != "input"
-            yield EntryMention(value.text, value.span, seen, not creates, creates, creates, False)
+            yield EntryMention(value.text, value.span, resolved, not creates, creates, creates, False)
 
 
 class Handling(Record):
@@ -153,7 +156,7 @@ class SubTreeCall(Record):
 
 
 class Touch(Record):
-    """What may happen to an entry in one place: see Mention."""
+    """What may happen to an entry in one place, as in `EntryMention`."""
 
     name: str
     reads: bool
@@ -182,9 +185,9 @@ class Blackboards:
         for tree, handled in trees.items():
             self._add(tree, handled, trees)
 
-    def of(self, tree: str, name: str) -> list[Touch]:
+    def uses_of(self, tree: str, name: str) -> list[Touch]:
         """All uses of an entry, wherever it is passed."""
-        return self._merged.get(self._first(self.place(tree, name)), [])
+        return self._merged.get(self._representative(self.place(tree, name)), [])
 
     def is_port(self, tree: str, name: str) -> bool:
         """Whether the entry is a port of the tree."""
@@ -197,7 +200,7 @@ class Blackboards:
 
     def is_one(self, tree: str, name: str, other: str) -> bool:
         """Whether two names of a tree are one entry."""
-        return self._first(self.place(tree, name)) == self._first(self.place(tree, other))
+        return self._representative(self.place(tree, name)) == self._representative(self.place(tree, other))
 
     def place(self, tree: str, name: str) -> Name:
         """The blackboard of an entry: the tree's own or that of the root."""
@@ -213,7 +216,7 @@ class Blackboards:
     def _merged(self) -> dict[Name, list[Touch]]:
         merged: dict[Name, list[Touch]] = {}
         for key, uses in self._uses.items():
-            merged.setdefault(self._first(key), []).extend(uses)
+            merged.setdefault(self._representative(key), []).extend(uses)
         return merged
 
     def _add(self, tree: str, handled: Handling, trees: Mapping[str, Handling]) -> None:
@@ -231,27 +234,27 @@ class Blackboards:
                     self._join(self.place(tree, name), (call.tree, name))
 
     def _join(self, one: Name, other: Name) -> None:
-        first, second = self._first(one), self._first(other)
+        first, second = self._representative(one), self._representative(other)
         if first != second:
             self._same[second] = first
 
-    def _first(self, name: Name) -> Name:
+    def _representative(self, name: Name) -> Name:
         while (above := self._same.get(name)) is not None:
             name = above
         return name
 
 
-def _call(view: View, seen: ResolvedNode) -> SubTreeCall | None:
+def _call(view: View, resolved: ResolvedNode) -> SubTreeCall | None:
     """How a node passes entries to the tree that it runs; None if it runs none."""
-    is_plus = seen.node.kind is not None and seen.node.kind.raw == "SubTreePlus"
-    named = seen.node.attribute("ID") if is_plus else seen.id if seen.is_subtree else None
-    if named is None:
+    is_plus = resolved.node.kind is not None and resolved.node.kind.raw == "SubTreePlus"
+    tree_name = resolved.node.attribute("ID") if is_plus else resolved.id if resolved.is_subtree else None
+    if tree_name is None:
         return None
     is_old = is_before_4(view.target)
     is_new = not view.is_xml or view.ask(is_for_version_4)
-    given: dict[str, str] = {}
+    entries: dict[str, str] = {}
     values: list[str] = []
-    for pair in seen.node.attributes:
+    for pair in resolved.node.attributes:
         port, text = pair.key.text, pair.value.text if pair.value is not None else ""
         if not is_port_name(port):
             continue
@@ -259,75 +262,75 @@ def _call(view: View, seen: ResolvedNode) -> SubTreeCall | None:
         is_name = text.isidentifier() and not (is_new or is_plus)
         name = pointed_at(port, text) or (text if is_name else None)
         if name is not None:
-            given.setdefault(port, name)
+            entries.setdefault(port, name)
         if name is None or (is_name and not is_old):
             values.append(port)
-    is_one = not is_new and is_on(seen, "__shared_blackboard")
-    shares = is_one or remaps_all(seen) or (is_plus and is_on(seen, "__autoremap"))
-    return SubTreeCall(named.text, given, frozenset(values), shares, is_one)
+    is_one = not is_new and is_on(resolved, "__shared_blackboard")
+    shares = is_one or remaps_all(resolved) or (is_plus and is_on(resolved, "__autoremap"))
+    return SubTreeCall(tree_name.text, entries, frozenset(values), shares, is_one)
 
 
 def _bare_values(nodes: Iterable[ResolvedNode]) -> Iterator[str]:
-    """The values of custom nodes, and of built-in ones that remove entries, which look like names."""
-    for seen in nodes:
-        for pair in seen.node.attributes if not seen.is_subtree else ():
-            port = seen.kind.port(pair.key.text) if seen.kind is not None else None
+    """The values that look like names, of custom nodes and of built-in ones that remove entries."""
+    for resolved in nodes:
+        for pair in resolved.node.attributes if not resolved.is_subtree else ():
+            port = resolved.kind.port(pair.key.text) if resolved.kind is not None else None
             text = pair.value.text.removeprefix("@") if pair.value is not None else ""
-            if text.isidentifier() and (seen.kind is None or (port is not None and port.removes)):
+            if text.isidentifier() and (resolved.kind is None or (port is not None and port.removes)):
                 yield text
 
 
-def _names_by_value(seen: ResolvedNode) -> bool:
+def _names_by_value(resolved: ResolvedNode) -> bool:
     """Whether an entry of a built-in node says which other entry it writes."""
-    for pair in seen.node.attributes if seen.kind is not None else ():
-        port = seen.kind.port(pair.key.text) if seen.kind is not None else None
+    for pair in resolved.node.attributes if resolved.kind is not None else ():
+        port = resolved.kind.port(pair.key.text) if resolved.kind is not None else None
         if port is not None and port.content == "key" and pair.value is not None and is_pointer(pair.value.text):
             return True
     return False
 
 
-def _is_stranger(view: View, seen: ResolvedNode) -> bool:
-    """Whether it is not known which ports a node has: nothing declares it, or it has more than are declared."""
-    if seen.kind is not None or seen.is_subtree or seen.is_placeholder:
+def _is_stranger(view: View, resolved: ResolvedNode) -> bool:
+    """Whether the ports of a node are unknown: nothing declares it, or it has more than are declared."""
+    if resolved.kind is not None or resolved.is_subtree or resolved.is_placeholder:
         return False
-    names = {port.id.text for port in ports_beside(view, seen) if port.id is not None}
-    given = [pair.key.text for pair in seen.node.attributes]
-    return seen.of_model is None or any(is_port_name(name) and name not in names for name in given)
+    names = {port.id.text for port in ports_beside(view, resolved) if port.id is not None}
+    keys = [pair.key.text for pair in resolved.node.attributes]
+    return resolved.of_model is None or any(is_port_name(name) and name not in names for name in keys)
 
 
-def _has_verbatim(tree: Tree, seen: Iterable[ResolvedNode]) -> bool:
-    nodes = chain([tree.children], (each.node.children for each in seen))
+def _has_verbatim(tree: Tree, resolved_nodes: Iterable[ResolvedNode]) -> bool:
+    nodes = chain([tree.children], (resolved.node.children for resolved in resolved_nodes))
     return any(isinstance(child, Verbatim) for children in nodes for child in children)
 
 
 def signal_entries(store: Store[Workspace], viewpoint: str) -> frozenset[Name]:
     """The entries that signals are read from."""
     view = View(store, viewpoint)
-    found = [view.ask(lookups.meaning, Kind.SIGNAL, name) for name in view.ask(inputs.names, Kind.SIGNAL)]
-    signals = [each.target for each in found if each is not None]
-    sources = [each.source for each in signals if isinstance(each, Signal) and each.source is not None]
+    meanings = [view.ask(lookups.meaning, Kind.SIGNAL, name) for name in view.ask(inputs.names, Kind.SIGNAL)]
+    signals = [meaning.target for meaning in meanings if meaning is not None]
+    sources = [signal.source for signal in signals if isinstance(signal, Signal) and signal.source is not None]
     return frozenset([("", source.text.strip("{}").removeprefix("@")) for source in sources])
 
 
-def _use(view: View, seen: ResolvedNode, pair: Pair) -> tuple[bool, bool, bool]:
+def _use(view: View, resolved: ResolvedNode, pair: Pair) -> tuple[bool, bool, bool]:
     """Whether a port reads, writes and creates the entry that it is given."""
-    if seen.is_subtree:
-        unknown = seen.node.id is None or not view.ask(lookups.is_defined, Kind.TREE, seen.node.id.text)
+    if resolved.is_subtree:
+        unknown = resolved.node.id is None or not view.ask(lookups.is_defined, Kind.TREE, resolved.node.id.text)
         return unknown, unknown, unknown
-    port = port_of(view, seen, pair.key.text)
+    port = port_of(view, resolved, pair.key.text)
     return port is None or port.direction != "output", port is None or port.direction != "input", True
 
 
 def _inside(value: Word, name: str) -> Span:
     """The name in `{name}`, in quotes or not."""
-    at = value.raw.find(name)
-    start = value.start + at
-    return Span(start, start + len(name)) if at > 0 else value.span
+    offset = value.raw.find(name)
+    start = value.start + offset
+    return Span(start, start + len(name)) if offset > 0 else value.span
 
 
-def _in_script(view: View, seen: ResolvedNode, value: Word) -> Iterator[EntryMention]:
+def _in_script(view: View, resolved: ResolvedNode, value: Word) -> Iterator[EntryMention]:
     from btq_lang.syntax.script.tree import variables  # most files have no script, and it is large
 
     for variable in variables(view.script(value.text)):
         span = in_source(value, variable.span)
-        yield EntryMention(variable.name, span, seen, variable.reads, variable.writes, variable.creates, True)
+        yield EntryMention(variable.name, span, resolved, variable.reads, variable.writes, variable.creates, True)

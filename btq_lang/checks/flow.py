@@ -1,8 +1,8 @@
 """Data flow across trees: what happens to an entry in a tree, in the trees that it runs, and in those that run it.
 
-One invariant: whatever may happen is included: unknown trees and XML may do anything, and what only a robot's program
-does is a flag of its own.  When nodes run is not known here.  What a tree itself does is `handling` (entries.py); the
-rest is composed of that tree by tree, so that an edit stops where it does not change what others see.
+One invariant: all that may happen is included.  Unknown trees and XML may do anything; what only a robot's program does
+is a flag of its own.  This module does not know when nodes run.  `handling` (entries.py) says what a tree itself does;
+the rest is composed of that, tree by tree, so that an edit stops where it does not change what others see.
 
 Sources: addSubtreeRemapping, getEntry and enableAutoRemapping in src/blackboard.cpp of 4.6.2 and 4.10.0; for version 3
 buildTreeRecursively in src/xml_parsing.cpp of 3.8.8.
@@ -35,7 +35,7 @@ class EntryUse(IntFlag):
     READ, WRITTEN, CREATED: by nodes, scripts and values that SubTrees give.
     GIVEN: it is a declared port, or a signal is read from it.
     STRANGE: a node that nothing declares may read and write any entry.
-    OPEN: something that btq does not know may.
+    OPEN: something unknown to btq may read and write it.
     OUTSIDE: it is on the root blackboard, where the robot's program may set and read it.
     """
 
@@ -59,7 +59,7 @@ class Below(Record):
     uses: Mapping[str, EntryUse]
     any: EntryUse
 
-    def of(self, name: str) -> EntryUse:
+    def use_of(self, name: str) -> EntryUse:
         """What may happen to an entry."""
         return self.uses.get(name, EntryUse(0)) | self.any
 
@@ -69,25 +69,25 @@ _ANYTHING: Final = EntryUse(127)
 
 @of_scope
 def uses(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> EntryUse:
-    """What may happen to an entry of a tree, under whatever names it is passed up and down."""
+    """What may happen to an entry of a tree, in it and in the trees above and below that it is passed to."""
     if name[:1] == "@":
         return store.ask(_of_root, viewpoint, name[1:])
     view = View(store, viewpoint)
-    found = view.ask(below, tree).of(name)
+    use = view.ask(below, tree).use_of(name)
     if port_named(declared_ports(view, tree), name) is not None:
-        found |= EntryUse.GIVEN
+        use |= EntryUse.GIVEN
     running = view.ask(callers, tree)
     if not running or view.ask(is_main, tree):
-        found |= EntryUse.OUTSIDE | view.ask(of_program, name)
+        use |= EntryUse.OUTSIDE | view.ask(of_program, name)
     for caller in running:
         for call in view.ask(handling, caller).calls:
             if call.tree == tree:
                 passed = call.passed(name)
                 if name in call.values:
-                    found |= EntryUse.WRITTEN | EntryUse.CREATED
+                    use |= EntryUse.WRITTEN | EntryUse.CREATED
                 if passed is not None:
-                    found |= view.ask(_above, caller, passed)
-    return found
+                    use |= view.ask(_above, caller, passed)
+    return use
 
 
 @on_circle(Below({}, _ANYTHING))
@@ -95,14 +95,14 @@ def uses(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> Entry
 def below(store: Store[Workspace], viewpoint: str, tree: str) -> Below:
     """What happens to the entries of a tree in it and in the trees that it runs; anything, if it runs itself."""
     own = store.ask(handling, viewpoint, tree)
-    found: dict[str, EntryUse] = {}
+    by_entry: dict[str, EntryUse] = {}
     anything = EntryUse.OPEN if own.is_open else EntryUse(0)
     if own.has_strangers:
         anything |= EntryUse.STRANGE
     for touch in own.touches:
-        found[touch.name] = found.get(touch.name, EntryUse(0)) | _use(touch)
+        by_entry[touch.name] = by_entry.get(touch.name, EntryUse(0)) | _use(touch)
     for name in own.named:
-        found[name] = found.get(name, EntryUse(0)) | EntryUse.OPEN
+        by_entry[name] = by_entry.get(name, EntryUse(0)) | EntryUse.OPEN
     for call in own.calls:
         called = store.ask(below, viewpoint, call.tree)
         if call.shares:
@@ -110,11 +110,11 @@ def below(store: Store[Workspace], viewpoint: str, tree: str) -> Below:
         for name, use in called.uses.items():
             passed = name if name[:1] == "@" else call.passed(name)
             if passed is not None:
-                found[passed] = found.get(passed, EntryUse(0)) | use
+                by_entry[passed] = by_entry.get(passed, EntryUse(0)) | use
         for port, passed in call.given.items():
             if called.any and port not in called.uses:
-                found[passed] = found.get(passed, EntryUse(0)) | called.any
-    return Below(found, anything)
+                by_entry[passed] = by_entry.get(passed, EntryUse(0)) | called.any
+    return Below(by_entry, anything)
 
 
 @on_circle(_ANYTHING)
@@ -128,35 +128,35 @@ def _of_root(store: Store[Workspace], viewpoint: str, name: str) -> EntryUse:
     """What may happen to an entry of the root blackboard that is named with its `@`."""
     view = View(store, viewpoint)
     trees = [(tree, view.ask(below, tree)) for tree in view.ask(inputs.names, Kind.TREE)]
-    found = [each.uses.get(f"@{name}", EntryUse(0)) | each.any for _, each in trees]
-    found += [each.of(name) for tree, each in trees if not view.ask(callers, tree)]
-    return reduce(or_, found, EntryUse.OUTSIDE | view.ask(of_program, name))
+    entry_uses = [tree_uses.uses.get(f"@{name}", EntryUse(0)) | tree_uses.any for _, tree_uses in trees]
+    entry_uses += [tree_uses.use_of(name) for tree, tree_uses in trees if not view.ask(callers, tree)]
+    return reduce(or_, entry_uses, EntryUse.OUTSIDE | view.ask(of_program, name))
 
 
 @of_scope
 def of_program(store: Store[Workspace], viewpoint: str, name: str) -> EntryUse:
-    """What the program is known to do with an entry of the root blackboard, and trees by its name with `@`."""
+    """What the program does with an entry of the root blackboard, and trees by its name with `@`."""
     view = View(store, viewpoint)
-    found = view.ask(_with_sign).get(name, EntryUse(0))
+    use = view.ask(_with_sign).get(name, EntryUse(0))
     if ("", name) in view.ask(signal_entries):
-        found |= EntryUse.GIVEN
+        use |= EntryUse.GIVEN
     for entry, direction in view.ask(lookups.outside_entries):
         if entry == name:
-            found |= EntryUse.READ if direction != "output" else EntryUse(0)
-            found |= EntryUse.WRITTEN | EntryUse.CREATED if direction != "input" else EntryUse(0)
-    return found
+            use |= EntryUse.READ if direction != "output" else EntryUse(0)
+            use |= EntryUse.WRITTEN | EntryUse.CREATED if direction != "input" else EntryUse(0)
+    return use
 
 
 @of_scope
 def _with_sign(store: Store[Workspace], viewpoint: str) -> dict[str, EntryUse]:
     """The entries of the root blackboard that trees name with its `@`."""
     view = View(store, viewpoint)
-    found: dict[str, EntryUse] = {}
+    by_entry: dict[str, EntryUse] = {}
     for tree in view.ask(inputs.names, Kind.TREE):
         for touch in view.ask(handling, tree).touches:
             if touch.name[:1] == "@":
-                found[touch.name[1:]] = found.get(touch.name[1:], EntryUse(0)) | _use(touch)
-    return found
+                by_entry[touch.name[1:]] = by_entry.get(touch.name[1:], EntryUse(0)) | _use(touch)
+    return by_entry
 
 
 def _use(touch: Touch) -> EntryUse:
@@ -170,7 +170,8 @@ def writes_alone(store: Store[Workspace], viewpoint: str, tree: str, called: str
     if any(call.passed(name) is not None or name in call.values for call in calls):
         return False
     return any(
-        each.name == name and each.writes and not each.reads for each in store.ask(handling, viewpoint, called).touches
+        touch.name == name and touch.writes and not touch.reads
+        for touch in store.ask(handling, viewpoint, called).touches
     )
 
 

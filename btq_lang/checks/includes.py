@@ -31,7 +31,8 @@ def missing_include(view: View) -> Iterator[Diagnostic]:
         return
     folder = posixpath.dirname(view.path)
     fixes = tuple(
-        replace_fix(f"Replace it with `{other}`", include.path.span, quote(other)) for other in _meant(view, path)
+        replace_fix(f"Replace it with `{other}`", include.path.span, quote(other))
+        for other in _likely_files(view, path)
     )
     project = view.project
     places = ", ".join(
@@ -76,7 +77,7 @@ def include_with_errors(view: View, errors_in: ErrorsIn) -> Iterator[Diagnostic]
         which = f"`{shown}`" if path == target else f"`{shown}`, which that file includes,"
         notes: tuple[str, ...] = ("`btq build` refuses every file that includes it",)
         # XML in a folder is checked only if it is named.
-        if len(errors) > 1 and view.store.ask(lookups.is_foreign, path):
+        if len(errors) > 1 and view.store.ask(lookups.is_xml, path):
             notes += (f"run `btq check {shown}` to see all of them",)
         yield Diagnostic(
             "include-with-errors",
@@ -94,10 +95,10 @@ def is_reported_beside(diagnostic: Diagnostic, checked: Container[str]) -> bool:
 
 
 def include_fix(view: View, path: str) -> Fix:
-    """The fix that includes another file, after the existing includes."""
-    at, line = include_line(view.ask(lookups.head), view.path, path)
+    """The fix that adds an include after the existing ones."""
+    offset, line = include_line(view.ask(lookups.head), view.path, path)
     shown = posixpath.relpath(path, posixpath.dirname(view.path) or ".")
-    return Fix(f"Include `{shown}`", (FixEdit(Place(Span(at, at), view.path), line),))
+    return Fix(f"Include `{shown}`", (FixEdit(Place(Span(offset, offset), view.path), line),))
 
 
 def include_line(head: tuple[int, str], path: str, other: str) -> tuple[int, str]:
@@ -106,11 +107,11 @@ def include_line(head: tuple[int, str], path: str, other: str) -> tuple[int, str
     Args:
         head: of `lookups.head`.
     """
-    at, margin = head
-    return at, f"{margin}include {quote(posixpath.relpath(other, posixpath.dirname(path) or '.'))}\n"
+    offset, margin = head
+    return offset, f"{margin}include {quote(posixpath.relpath(other, posixpath.dirname(path) or '.'))}\n"
 
 
-def _meant(view: View, path: str) -> tuple[str, ...]:
+def _likely_files(view: View, path: str) -> tuple[str, ...]:
     name = posixpath.basename(path)
     others = view.ask(lookups.other_files)
     return tuple([other for other in others if posixpath.basename(other) == name][:3]) or near(path, others)

@@ -30,7 +30,7 @@ from btq_lang.workspace.resolved import ResolvedNode
 
 
 def limit_too_small(demanded: Demanded) -> Iterator[Found]:
-    """A limit that has no effect in the engine: it counts whole milliseconds, and 0 means no limit."""
+    """A limit below one millisecond: the engine counts whole milliseconds, and 0 means no limit."""
     for applied, claim, _, place in demanded.claims:
         most = claim.highest if VERBS[claim.verb].limits and applied.requirement.is_enforceable else None
         if most is None or most[0] >= 0.001:
@@ -58,7 +58,7 @@ def limit_on_synchronous_node(demanded: Demanded) -> Iterator[Found]:
 
 
 def dead_bound(demanded: Demanded) -> Iterator[Found]:
-    """A bound beyond what a Timeout around the node allows: it is never reached.  A Timeout that never succeeds is
+    """A bound that is never reached, as a Timeout around the node is shorter.  If the Timeout never succeeds, that is
     reported instead."""
     for _, claim, node, place in demanded.claims:
         most = claim.highest if VERBS[claim.verb].limits else None
@@ -75,7 +75,7 @@ def dead_bound(demanded: Demanded) -> Iterator[Found]:
 
 
 def outbid_bound(demanded: Demanded) -> Iterator[Found]:
-    """A bound without effect, for the same requirement has a tighter one of the same kind for the same node."""
+    """A bound without effect: the same requirement has a tighter one of the same kind for the same node."""
     kinds: dict[tuple[object, ...], list[tuple[ResolvedClaim, _Limit, Place]]] = {}
     for applied, claim, node, place in demanded.claims:
         if claim.limit is not None and ResolvedTable in (type(claim.limit.value), type(claim.limit.upper)):
@@ -85,12 +85,12 @@ def outbid_bound(demanded: Demanded) -> Iterator[Found]:
             kinds.setdefault((id(node), applied.requirement.name, claim.verb, limit[0]), []).append(
                 (claim, limit, place)
             )
-    for same in kinds.values():
-        lows = [(low[0], low[1], claim, place) for claim, (_, low, _), place in same if low is not None]
-        highs = [(high[0], high[1], claim, place) for claim, (_, _, high), place in same if high is not None]
+    for group in kinds.values():
+        lows = [(low[0], low[1], claim, place) for claim, (_, low, _), place in group if low is not None]
+        highs = [(high[0], high[1], claim, place) for claim, (_, _, high), place in group if high is not None]
         for word, bounds in (("least", lows), ("most", highs)):
             pick = max if word == "least" else min
-            tight = pick(bounds, key=lambda each: each[0], default=None)
+            tight = pick(bounds, key=lambda bound: bound[0], default=None)
             for bound in bounds:
                 # Two equal ones that are written differently may differ: `at most 30 s`, `less than 30 s`.
                 if tight is None or (bound[0] == tight[0] and bound[2].text != tight[2].text):
@@ -98,10 +98,10 @@ def outbid_bound(demanded: Demanded) -> Iterator[Found]:
                 if bound[2].place == tight[2].place:  # the same claim, which may apply to the node in several ways
                     continue
                 message = f"the same requirement already demands at {word} `{tight[1]}`, so `{bound[1]}` has no effect"
-                at = tight[3]
-                if at.path == bound[3].path and at.anchor is bound[3].anchor:
-                    at = Place(at.span)  # without its item, which would be hashed for each of many claims
-                related = (Related(at, "tighter bound"),) if tight[3].span != bound[3].span else ()
+                tighter = tight[3]
+                if tighter.path == bound[3].path and tighter.anchor is bound[3].anchor:
+                    tighter = Place(tighter.span)  # without its item, which would be hashed for each of many claims
+                related = (Related(tighter, "tighter bound"),) if tight[3].span != bound[3].span else ()
                 yield found_at(bound[3], "dead-bound", message, related=related)
 
 
@@ -148,7 +148,7 @@ def attempts_mismatch(demanded: Demanded) -> Iterator[Found]:
 
 
 def contradicting_bounds(demanded: Demanded) -> Iterator[Found]:
-    """Two bounds on one node that cannot both hold; or one that cannot hold by itself."""
+    """Two bounds on one node that cannot both hold, or one that cannot hold by itself."""
     least: dict[tuple[object, ...], tuple[float, str, Place]] = {}
     most: dict[tuple[object, ...], tuple[float, str, Place]] = {}
     for applied, claim, node, place in demanded.claims:
@@ -157,14 +157,14 @@ def contradicting_bounds(demanded: Demanded) -> Iterator[Found]:
         scopes = tuple(scope.text for scope in applied.requirement.scopes)
         for what, low, high in _limits(claim):
             key = id(node), what, scopes
-            before_most, before_least = most.get(key), least.get(key)
+            earlier_most, earlier_least = most.get(key), least.get(key)
             if low is not None and (key not in least or low[0] > least[key][0]):
                 least[key] = (*low, place)
             if high is not None and (key not in most or high[0] < most[key][0]):
                 most[key] = (*high, place)
             if key not in least or key not in most or least[key][0] <= most[key][0]:
                 continue
-            if before_least is not None and before_most is not None and before_least[0] > before_most[0]:
+            if earlier_least is not None and earlier_most is not None and earlier_least[0] > earlier_most[0]:
                 continue  # reported
             other = least[key] if high is not None and most[key][2] is place else most[key]
             related = () if other[2] is place else (Related(other[2], "other bound"),)
@@ -205,29 +205,33 @@ def _compared(verb: str, condition: Compare) -> Iterator[_Limit]:
 
 def _tightest_timeout(node: ResolvedNode) -> tuple[ResolvedNode, float] | None:
     """The Timeout around a node in its tree that ends first."""
-    found = [(each, limit) for each in node.ancestors() if each.flow == "timeout" and (limit := port_seconds(each))]
-    return min(found, key=lambda each: each[1], default=None)
+    timeouts = [
+        (ancestor, limit)
+        for ancestor in node.ancestors()
+        if ancestor.flow == "timeout" and (limit := port_seconds(ancestor))
+    ]
+    return min(timeouts, key=lambda timeout: timeout[1], default=None)
 
 
 def _loops(node: ResolvedNode, top: ResolvedNode) -> list[tuple[ResolvedNode, int]]:
     """The loops between a node and one above it in the same tree, with their counts; empty if one is unknown."""
-    found: list[tuple[ResolvedNode, int]] = []
-    for at in node.ancestors() if node is not top else ():
-        if at.flow in ("retry", "repeat"):
-            count = port_count(at, "count")
+    loops: list[tuple[ResolvedNode, int]] = []
+    for ancestor in node.ancestors() if node is not top else ():
+        if ancestor.flow in ("retry", "repeat"):
+            count = port_count(ancestor, "count")
             if count is None or count < 1:
                 return []
-            found.append((at, count))
-        if at is top:
-            return found
+            loops.append((ancestor, count))
+        if ancestor is top:
+            return loops
     return []
 
 
 def _goal_clause(view: View, name: str) -> Goal | None:
     """The clause with a requirement's goal."""
-    found = view.ask(inputs.definition, Kind.REQUIREMENT, name)
-    written = inputs.symbol(found[1], Kind.REQUIREMENT, name).target if found is not None else None
-    clauses = written.clauses if isinstance(written, WrittenRequirement) else ()
+    definition = view.ask(inputs.definition, Kind.REQUIREMENT, name)
+    target = inputs.symbol(definition[1], Kind.REQUIREMENT, name).target if definition is not None else None
+    clauses = target.clauses if isinstance(target, WrittenRequirement) else ()
     return next((clause for clause in clauses if isinstance(clause, Goal)), None)
 
 

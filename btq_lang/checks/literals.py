@@ -1,5 +1,5 @@
-"""Values that the engine refuses, reads as something else, or that have a unit that is not known; and numbers that a
-SubTree passes to text ports."""
+"""Values that the engine refuses or reads as something else, values of an unknown unit, and numbers that a SubTree
+passes to text ports."""
 
 from __future__ import annotations
 
@@ -30,6 +30,7 @@ _NUMBER = re.compile(r"-?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")
 _WHOLE = re.compile(r"(?:-?[0-9]+(?:\.0*)?\s*(?:;|$))+")  # integers that are written as reals, too
 _JSON = re.compile(r"[\"'\[\],]|:\s|^{")  # no name of an entry has any of that
 _FRACTION = re.compile(r"[0-9]*\.[0-9]*[1-9][0-9]*")
+_DECIMAL_COMMA = re.compile(r"-?[0-9]+,[0-9]+")
 _ENDLESS = frozenset(
     (
         "inf",
@@ -54,9 +55,8 @@ class _Target(Record):
 
     Attributes:
         unit: of a number in the port, if known.
-        converts: whether the engine reads a literal as the type; for a tree's port it keeps the text or number it
-            finds.
-        is_output: whether it is an output, for which every literal is wrong, which is reported.
+        converts: whether the engine reads a literal as the type; for a tree's port it keeps the text or number.
+        is_output: whether it is an output; another rule reports every literal for one.
         is_count: whether it says how often a child runs, and -1 means endless.
     """
 
@@ -86,7 +86,7 @@ def old_entry(view: View) -> Iterator[Diagnostic]:
 
 
 def json_in_braces(view: View) -> Iterator[Diagnostic]:
-    """A text in braces that no entry is called by."""
+    """A text in braces that cannot be the name of an entry."""
     for _, pair, value in view.seen.values():
         if not is_pointer(value.text) or not _JSON.search(value.text[1:-1]) or not is_port_name(pair.key.text):
             continue
@@ -128,6 +128,8 @@ def invalid_literal(view: View) -> Iterator[Diagnostic]:
             message = f"the engine reads `{text}` as {problem.reads} and silently drops the rest"
             fixes = _as_quantity(value, target, problem.reads, is_xml=view.is_xml)
             in_unit = (f"`{target.port}` is in ms",) if _is_in_seconds(target, text) else ()
+            if not target.unit and parse_quantity(text.strip()) is not None:
+                in_unit = ("write the number in the unit that the node expects",)
             severity = Severity.HINT if _WHOLE.fullmatch(text) else None
             yield Diagnostic(
                 "trailing-text-in-number", value.span, message, notes=in_unit, fixes=fixes, severity=severity
@@ -148,21 +150,21 @@ def invalid_literal(view: View) -> Iterator[Diagnostic]:
 
 
 def number_for_text(view: View) -> Iterator[Diagnostic]:
-    """A number that a SubTree passes to a port, or that is a port's default, where a node below expects a text."""
+    """A number where a node below expects a text: a SubTree passes it to a port, or it is a port's default."""
     if not TYPED_CONSTANTS.holds(view.target):
         return
-    for seen in view.seen.subtrees:
-        if seen.id is None:
+    for resolved in view.seen.subtrees:
+        if resolved.id is None:
             continue
-        for pair in seen.node.attributes:
-            met = _text_below(view, seen.id, pair.key, pair.value)
-            if met is not None and pair.value is not None:
-                yield _number_for_text(pair.value, met, None)
+        for pair in resolved.node.attributes:
+            text_port = _text_below(view, resolved.id, pair.key, pair.value)
+            if text_port is not None and pair.value is not None:
+                yield _number_for_text(pair.value, text_port, None)
     for tree, port in _ports_of_trees(view):
-        met = _text_below(view, tree, port.name, port.default)
-        if met is not None and port.default is not None:
+        text_port = _text_below(view, tree, port.name, port.default)
+        if text_port is not None and port.default is not None:
             # Only if a SubTree passes nothing else to the port.
-            yield _number_for_text(port.default, met, Severity.WARNING)
+            yield _number_for_text(port.default, text_port, Severity.WARNING)
 
 
 def _quantity(target: _Target, value: Word, version: str) -> Iterator[Diagnostic]:
@@ -170,8 +172,8 @@ def _quantity(target: _Target, value: Word, version: str) -> Iterator[Diagnostic
     quantity = parse_quantity(value.raw)
     if quantity is None:
         return  # an unknown unit, which is reported
-    wanted = parse_unit(target.unit) if target.unit is not None else None
-    if wanted is None:
+    port_unit = parse_unit(target.unit) if target.unit is not None else None
+    if port_unit is None:
         as_text = check_literal(target.type, value.raw, version) is None
         # No fix: without its unit the number may mean something else, and not every node reads the text.
         yield Diagnostic(
@@ -185,11 +187,11 @@ def _quantity(target: _Target, value: Word, version: str) -> Iterator[Diagnostic
         )
         return
     unit = quantity[1]
-    if unit.dimension != wanted.dimension:
-        message = f"expected {a_dimension(wanted)} for `{target.port}`, found `{value.raw}` ({a_dimension(unit)})"
+    if unit.dimension != port_unit.dimension:
+        message = f"expected {a_dimension(port_unit)} for `{target.port}`, found `{value.raw}` ({a_dimension(unit)})"
         yield Diagnostic("quantity-on-unitless-port", value.span, message)
         return
-    number = convert(quantity[0], unit, wanted)
+    number = convert(quantity[0], unit, port_unit)
     notes = (f"`{target.port}` has the type {target.type} and the unit {target.unit}",)
     if not isfinite(number):
         message = f"`{value.raw}` exceeds the range of numbers"
@@ -210,25 +212,27 @@ def _values(view: View) -> Iterator[tuple[_Target, Word]]:
         value = port.default
         if value is not None and value.kind != BRACED and value.text and port.name is not None:
             yield _Target(port.name.text, port.type.text if port.type else "", converts=False), value
-    for seen, pair, value in view.seen.values():
-        if seen.is_placeholder or (value.kind == BRACED and pair.key.text != "_autoremap"):
+    for resolved, pair, value in view.seen.values():
+        if resolved.is_placeholder or (value.kind == BRACED and pair.key.text != "_autoremap"):
             continue
-        if (target := _target(view, seen, pair, value)) is not None:
+        if (target := _target(view, resolved, pair, value)) is not None:
             yield target, value
 
 
-def _target(view: View, seen: ResolvedNode, pair: Pair, value: Word) -> _Target | None:
+def _target(view: View, resolved: ResolvedNode, pair: Pair, value: Word) -> _Target | None:
     key = pair.key.text
-    is_declared = key != "_autoremap" or not seen.is_subtree
-    port = port_of(view, seen, key) if is_declared else BUILTINS["SubTree"].port(key)
+    is_declared = key != "_autoremap" or not resolved.is_subtree
+    port = port_of(view, resolved, key) if is_declared else BUILTINS["SubTree"].port(key)
     if port is None:
         # A node without a model takes any literal, but there is no unit that a quantity could be converted to.
-        is_free = value.kind == QUANTITY and seen.kind is None and is_port_name(key)
+        is_free = value.kind == QUANTITY and resolved.kind is None and is_port_name(key)
         return _Target(key, "") if is_free else None
     if port.content != "value":
         return None
-    converts = not (seen.is_subtree and is_declared)
-    is_count = seen.kind is not None and seen.kind.port_for("count") is port and seen.flow in ("repeat", "retry")
+    converts = not (resolved.is_subtree and is_declared)
+    is_count = (
+        resolved.kind is not None and resolved.kind.port_for("count") is port and resolved.flow in ("repeat", "retry")
+    )
     return _Target(key, port.literal or port.type, port.unit, converts, port.direction == "output", is_count)
 
 
@@ -242,19 +246,24 @@ def _accepted(target: _Target, value: Word, version: str) -> tuple[Fix, ...]:
 
 
 def _as_quantity(value: Word, target: _Target, reads: str | None, *, is_xml: bool) -> tuple[Fix, ...]:
-    """`"30 sec"` on a port in ms was meant as 30 s, and `0.5` as 0.5 s; of `"5 apples"` only the number counts."""
+    """`"30 sec"` on a port in ms was meant as 30 s, `0.5` as 0.5 s, and `0,5` as 0.5 on a port for reals; of
+    `"5 apples"` only the number counts, but a number without its unit means something else."""
+    if _DECIMAL_COMMA.fullmatch(value.text):
+        meant = value.text.replace(",", ".")
+        takes = check_literal(target.type, meant) is None
+        return (replace_fix(f"Write `{meant}`", value.span, meant),) if takes else ()
     fixes = []
     is_in_seconds = _is_in_seconds(target, value.text)
     quantity = parse_quantity(f"{float(value.text)} s" if is_in_seconds else value.text.strip())
-    wanted = parse_unit(target.unit) if target.unit else None
-    if quantity is not None and wanted is not None and quantity[1].dimension == wanted.dimension:
+    port_unit = parse_unit(target.unit) if target.unit else None
+    if quantity is not None and port_unit is not None and quantity[1].dimension == port_unit.dimension:
         quantity_text = f"{_plain(quantity[0])} {quantity[2]}" if isfinite(quantity[0]) else value.text
         if is_xml:  # which has numbers alone
-            number = _plain(convert(quantity[0], quantity[1], wanted))
+            number = _plain(convert(quantity[0], quantity[1], port_unit))
             fixes.append(replace_fix(f"Write `{number}`, which is {quantity_text}", value.span, number))
         else:
             fixes.append(replace_fix(f"Write the quantity `{quantity_text}`", value.span, quantity_text))
-    if reads is not None and not (is_in_seconds and reads == "0"):
+    if reads is not None and not (is_in_seconds and reads == "0") and (quantity is None or is_in_seconds):
         fixes.append(replace_fix(f"Write what the engine reads: `{reads}`", value.span, _as_value(reads)))
     return tuple(fixes)
 
@@ -289,8 +298,8 @@ def _text_below(view: View, tree: Word, port: Word | None, value: Word | None) -
     return view.ask(lookups.text_below, tree.text, port.text)
 
 
-def _number_for_text(value: Word, met: tuple[Place, str, str], severity: Severity | None) -> Diagnostic:
-    place, name, node = met
+def _number_for_text(value: Word, text_port: tuple[Place, str, str], severity: Severity | None) -> Diagnostic:
+    place, name, node = text_port
     port = f"`{name}` of `{node}`"
     message = (
         f"BehaviorTree.CPP {TYPED_CONSTANTS.since} and later refuse to load this tree: `{value.text}` is a number, "

@@ -30,10 +30,10 @@ if TYPE_CHECKING:
 
 
 class VisibleMeaning(Record):
-    """All that others see of what a name means.
+    """What others see of the meaning of a name.
 
     Attributes:
-        owner: the item that defines it; for trees and models, others see no more than what follows.
+        owner: the item that defines it; None for trees and models, of which others see only what follows.
         target: its meaning; None for a tree.
         ports: of a tree or a model.
     """
@@ -55,6 +55,11 @@ class Declaration(Record):
         """The place of the name."""
         return Place(self.symbol.span, self.path, self.owner.item)
 
+    @property
+    def is_of_nav2(self) -> bool:
+        """Whether it is in a file with the nodes of Nav2."""
+        return self.path in FILES.values()
+
 
 # ---- a name: these depend only on the items that define it ----
 
@@ -62,8 +67,8 @@ class Declaration(Record):
 @of_name
 def ports_in_file(workspace: Workspace, path: str, kind: Kind, name: str) -> frozenset[str] | None:
     """The names of the ports of a model in a file itself; None if it has no such model."""
-    found = workspace.files[path].names.definitions.get((kind, name))
-    model = found[0][1].target if found else None
+    definitions = workspace.files[path].names.definitions.get((kind, name))
+    model = definitions[0][1].target if definitions else None
     if not isinstance(model, Model):
         return None
     return frozenset([port.name.text for port in model.ports if port.name is not None])
@@ -84,58 +89,61 @@ def is_pooled(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bo
 @of_name
 def ends_at_once(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
     """Whether the C++ of a node shows that it never returns RUNNING."""
-    files = [workspace.files[each.path] for each in workspace.scope(viewpoint).all(kind, name)]
-    nodes = (file.cpp_nodes.get(name) for file in files)
-    return any(each.at_once for each in nodes if each is not None)
+    definitions = workspace.scope(viewpoint).all(kind, name)
+    nodes = (workspace.files[definition.path].cpp_nodes.get(name) for definition in definitions)
+    return any(node.at_once for node in nodes if node is not None)
 
 
 @of_name
 def meaning(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> VisibleMeaning | None:
     """What a name means."""
-    found = workspace.find(viewpoint, kind, name)
-    if found is None:
+    definition = workspace.find(viewpoint, kind, name)
+    if definition is None:
         return None
-    target = found.symbol.target
+    target = definition.symbol.target
     if isinstance(target, Tree):
         return VisibleMeaning(None, None, target.ports)
     if isinstance(target, Model):
         return VisibleMeaning(None, target, target.ports)
-    return VisibleMeaning(_declaration(workspace, found).owner, target, ())
+    return VisibleMeaning(_declaration(workspace, definition).owner, target, ())
 
 
 @of_name
 def ports_of_models(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> tuple[tuple[Port, ...], ...]:
     """The ports of each model of a node in scope, of the first alone if it is C++ whose ports are all seen, else of the
     one that it has in the pool."""
-    found = workspace.scope(viewpoint).all(kind, name) or (workspace.find(viewpoint, kind, name),)
-    first = workspace.files[found[0].path] if found[0] is not None else None
-    if first is not None and first.is_cpp and first.cpp_nodes[name].complete:
-        found = found[:1]
-    targets = [each.symbol.target for each in found if each is not None]
+    definitions = workspace.scope(viewpoint).all(kind, name) or (workspace.find(viewpoint, kind, name),)
+    first = workspace.files[definitions[0].path].cpp_nodes.get(name) if definitions[0] is not None else None
+    if first is not None and first.complete:
+        definitions = definitions[:1]
+    targets = [definition.symbol.target for definition in definitions if definition is not None]
     return tuple([target.ports for target in targets if isinstance(target, Model)])
 
 
 @of_name
 def declaration(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Declaration | None:
     """Where a name is defined."""
-    found = workspace.find(viewpoint, kind, name)
-    return _declaration(workspace, found) if found is not None else None
+    definition = workspace.find(viewpoint, kind, name)
+    return _declaration(workspace, definition) if definition is not None else None
 
 
 @of_name
 def is_torn(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
     """Whether something could not be read in the tree or model of a name, or in its C++, which may be a port."""
-    found = workspace.find(viewpoint, kind, name)
-    if found is not None and (nodes := workspace.files[found.path].cpp_nodes):
-        return not nodes[name].complete
-    if found is None or not found.entry.diagnostics:
+    definition = workspace.find(viewpoint, kind, name)
+    if definition is not None and (node := workspace.files[definition.path].cpp_nodes.get(name)) is not None:
+        return not node.complete
+    if definition is None or not definition.entry.diagnostics:
         return False
-    target, item = found.symbol.target, found.entry.item
+    target, item = definition.symbol.target, definition.entry.item
     if not isinstance(target, Tree | Model):
         return False
-    starts = [each.start for each in models_in(item)]
+    starts = [model.start for model in models_in(item)]
     end = min([start for start in starts if start > target.start], default=inf)
-    return any(each.rule in UNREADABLE and target.start <= each.span.start < end for each in found.entry.diagnostics)
+    return any(
+        problem.rule in UNREADABLE and target.start <= problem.span.start < end
+        for problem in definition.entry.diagnostics
+    )
 
 
 @of_name
@@ -144,9 +152,11 @@ def another_declaration(workspace: Workspace, viewpoint: str, kind: Kind, name: 
     again; without a factory, where a file of nodes does."""
     scope = workspace.scope(viewpoint)
     others = scope.node_paths if workspace.factory is None else (*scope.paths, *scope.node_paths)
-    found = scope.all(kind, name) if others else ()
-    other = next((each for each in found if each.path != viewpoint and each.path in others), None)
-    return _declaration(workspace, other) if other is not None and found[0].path == viewpoint else None
+    definitions = scope.all(kind, name) if others else ()
+    other = next(
+        (definition for definition in definitions if definition.path != viewpoint and definition.path in others), None
+    )
+    return _declaration(workspace, other) if other is not None and definitions[0].path == viewpoint else None
 
 
 @of_name
@@ -160,15 +170,15 @@ def is_repeated(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> 
 
 @of_viewpoint
 def outside_entries(workspace: Workspace, viewpoint: str) -> tuple[OutsideEntry, ...]:
-    """The entries of the root blackboard that the program sets or reads, as far as they are known."""
+    """The known entries of the root blackboard that the program sets or reads."""
     if workspace.factory is not None and workspace.factory.entries:
         return workspace.factory.entries
-    found = _distribution(workspace, viewpoint)
-    if found is None:
+    nav2 = _distribution(workspace, viewpoint)
+    if nav2 is None:
         return ()
-    from btq_lang.catalog.nav2.navigator import outside_entries as of  # only for Nav2
+    from btq_lang.catalog.nav2.navigator import outside_entries as entries_of  # only for Nav2
 
-    return of(found)
+    return entries_of(nav2)
 
 
 @of_viewpoint
@@ -192,16 +202,16 @@ def signs(workspace: Workspace, viewpoint: str) -> Signs | None:
 
 @of_viewpoint
 def has_palette(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether the models in scope are meant to be complete: a TreeNodesModel, or models of another file.  Those of Nav2
-    or of C++ sources are not: programs register nodes of other packages, too."""
+    """Whether the models in scope are meant to be complete: a TreeNodesModel, or models of another file.  Models of
+    Nav2 or of C++ sources are not, for programs register nodes of other packages, too."""
     scope = workspace.scope(viewpoint)
     files = workspace.files
     beside = (path for path in scope.node_paths if path not in FILES.values() and not files[path].is_cpp)
-    for each in (*scope.paths, *beside):
-        for entry in workspace.files[each].parsed.entries:
+    for path in (*scope.paths, *beside):
+        for entry in workspace.files[path].parsed.entries:
             if isinstance(entry.item, Models) and any(_is_of_node(model) for model in entry.item.models):
                 return True
-            if each != viewpoint and _is_of_node(entry.item):
+            if path != viewpoint and _is_of_node(entry.item):
                 return True
     return False
 
@@ -213,30 +223,32 @@ def registers_all(workspace: Workspace, viewpoint: str) -> bool:
     if factory is None or factory.nav2 or factory.lost:
         return False
     files = [workspace.files[path] for path in factory.cpp_files if path in workspace.files]
-    own = {_package(each.path) for each in files if each.names_of(Kind.MODEL) and not _OF_LIBRARY(each.source)}
-    return bool(own) and not any(_package(each.path) in own and _LOADS_LIBRARIES(each.source) for each in files)
+    own_packages = {_package(file.path) for file in files if file.names_of(Kind.MODEL) and not _OF_LIBRARY(file.source)}
+    return bool(own_packages) and not any(
+        _package(file.path) in own_packages and _LOADS_LIBRARIES(file.source) for file in files
+    )
 
 
 @of_viewpoint
 def clashes(workspace: Workspace, viewpoint: str) -> tuple[tuple[Facts, Declaration, Declaration], ...]:
     """The names that an included file and one included before it both define: the include, the definition that counts
-    and the other one.  The two files cannot see each other, so no check of theirs reports it, except in a factory."""
+    and the other one.  The two files do not see each other, so no check of theirs reports it, except in a factory."""
     if workspace.factory is not None:
         return ()
     file = workspace.files[viewpoint]
-    found: list[tuple[Facts, Declaration, Declaration]] = []
-    before: set[str] = set()
+    collisions: list[tuple[Facts, Declaration, Declaration]] = []
+    earlier: set[str] = set()
     for include in file.includes if len(file.includes) > 1 else ():
         target = workspace.included_by(viewpoint, include)
         brought = workspace.closure(target) if target is not None else ()
-        for path in brought if before else ():
-            for second in workspace.files[path].defined if path not in before else ():
+        for path in brought if earlier else ():
+            for second in workspace.files[path].defined if path not in earlier else ():
                 first = workspace.scope(viewpoint).find(second.symbol.kind, second.symbol.name)
-                if first is not None and first.path in before and first.path not in brought:
+                if first is not None and first.path in earlier and first.path not in brought:
                     both = _declaration(workspace, first), _declaration(workspace, second)
-                    found.append((file.facts[id(include)], *both))
-        before.update(brought)
-    return tuple(found)
+                    collisions.append((file.facts[id(include)], *both))
+        earlier.update(brought)
+    return tuple(collisions)
 
 
 @of_viewpoint
@@ -261,14 +273,15 @@ def is_run_elsewhere(workspace: Workspace, viewpoint: str, tree: str) -> bool:
 
 @of_viewpoint
 def uses_of_tree(workspace: Workspace, viewpoint: str, name: str) -> tuple[Place, ...]:
-    """Where the tree of a name is referred to, in whatever file."""
+    """Where any file refers to the tree of a name."""
     meant = workspace.scope(viewpoint).find(Kind.TREE, name)
     if meant is None:
         return ()
     paths = [path for path in workspace.linked(meant.path) if workspace.scope(path).find(Kind.TREE, name) == meant]
-    uses = [(path, *each) for path in paths for each in workspace.files[path].uses]
-    of_name = [each for each in uses if (each[2].kind, each[2].name) == (Kind.TREE, name)]
-    return tuple([Place(use.span, path, entry.item) for path, entry, use in of_name])
+    uses = [(path, entry, use) for path in paths for entry, use in workspace.files[path].uses]
+    return tuple(
+        [Place(use.span, path, entry.item) for path, entry, use in uses if (use.kind, use.name) == (Kind.TREE, name)]
+    )
 
 
 # ---- the file ----
@@ -287,19 +300,19 @@ def items(workspace: Workspace, viewpoint: str) -> tuple[Facts, ...]:
 @of_viewpoint
 def first_tree(workspace: Workspace, viewpoint: str) -> Facts | None:
     """The file's first tree: an edit of another one does not change it, as it changes `trees`."""
-    return next((each for each in workspace.files[viewpoint].facts.values() if isinstance(each.item, Tree)), None)
+    return next((facts for facts in workspace.files[viewpoint].facts.values() if isinstance(facts.item, Tree)), None)
 
 
 @of_viewpoint
 def trees(workspace: Workspace, viewpoint: str) -> tuple[Facts, ...]:
     """The file's trees, in order."""
-    return tuple([each for each in workspace.files[viewpoint].facts.values() if isinstance(each.item, Tree)])
+    return tuple([facts for facts in workspace.files[viewpoint].facts.values() if isinstance(facts.item, Tree)])
 
 
 @of_viewpoint
 def first_palette(workspace: Workspace, viewpoint: str) -> Facts | None:
     """The first TreeNodesModel of the file."""
-    return next((each for each in workspace.files[viewpoint].facts.values() if is_palette(each.item)), None)
+    return next((facts for facts in workspace.files[viewpoint].facts.values() if is_palette(facts.item)), None)
 
 
 def is_palette(item: Item) -> bool:
@@ -313,7 +326,7 @@ def is_palette(item: Item) -> bool:
 def is_tree_of_mission(workspace: Workspace, viewpoint: str, name: str) -> bool:
     """Whether a file that is linked with this one by includes, in either direction, has a tree of the name."""
     return workspace.factory is None and any(
-        (Kind.TREE, name) in workspace.files[each].defined_names for each in workspace.linked(viewpoint)
+        (Kind.TREE, name) in workspace.files[path].defined_names for path in workspace.linked(viewpoint)
     )
 
 
@@ -324,8 +337,8 @@ def taken_names(workspace: Workspace, viewpoint: str, but: str) -> dict[str, str
     target = workspace.project.target
     taken = dict.fromkeys(BUILTINS, "a built-in node")
     trees: dict[str, str] = {}
-    for each in sorted(workspace.linked(viewpoint)):
-        for kind, name in sorted(workspace.files[each].defined_names, key=lambda one: one[1]):
+    for path in sorted(workspace.linked(viewpoint)):
+        for kind, name in sorted(workspace.files[path].defined_names, key=lambda defined: defined[1]):
             if kind is Kind.TREE and name != but:
                 is_refused = model_name_problem(name, target) is not None
                 trees[legal_name(name) if is_refused else name] = f"the tree `{name}`"
@@ -337,7 +350,7 @@ def taken_names(workspace: Workspace, viewpoint: str, but: str) -> dict[str, str
 @of_viewpoint
 def is_node_name(workspace: Workspace, viewpoint: str, name: str) -> bool:
     """Whether a path can name a node by this name."""
-    return any(name in workspace.files[each].names_used("node_names") for each in workspace.scope(viewpoint).paths)
+    return any(name in workspace.files[path].names_used("node_names") for path in workspace.scope(viewpoint).paths)
 
 
 @of_viewpoint
@@ -350,8 +363,8 @@ def is_asked_for(workspace: Workspace, viewpoint: str, name: str) -> bool:
 def asked_for_in_vain(workspace: Workspace, viewpoint: str) -> frozenset[str]:
     """The names in the file's conditions, bounds and arguments that are neither signals nor contexts."""
     find = workspace.scope(viewpoint).find
-    asked = workspace.files[viewpoint].names_used("asked_for")
-    return frozenset([name for name in asked if not (find(Kind.SIGNAL, name) or find(Kind.CONTEXT, name))])
+    names = workspace.files[viewpoint].names_used("asked_for")
+    return frozenset([name for name in names if not (find(Kind.SIGNAL, name) or find(Kind.CONTEXT, name))])
 
 
 @of_viewpoint
@@ -370,14 +383,14 @@ def has_apply(workspace: Workspace, viewpoint: str) -> bool:
 def has_root_of_tree(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the file names the main tree, even if that does not exist."""
     facts = workspace.files[viewpoint].facts.values()
-    return any(Kind.TREE in each.used for each in facts if isinstance(each.item, Root))
+    return any(Kind.TREE in of_item.used for of_item in facts if isinstance(of_item.item, Root))
 
 
 @of_viewpoint
 def root(workspace: Workspace, viewpoint: str) -> int | None:
     """Where a name may be inserted after the word Root, if there is one: an offset in the file."""
     file = workspace.files[viewpoint]
-    return next((file.start_of(each) + each.start + len("Root") for each in file.of_type(Root)), None)
+    return next((file.start_of(item) + item.start + len("Root") for item in file.of_type(Root)), None)
 
 
 @of_viewpoint
@@ -443,26 +456,26 @@ def custom_node(workspace: Workspace, viewpoint: str, name: str) -> tuple[str, t
     """The category and the ports that the uses of a custom node suggest, and their number."""
     from btq_lang.workspace.custom_nodes import custom_node as found_in_uses  # few nodes are unknown or lack a value
 
-    found = found_in_uses(workspace, viewpoint, name)
-    return found.category, found.ports, found.uses
+    custom = found_in_uses(workspace, viewpoint, name)
+    return custom.category, custom.ports, custom.uses
 
 
 @of_viewpoint
 def most_have_models(workspace: Workspace, viewpoint: str) -> bool:
     """Whether few of the custom nodes that a file knows or uses have no model: a third at most."""
-    known = workspace.scope(viewpoint).names(Kind.MODEL)
-    unknown = workspace.files[viewpoint].names_used(Kind.MODEL).difference(known)
-    return len(known) >= 2 and 2 * sum(lookup(name) is None for name in unknown) <= len(known)
+    declared = workspace.scope(viewpoint).names(Kind.MODEL)
+    unknown = workspace.files[viewpoint].names_used(Kind.MODEL).difference(declared)
+    return len(declared) >= 2 and 2 * sum(lookup(name) is None for name in unknown) <= len(declared)
 
 
 @of_viewpoint
 def is_crowded(workspace: Workspace, viewpoint: str, kind: Kind) -> bool:
     """Whether so many of the names of a kind are unknown that suggestions are of no use."""
-    known = workspace.scope(viewpoint).names(kind)
-    unknown = workspace.files[viewpoint].names_used(kind).difference(known)
+    declared = workspace.scope(viewpoint).names(kind)
+    unknown = workspace.files[viewpoint].names_used(kind).difference(declared)
     if kind is Kind.MODEL:
         unknown = unknown.difference(BUILTINS)
-    return len(unknown) * (len(known) + len(BUILTINS)) > _MOST_COMPARED
+    return len(unknown) * (len(declared) + len(BUILTINS)) > _MOST_COMPARED
 
 
 @of_viewpoint
@@ -489,24 +502,23 @@ def is_cpp(workspace: Workspace, viewpoint: str) -> bool:
 
 
 @of_viewpoint
-def is_foreign(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether the file is XML that the engine loads as it is, without a build, or C++."""
-    return workspace.files[viewpoint].is_foreign
-
-
-@of_viewpoint
 def is_xml(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether the file is XML that the engine loads as it is, and not C++."""
-    return workspace.files[viewpoint].is_xml
+    """Whether the file is XML that the engine loads as it is, without a build."""
+    return workspace.files[viewpoint].is_foreign
 
 
 @of_viewpoint
 def syntax_errors(workspace: Workspace, viewpoint: str) -> tuple[tuple[Place, str], ...]:
     """The errors that keep the file from being read."""
     entries = workspace.files[viewpoint].parsed.entries
-    found = [(entry.item, problem) for entry in entries for problem in entry.diagnostics]
-    errors = [each for each in found if each[1].effective_severity is Severity.ERROR]
-    return tuple([(Place(problem.span, viewpoint, item), problem.message) for item, problem in errors])
+    return tuple(
+        [
+            (Place(problem.span, viewpoint, entry.item), problem.message)
+            for entry in entries
+            for problem in entry.diagnostics
+            if problem.effective_severity is Severity.ERROR
+        ]
+    )
 
 
 @of_viewpoint
@@ -516,8 +528,8 @@ def head(workspace: Workspace, viewpoint: str) -> tuple[int, str]:
     file = workspace.files[viewpoint]
     for last in file.includes[-1:]:
         start = file.start_of(last)
-        if at := file.text.find("\n", start + last.end) + 1:
-            return at, file.text[start : start + last.start]
+        if offset := file.text.find("\n", start + last.end) + 1:
+            return offset, file.text[start : start + last.start]
     return (1 if file.text.startswith("\ufeff") else 0), ""
 
 
@@ -551,12 +563,13 @@ def _is_of_node(item: object) -> bool:
     return isinstance(item, Model) and item.category.raw != "SubTree"
 
 
-def _declaration(workspace: Workspace, found: Definition) -> Declaration:
-    return Declaration(found.path, workspace.files[found.path].facts[id(found.entry.item)], found.symbol)
+def _declaration(workspace: Workspace, definition: Definition) -> Declaration:
+    return Declaration(
+        definition.path, workspace.files[definition.path].facts[id(definition.entry.item)], definition.symbol
+    )
 
 
 def _distribution(workspace: Workspace, viewpoint: str) -> str | None:
-    """The distribution whose nodes of Nav2 are declared for a file."""
     return distribution_among(workspace.scope(viewpoint).node_paths)
 
 

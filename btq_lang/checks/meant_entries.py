@@ -1,8 +1,8 @@
-"""Values that are meant as entries and are texts to the engine, or entries of other names: `goal`, `{goal`, `$goal`,
+"""Values that are meant as entries, but are texts to the engine, or entries of other names: `goal`, `{goal`, `$goal`,
 `@{goal}`, `{ goal }`, `{goal.x}`.
 
-One invariant: a bare word is reported only if its port makes a text unlikely, for a text may be called like an entry.
-Sources: isBlackboardPointer and stripBlackboardPointer in src/tree_node.cpp of 4.6.2 and 4.10.0.
+One invariant: a bare word is reported only if its port makes a text unlikely, for a text may equal the name of an
+entry. Sources: isBlackboardPointer and stripBlackboardPointer in src/tree_node.cpp of 4.6.2 and 4.10.0.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ from btq_lang.catalog.literals import OLD_ENTRY, check_literal, is_pointer, plai
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.versions import OUTPUT_IN_BRACES
 from btq_lang.checks.engines import is_for_version_4
-from btq_lang.checks.entries import EntryMention, handling, mentions
+from btq_lang.checks.entries import EntryMention, handling
+from btq_lang.checks.entries import mentions as mentions_in
 from btq_lang.checks.flow import calls_of
 from btq_lang.checks.pointers import pointed_at
 from btq_lang.checks.view import View, port_of
@@ -33,33 +34,58 @@ from btq_lang.workspace.workspace import Workspace
 def meant_entry(view: View) -> Iterator[Diagnostic]:
     """A value that is probably meant as an entry of its tree."""
     names: frozenset[str] | None = None
-    for seen, pair, value in view.seen.values():
+    for resolved, pair, value in view.seen.values():
         text = value.text
+        if "$(" in text and (replaced := _of_launch(view, resolved, pair, value)) is not None:
+            yield replaced
+            continue
         if text.isidentifier():
             names = _names(view) if names is None else names
             if text not in names:
                 continue
         elif text[:1] not in _SIGNS and text[-1:] != "}":
             continue
-        if (is_pointer(text) and text[1:-1].isidentifier()) or not is_port_name(pair.key.text) or seen.is_placeholder:
+        if (
+            (is_pointer(text) and text[1:-1].isidentifier())
+            or not is_port_name(pair.key.text)
+            or resolved.is_placeholder
+        ):
             continue
-        port = port_of(view, seen, pair.key.text)
+        port = port_of(view, resolved, pair.key.text)
         if port is not None and (port.content != "value" or _is_literal_for_output(view, port, text)):
             continue
-        if port is not None and not seen.is_subtree and check_literal(port.literal or port.type, text, view.target):
+        if port is not None and not resolved.is_subtree and check_literal(port.literal or port.type, text, view.target):
             continue  # an invalid literal, or one whose end is dropped
-        meant = _bare_entry(view, seen, pair, value) if text.isidentifier() else entry_in(view, value)
+        meant = _bare_entry(view, resolved, pair, value) if text.isidentifier() else entry_in(view, value)
         if meant is not None:
             yield _diagnostic(value, meant)
 
 
+def _of_launch(view: View, seen: ResolvedNode, pair: Pair, value: Word) -> Diagnostic | None:
+    """A substitution of launch files, which nothing replaces in a tree: `$(var planner)`."""
+    launch = _LAUNCH.search(value.text)
+    port = port_of(view, seen, pair.key.text)
+    is_text = port is not None and port.content != "value"
+    if launch is None or is_text or seen.is_placeholder or not is_port_name(pair.key.text):
+        return None
+    if port is not None and check_literal(port.literal or port.type, value.text, view.target):
+        return None  # an invalid literal
+    message = f"`{launch[0]}` is a text here: only launch files have such substitutions"
+    notes = ("write the value itself, or an entry that the robot's program sets: `{key}`",)
+    return Diagnostic("misspelt-entry", value.span, message, notes=notes)
+
+
 def with_entries(view: View, reported: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """What the parser has reported of an item, with the entries meant by values that are no words: `[goal]`."""
+    """The parser's diagnostics of an item, with the entry that a value like `[goal]` means."""
     words = {value.span: value for _, _, value in view.seen.values() if not value.quoted and "{" not in value.raw}
-    for each in reported:
-        meant = entry_in(view, words[each.span]) if each.span in words else None
+    for diagnostic in reported:
+        meant = entry_in(view, words[diagnostic.span]) if diagnostic.span in words else None
         message = f"a blackboard entry is written `{meant}`"
-        yield replace(each, message=message, fixes=(write_fix(meant, each.span),)) if meant is not None else each
+        yield (
+            replace(diagnostic, message=message, fixes=(write_fix(meant, diagnostic.span),))
+            if meant is not None
+            else diagnostic
+        )
 
 
 def entry_of(view: View, value: Word) -> str | None:
@@ -78,12 +104,12 @@ def entry_in(view: View, value: Word) -> str | None:
         return f"{{{half[1] or half[2]}}}"
     if (outside := _SIGN_OUTSIDE.fullmatch(text)) is not None:
         return f"{{@{outside[1]}}}"
-    if (other := _DECORATED.fullmatch(text)) is None:
+    if (decorated := _DECORATED.fullmatch(text)) is None:
         return None
-    name = next(filter(None, other.groups()))
+    name = next(filter(None, decorated.groups()))
     sign = "@" if text.lstrip("{ ")[:1] == "@" else ""
     meant = f"{{{sign}{name}}}"
-    if is_pointer(text) and any(each.creates and not each.reads for each in _named(view, text[1:-1])):
+    if is_pointer(text) and any(mention.creates and not mention.reads for mention in _mentions_of(view, text[1:-1])):
         return None  # something writes an entry of this very name
     return meant if meant != text and name in _names(view) else None
 
@@ -107,13 +133,13 @@ def _is_literal_for_output(view: View, port: PortKind, text: str) -> bool:
     return port.direction == "output" and not is_pointer(text) and OUTPUT_IN_BRACES.holds(view.target)
 
 
-def _bare_entry(view: View, seen: ResolvedNode, pair: Pair, value: Word) -> str | None:
+def _bare_entry(view: View, resolved: ResolvedNode, pair: Pair, value: Word) -> str | None:
     """The entry that a bare word is probably meant to be."""
     name, key = value.text, pair.key.text
-    port = port_of(view, seen, key)
+    port = port_of(view, resolved, key)
     if _FOR_NAMES.search(key) or (port is not None and port.direction == "output") or name not in _names(view):
         return None
-    if seen.is_subtree:
+    if resolved.is_subtree:
         is_certain = not view.is_xml or view.ask(is_for_version_4)  # version 3 passes the entry
     elif port is not None and port.type and plain_type(port.type) not in _TEXTS:
         is_certain = True
@@ -137,26 +163,26 @@ def _is_passed_so(view: View, name: str, key: str) -> bool:
 
 def _is_lost(view: View, name: str) -> bool:
     """Whether the tree writes the entry, and nothing in it reads that."""
-    named = _named(view, name)
-    return bool(named) and all(each.creates and not each.reads for each in named)
+    mentions = _mentions_of(view, name)
+    return bool(mentions) and all(mention.creates and not mention.reads for mention in mentions)
 
 
 def _is_own_name(view: View, name: str) -> bool:
     """Whether the tree also gives a built-in node the name as a text: the value of the entry is its name."""
-    texts = [(seen.kind, pair.key.text) for seen, pair, value in view.seen.values() if value.text == name]
+    texts = [(resolved.kind, pair.key.text) for resolved, pair, value in view.seen.values() if value.text == name]
     ports = [kind.port(key) for kind, key in texts if kind is not None]
     return any(port is not None and port.content == "value" for port in ports)
 
 
-def _named(view: View, name: str) -> list[EntryMention]:
-    return [each for each in view.ask(mentions, view.path, view.facts) if each.name == name]
+def _mentions_of(view: View, name: str) -> list[EntryMention]:
+    return [mention for mention in view.ask(mentions_in, view.path, view.facts) if mention.name == name]
 
 
 def _names(view: View) -> frozenset[str]:
     """The entries of the tree."""
     if view.tree_name is not None:
         return view.ask(_entries_of, view.tree_name.text)
-    return frozenset(each.name.removeprefix("@") for each in view.ask(mentions, view.path, view.facts))
+    return frozenset(mention.name.removeprefix("@") for mention in view.ask(mentions_in, view.path, view.facts))
 
 
 @on_circle(frozenset())
@@ -175,6 +201,8 @@ def _entries_of(store: Store[Workspace], viewpoint: str, tree: str) -> frozenset
 
 _WORD: Final = r"[^\W\d]\w*"
 _NAME: Final = f"({_WORD})"
+# Source: the substitutions of launch_xml, launch_ros and roslaunch; others look like commands of a shell.
+_LAUNCH: Final = re.compile(r"\$\((?:var|arg|env|optenv|anon|find|find-pkg-share|find-pkg-prefix) +\w[\w.-]*\)")
 _HALF: Final = re.compile(rf"\{{(@?{_WORD})|(@?{_WORD})\}}")
 _SIGN_OUTSIDE: Final = re.compile(rf"@\{{{_NAME}\}}")
 _DECORATED: Final = re.compile(

@@ -18,9 +18,9 @@ def missing_id(
 
     Args:
         span: where it is reported.
-        what: lacks something, as the message says it.
-        word: with which it begins.
-        attributes: of it, of which one may be meant as the ID.
+        what: the start of the message, what is missing.
+        word: the word with which the node or tree begins.
+        attributes: its attributes; one may be meant as the ID.
     """
     if not view.is_xml:
         return Diagnostic(rule, span, f"{what}: write `{word} <ID>`", notes=notes)

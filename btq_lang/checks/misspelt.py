@@ -1,8 +1,8 @@
 """Blackboard entries whose name is misspelt.
 
-Every name is an entry to the engine, and the robot's program may read and write any, so an unused name alone proves
-nothing.  Here a name occurs in one place only, its use there has no effect, and another name in the same tree differs
-from it as only misspellings do.
+Every name is an entry to the engine, and the robot's program may read and write any, so an unused name proves nothing.
+A name is reported if it occurs in one place only, its use there has no effect, and another name in the same tree
+differs from it as only misspellings do.
 """
 
 from __future__ import annotations
@@ -41,21 +41,21 @@ def misspelt_entry(view: View) -> Iterator[Diagnostic]:
     counts = Counter(mention.name for mention in mentions)
     if min(counts.values()) > 1:
         return
-    others = dict.fromkeys((*counts, *(port.name.text for port in tree.ports if port.name is not None)))
+    names = dict.fromkeys((*counts, *(port.name.text for port in tree.ports if port.name is not None)))
     if (outside := view.ask(lookups.outside_entries)) and not view.ask(callers, tree.name.text):
-        others |= dict.fromkeys(name for name, _ in outside)
+        names |= dict.fromkeys(name for name, _ in outside)
     of_program = view.ask(lookups.set_in_cpp)
     if of_program and not view.ask(callers, tree.name.text):
-        others |= dict.fromkeys(sorted(of_program))
+        names |= dict.fromkeys(sorted(of_program))
     if any(mention.name[:1] == "@" for mention in mentions):
-        others |= dict.fromkeys(f"@{name}" for name in sorted(view.ask(_root_names) | of_program))
-    by_piece = _by_piece(others)
+        names |= dict.fromkeys(f"@{name}" for name in sorted(view.ask(_root_names) | of_program))
+    by_piece = _by_piece(names)
     reported: set[str] = set()
     for mention in mentions:
         if counts[mention.name] > 1:
             continue
         for meant in _alike(mention.name, by_piece):
-            if meant in reported or _stand_together(mentions, mention, meant):
+            if meant in reported or _occur_together(mentions, mention, meant):
                 continue
             if view.ask(_is_meant, tree.name.text, mention.name, meant, meant in counts) and view.ask(
                 inputs.is_complete
@@ -63,7 +63,11 @@ def misspelt_entry(view: View) -> Iterator[Diagnostic]:
                 reported.add(mention.name)
                 yield _diagnostic(mentions, mention, meant, counts.get(meant) == 1)
                 break
-    once = [each for each in mentions if each.in_script and counts[each.name] == 1 and each.name not in reported]
+    once = [
+        mention
+        for mention in mentions
+        if mention.in_script and counts[mention.name] == 1 and mention.name not in reported
+    ]
     if once:
         yield from _unquoted_texts(once, view, tree.name.text)
 
@@ -88,16 +92,20 @@ def _unquoted_texts(mentions: Iterable[EntryMention], view: View, tree: str) -> 
         name = mention.name
         if not mention.reads or not _may_be_text(name) or not view.ask(inputs.is_complete):
             continue
-        pair = next(each for each in mention.node.node.attributes if each.span.contains(mention.span))
+        pair = next(attribute for attribute in mention.node.node.attributes if attribute.span.contains(mention.span))
         value = pair.value
-        spans = [Span(each.start, each.end) for each in operands(view.script(value.text))] if value is not None else []
-        span = next((each for each in spans if value is not None and in_source(value, each) == mention.span), None)
+        spans = (
+            [Span(operand.start, operand.end) for operand in operands(view.script(value.text))]
+            if value is not None
+            else []
+        )
+        span = next((part for part in spans if value is not None and in_source(value, part) == mention.span), None)
         if value is None or span is None or view.ask(_is_set, tree, name):
             continue
         message = f"a script reads `{name}` as an entry, which nothing here sets"
         fix = replace_fix(f"Write the text `'{name}'`", span, f"'{name}'")
-        found = Diagnostic("misspelt-entry", span, message, severity=Severity.HINT, fixes=(fix,))
-        yield replace(moved(found, value), notes=(f"a text goes in single quotes: `'{name}'`",))
+        diagnostic = Diagnostic("misspelt-entry", span, message, severity=Severity.HINT, fixes=(fix,))
+        yield replace(moved(diagnostic, value), notes=(f"a text goes in single quotes: `'{name}'`",))
 
 
 def _may_be_text(name: str) -> bool:
@@ -105,14 +113,14 @@ def _may_be_text(name: str) -> bool:
     return name[:1] != "@" and not name.isupper() and name.lower() not in ("true", "false")
 
 
-def _stand_together(mentions: Iterable[EntryMention], mention: EntryMention, other: str) -> bool:
+def _occur_together(mentions: Iterable[EntryMention], mention: EntryMention, other: str) -> bool:
     """Whether one node has both entries at its ports, or creates both: then two are meant."""
     other = other.removeprefix("@")
     return any(
-        each.node is mention.node
-        and each.name.removeprefix("@") == other
-        and (not each.in_script or (each.writes and mention.writes))
-        for each in mentions
+        another.node is mention.node
+        and another.name.removeprefix("@") == other
+        and (not another.in_script or (another.writes and mention.writes))
+        for another in mentions
     )
 
 
@@ -122,8 +130,7 @@ def _root_names(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
 
 
 def _is_created(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
-    """Whether anything creates an entry."""
-    return any(each.creates for each in store.ask(blackboards, viewpoint).of(tree, name))
+    return any(touch.creates for touch in store.ask(blackboards, viewpoint).uses_of(tree, name))
 
 
 def _is_set(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
@@ -132,7 +139,7 @@ def _is_set(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bo
 
 
 def _is_meant(store: Store[Workspace], viewpoint: str, tree: str, name: str, meant: str, is_mentioned: bool) -> bool:
-    """Whether the use of one entry has no effect, and would have one for the other entry.
+    """Whether the use of one entry has no effect, and would have one for another entry.
 
     Args:
         is_mentioned: whether the tree names the other one other than as a port.
@@ -143,26 +150,30 @@ def _is_meant(store: Store[Workspace], viewpoint: str, tree: str, name: str, mea
     place = boards.place(tree, name)
     if not place[0] and boards.root_names.get(place[1], 0) > 1:
         return False
-    uses, others = boards.of(tree, name), boards.of(tree, meant)
+    uses, other_uses = boards.uses_of(tree, name), boards.uses_of(tree, meant)
     is_port = boards.is_port(tree, meant)
     of_program = store.ask(lookups.set_in_cpp, viewpoint)
     if name.removeprefix("@") in of_program:
         return False
-    if not any(each.writes for each in uses):  # read only
+    if not any(use.writes for use in uses):  # read only
         root, entry = boards.place(tree, meant)
-        return is_port or any(each.writes for each in others) or (not root and entry in of_program)
+        return is_port or any(use.writes for use in other_uses) or (not root and entry in of_program)
     if _is_skeleton(name, meant):
         return False
-    if not any(each.reads for each in uses):  # written only
-        is_reported_there = len(others) == 1 and not others[0].writes  # there, where it is read
-        return is_port or (any(each.reads for each in others) and not is_reported_there)
+    if not any(use.reads for use in uses):  # written only
+        is_reported_there = len(other_uses) == 1 and not other_uses[0].writes  # there, where it is read
+        return is_port or (any(use.reads for use in other_uses) and not is_reported_there)
     return len(uses) == 1 and (is_port or is_mentioned)
 
 
 def _diagnostic(mentions: Iterable[EntryMention], mention: EntryMention, meant: str, is_single: bool) -> Diagnostic:
-    """is_single: whether the other name also occurs once, so that it may be the misspelt one."""
+    """The diagnostic for an entry that is meant as another one.
+
+    Args:
+        is_single: whether the other name also occurs once, so that it may be the misspelt one.
+    """
     name = mention.name
-    other = next((each for each in mentions if each.name == meant), None)
+    other = next((candidate for candidate in mentions if candidate.name == meant), None)
     message = f"`{name}` appears only here; did you mean `{meant}`?"
     if not mention.writes and mention.reads:
         message = f"nothing writes `{name}`, which is read here; did you mean `{meant}`?"
@@ -176,19 +187,19 @@ def _diagnostic(mentions: Iterable[EntryMention], mention: EntryMention, meant: 
 
 
 def _by_piece(names: Iterable[str]) -> dict[str, list[str]]:
-    """An index by which similar names are found without comparing all pairs: two names with one edit between them
-    become equal, or equal to the other, when one letter is left out."""
-    found: dict[str, list[str]] = {}
+    """An index to find similar names without comparing all pairs: two names one edit apart become equal, or equal to
+    the other, when one letter is left out."""
+    by_piece: dict[str, list[str]] = {}
     for name in names:
         for piece in _pieces(name):
-            found.setdefault(piece, []).append(name)
-    return found
+            by_piece.setdefault(piece, []).append(name)
+    return by_piece
 
 
 def _alike(name: str, by_piece: dict[str, list[str]]) -> list[str]:
     """The names that may be meant by another one, the most similar first."""
-    found = {other for piece in _pieces(name) for other in by_piece.get(piece, ()) if _is_slip(name, other)}
-    return sorted(found - {name}, key=lambda other: (distance(name, other), other))
+    slips = {other for piece in _pieces(name) for other in by_piece.get(piece, ()) if _is_slip(name, other)}
+    return sorted(slips - {name}, key=lambda other: (distance(name, other), other))
 
 
 @lru_cache(1_000)  # the same names are in tree after tree
@@ -209,9 +220,9 @@ def _is_slip(word: str, meant: str) -> bool:
     if len(long) < 4 or long in (f"{short}s", f"{short}es") or distance(folded, other) > 1:
         return False
     if len(short) < len(long):
-        at = next((i for i in range(len(short)) if short[i] != long[i]), len(short))
-        is_doubled = long[at] in (long[at - 1 : at] + long[at + 1 : at + 2])
-        at_an_end = at in (0, len(long) - 1)
+        index = next((i for i in range(len(short)) if short[i] != long[i]), len(short))
+        is_doubled = long[index] in (long[index - 1 : index] + long[index + 1 : index + 2])
+        at_an_end = index in (0, len(long) - 1)
         return is_doubled or (len(long) > 5 if not at_an_end else len(long) > 7)
     if sorted(short) == sorted(long):
         return True
@@ -222,7 +233,7 @@ def _is_slip(word: str, meant: str) -> bool:
 @lru_cache(1_000)
 def _pieces(name: str) -> frozenset[str]:
     name = _folded(name)
-    return frozenset((name, _without_vowels(name), *(name[:at] + name[at + 1 :] for at in range(len(name)))))
+    return frozenset((name, _without_vowels(name), *(name[:index] + name[index + 1 :] for index in range(len(name)))))
 
 
 def _is_skeleton(word: str, meant: str) -> bool:

@@ -15,13 +15,15 @@ from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import callers
+from btq_lang.checks.entries import mentions
 from btq_lang.checks.pointers import passed_on, pointed_at
 from btq_lang.checks.view import View, port_of
-from btq_lang.diagnostics.model import Diagnostic, Place, Related
+from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Pair
 from btq_lang.util.reach import reached
 from btq_lang.util.record import Record
+from btq_lang.util.spelling import did_you_mean
 from btq_lang.workspace import inputs
 from btq_lang.workspace.inputs import of_scope
 from btq_lang.workspace.port_types import is_text
@@ -44,13 +46,13 @@ class _Meeting(Record):
     Attributes:
         type: of the port; empty if unknown or if it takes anything.
         node: the number of the node in the tree itself: the port's, or the SubTree below which the port is.
-        given: the number of that node's attribute; None if the SubTree gets it without one.
+        pair: the number of that node's attribute; None if the SubTree gets it without one.
         port: the port itself.
     """
 
     type: str
     node: int
-    given: int | None
+    pair: int | None
     port: _Port
 
 
@@ -62,21 +64,21 @@ def entry_with_two_types(view: View) -> Iterator[Diagnostic]:
     """An entry that is assigned to ports of two types: the engine refuses to load the tree."""
     name = view.tree_name
     if name is not None and view.ask(lookups.has_pointers) and view.defines_here(Kind.TREE, name.text):
-        yield from view.ask(_found_in, name.text)
+        yield from view.ask(_clashes_in, name.text)
 
 
-def _found_in(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[Diagnostic, ...]:
+def _clashes_in(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[Diagnostic, ...]:
     view = View(store, viewpoint)
-    found: list[Diagnostic] = []
-    known = view.ask(_types, tree)
-    is_main = any(name[:1] == "@" for name in known) and view.main_tree == tree
-    for key in dict.fromkeys(name.removeprefix("@") for name in known):
-        meetings = known.get(key, [])
-        if is_main and (shared := known.get(f"@{key}")):  # the same entry
-            meetings = sorted((*meetings, *shared), key=lambda each: each.node)
+    diagnostics: list[Diagnostic] = []
+    types = view.ask(_types, tree)
+    is_main = any(name[:1] == "@" for name in types) and view.main_tree == tree
+    for key in dict.fromkeys(name.removeprefix("@") for name in types):
+        meetings = types.get(key, [])
+        if is_main and (shared := types.get(f"@{key}")):  # the same entry
+            meetings = sorted((*meetings, *shared), key=lambda meeting: meeting.node)
         if len(meetings) > 1:
-            found += _clashes(view, tree, key, meetings)
-    return tuple(found)
+            diagnostics += _clashes(view, tree, key, meetings)
+    return tuple(diagnostics)
 
 
 @on_circle({})
@@ -88,70 +90,75 @@ def _types_below(store: Store[Workspace], viewpoint: str, tree: str) -> _Types:
 
 @of_scope
 def _types(store: Store[Workspace], viewpoint: str, tree: str) -> _Types:
-    """The types as which the entries of a tree are used in it and below.  `_types_below` does not ask for it, or it
-    would be part of each circle."""
+    """The types of the ports to which entries of a tree are assigned, in it and below.  `_types_below` calls it and
+    does not ask for it, or it would be part of each circle."""
     view = View(store, viewpoint)
-    found: _Types = {}
-    for number, seen in enumerate(_nodes(view, tree)):
-        if seen.is_subtree:
-            for key, given, below in _handed_on(view, seen):
-                _add(found, key, _Meeting(below.type, number, given, below.port))
+    types: _Types = {}
+    for number, resolved in enumerate(_nodes(view, tree)):
+        if resolved.is_subtree:
+            for key, passed_at, below in _handed_on(view, resolved):
+                _add(types, key, _Meeting(below.type, number, passed_at, below.port))
             continue
-        for index, pair in enumerate(seen.node.attributes):
+        for index, pair in enumerate(resolved.node.attributes):
             value = pair.value
             if value is not None and "{" in value.raw and (entry := pointed_at(pair.key.text, value.text)) is not None:
-                port = port_of(view, seen, pair.key.text)
+                port = port_of(view, resolved, pair.key.text)
                 type_ = plain_type(port.type) if port is not None and port.type not in _ANYTHING else ""
-                _add(found, entry, _Meeting(type_, number, index, _Port(tree, number, index)))
-    return found
+                _add(types, entry, _Meeting(type_, number, index, _Port(tree, number, index)))
+    return types
 
 
-def _handed_on(view: View, seen: ResolvedNode) -> Iterator[tuple[str, int | None, _Meeting]]:
-    """The uses of entries that a SubTree passes to its tree, by the names that they have here."""
-    if seen.id is None or not seen.id.text:
+def _handed_on(view: View, resolved: ResolvedNode) -> Iterator[tuple[str, int | None, _Meeting]]:
+    """The uses of entries that a SubTree passes to its tree, by their names in the tree of the SubTree."""
+    if resolved.id is None or not resolved.id.text:
         return
-    given = {pair.key.text: at for at, pair in reversed([*enumerate(seen.node.attributes)]) if pair.value is not None}
-    for port, meetings in view.ask(_types_below, seen.id.text).items():
-        at = given.get(port)
-        key = port if port[0] == "@" else passed_on(seen, port)
+    positions = {
+        pair.key.text: position
+        for position, pair in reversed([*enumerate(resolved.node.attributes)])
+        if pair.value is not None
+    }
+    for port, meetings in view.ask(_types_below, resolved.id.text).items():
+        position = positions.get(port)
+        key = port if port[0] == "@" else passed_on(resolved, port)
         if key:
-            yield from ((key, at, meeting) for meeting in meetings)
+            yield from ((key, position, meeting) for meeting in meetings)
 
 
 def _is_first(view: View, tree: str, key: str) -> bool:
-    """Whether on some way into a tree the first of its ports creates the entry, or is of a type that does."""
+    """Whether on some way into a tree the entry gets its type from the tree's first port, or above from a port whose
+    type accepts no texts."""
 
-    def given(place: tuple[str, str | None]) -> Iterator[tuple[str, str | None]]:
+    def entry_above(place: tuple[str, str | None]) -> Iterator[tuple[str, str | None]]:
         """The entry in the trees that run a tree, where the first port creates it; None: it is that tree's own."""
         name, entry = place
         if entry is None:
             return
         for caller in view.ask(callers, name):
-            for seen in _nodes(view, caller):
-                if seen.is_subtree and seen.node.id is not None and seen.node.id.text == name:
-                    passed = passed_on(seen, entry)
+            for resolved in _nodes(view, caller):
+                if resolved.is_subtree and resolved.node.id is not None and resolved.node.id.text == name:
+                    passed = passed_on(resolved, entry)
                     meetings = view.ask(_types, caller).get(passed, ()) if passed else ()
                     if passed is None or (meetings and _is_strong(meetings[0].type)):
                         yield caller, passed
 
     start: tuple[str, str | None] = tree, key
-    return any(entry is None or not view.ask(callers, name) for name, entry in reached([start], given))
+    return any(entry is None or not view.ask(callers, name) for name, entry in reached([start], entry_above))
 
 
 def _nodes(view: View, tree: str) -> tuple[ResolvedNode, ...]:
-    found = view.ask(inputs.definition, Kind.TREE, tree)
-    return view.seen_in(*found).all if found is not None else ()
+    definition = view.ask(inputs.definition, Kind.TREE, tree)
+    return view.seen_in(*definition).all if definition is not None else ()
 
 
 def _clashes(view: View, tree: str, key: str, meetings: list[_Meeting]) -> Iterator[Diagnostic]:
     first = meetings[0]
     # The order of ports at one node is unspecified.
-    if not all(_is_strong(each.type) for each in meetings if each.node == first.node):
+    if not all(_is_strong(meeting.type) for meeting in meetings if meeting.node == first.node):
         return
     nodes = _nodes(view, tree)
     reported = {first.type}
     for later in meetings:
-        is_one = (later.node, later.given) == (first.node, first.given) and later.given is not None
+        is_one = (later.node, later.pair) == (first.node, first.pair) and later.pair is not None
         if later.type in reported or not later.type or is_one:
             continue
         severity = _severity(first.type, later.type)
@@ -159,27 +166,40 @@ def _clashes(view: View, tree: str, key: str, meetings: list[_Meeting]) -> Itera
             continue
         reported.add(later.type)
         span = nodes[later.node].node.head.span
-        if later.given is not None and (value := nodes[later.node].node.attributes[later.given].value) is not None:
+        if later.pair is not None and (value := nodes[later.node].node.attributes[later.pair].value) is not None:
             span = value.span
-        seen, port = _port(view, first.port)
+        resolved, port = _port(view, first.port)
         later_seen, later_port = _port(view, later.port)
         related = [_related(view, first.port, f"created here as {first.type}")]
         if later.port.tree != tree or later.port.node != later.node:
             related.append(_related(view, later.port, f"used here as {later.type}"))
         message = (
-            f"`{port.key.text}` of {seen.shown_kind} creates `{{{key}}}` as {first.type}, "
+            f"`{port.key.text}` of {resolved.shown_kind} creates `{{{key}}}` as {first.type}, "
             f"but `{later_port.key.text}` of {later_seen.shown_kind} has the type {later.type}"
         )
-        notes = (
-            "BehaviorTree.CPP refuses to load this tree; use an entry for each type, "
-            "and copy the value in a script: `other := entry`",
-        )
-        yield Diagnostic("entry-with-two-types", span, message, related=tuple(related), notes=notes, severity=severity)
+        unless = "" if severity is Severity.ERROR else ", unless one of the types is an alias for the other"
+        refuses = f"BehaviorTree.CPP refuses to load this tree{unless}"
+        notes = (f"{refuses}; use an entry for each type, and copy the value in a script: `other := entry`",)
+        fixes: tuple[Fix, ...] = ()
+        if later.pair is not None and later.port.tree == tree and (meant := _meant(view, tree, later.type)):
+            message += did_you_mean((meant,))
+            notes, fixes = (refuses,), (replace_fix(f"Write `{meant}`", span, meant),)
+        yield Diagnostic("entry-with-two-types", span, message, tuple(related), notes, fixes, severity=severity)
+
+
+def _meant(view: View, tree: str, type_: str) -> str | None:
+    """The only entry of a tree that has a type and is written, but not read."""
+    found = view.ask(inputs.definition, Kind.TREE, tree)
+    named = view.ask(mentions, *found) if found is not None else ()
+    read = {each.name for each in named if each.reads or each.node.is_subtree}
+    of_type = {key for key, meetings in view.ask(_types, tree).items() if [each.type for each in meetings] == [type_]}
+    unread = {each.name for each in named if each.writes and each.name not in read and each.name in of_type}
+    return f"{{{unread.pop()}}}" if len(unread) == 1 else None
 
 
 def _port(view: View, port: _Port) -> tuple[ResolvedNode, Pair]:
-    seen = _nodes(view, port.tree)[port.node]
-    return seen, seen.node.attributes[port.pair]
+    resolved = _nodes(view, port.tree)[port.node]
+    return resolved, resolved.node.attributes[port.pair]
 
 
 def _related(view: View, port: _Port, message: str) -> Related:
@@ -189,11 +209,13 @@ def _related(view: View, port: _Port, message: str) -> Related:
 
 
 def _severity(first: str, later: str) -> Severity | None:
-    """How certain it is that two types differ: a type of the user's program may be an alias for the other."""
+    """The severity for two types; None if they may be one: a type of a program may be an alias for another."""
     if is_known_type(first) and is_known_type(later):
         return Severity.ERROR
     if any(_VECTOR(one) and _MESSAGE(other) for one, other in ((first, later), (later, first))):
         return Severity.WARNING  # a message of ROS is a class of its own
+    if _MESSAGE(first) and _MESSAGE(later) and first.rpartition("::")[2] != later.rpartition("::")[2]:
+        return Severity.ERROR
     if "<" in first + later or first.rpartition("::")[2].casefold() == later.rpartition("::")[2].casefold():
         return None
     return Severity.WARNING
@@ -203,10 +225,10 @@ def _is_strong(type_: str) -> bool:
     return bool(type_) and not is_text(type_)
 
 
-def _add(found: dict[str, list[_Meeting]], key: str, meeting: _Meeting) -> None:
-    known = found.setdefault(key, [])
-    if all(each.type != meeting.type for each in known):
-        known.append(meeting)
+def _add(types: dict[str, list[_Meeting]], key: str, meeting: _Meeting) -> None:
+    meetings = types.setdefault(key, [])
+    if all(other.type != meeting.type for other in meetings):
+        meetings.append(meeting)
 
 
 _VECTOR: Final = re.compile(r"std::vector<.*>").fullmatch

@@ -21,17 +21,21 @@ def moving_on(view: View) -> Iterator[Diagnostic]:
     target = view.project.moves_to
     if target is None:
         return
-    from btq_lang.checks.moved_engine import engine_changes  # few checks have a target
+    from btq_lang.checks.target_changes import engine_changes  # few checks have a target
 
     yield from engine_changes(view, _engine(view), ENGINES.get(target, target))
     steps = _steps(view)
     if not steps:
         return
-    from btq_lang.checks.moved_nodes import changes_of, ports_in  # as above
+    from btq_lang.checks.target_changes import changes_of, ports_in  # as above
 
-    for seen in view.nodes:
-        if not seen.is_subtree and seen.id is not None and ports_in(view, steps[0], seen.id.text) is not None:
-            yield from changes_of(view, seen, seen.id, steps)
+    for resolved in view.nodes:
+        if (
+            not resolved.is_subtree
+            and resolved.id is not None
+            and ports_in(view, steps[0], resolved.id.text) is not None
+        ):
+            yield from changes_of(view, resolved, resolved.id, steps)
 
 
 def moving_include(view: View) -> Iterator[Diagnostic]:

@@ -1,7 +1,7 @@
 """Diagnostics of files that are written in XML, shown on the XML.
 
-One invariant: results count from the start of the file on the disk, whatever its language, and a fix of a file in
-another language is offered only where exactly that edit can be made there.
+One invariant: the spans of results count from the start of the file on the disk.  A fix of a file in another language
+is offered only if that edit can be made there exactly.
 """
 
 from __future__ import annotations
@@ -18,33 +18,39 @@ from btq_lang.util.text import Edit, Span
 from btq_lang.workspace.workspace import Workspace
 
 
-def shown_on_origins(workspace: Workspace, path: str, found: Iterable[Diagnostic]) -> list[Diagnostic]:
+def shown_on_origins(workspace: Workspace, path: str, diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
     """The diagnostics of a file, with those of its own XML, if it is XML."""
-    file = workspace.files[path]
+    foreign, file = workspace.foreign, workspace.files[path]
 
-    def on_disk(span: Span, where: str | None) -> Span:
-        foreign = workspace.foreign.get(where or path)
-        return span if foreign is None else foreign.on_disk(span)
+    def on_origin(span: Span, place_path: str | None) -> Span:
+        foreign_file = foreign.get(place_path or path)
+        return span if foreign_file is None else foreign_file.on_disk(span)
 
     shown: list[Diagnostic] = []
-    for each in found:
-        if file.is_foreign and each.rule in _OF_SPELLING:
+    for diagnostic in diagnostics:
+        if file.is_foreign and diagnostic.rule in _OF_SPELLING:
             continue
-        related = each.related
-        if each.rule not in _OF_SHOWN:
+        related = diagnostic.related
+        if diagnostic.rule not in _OF_SHOWN:
             related = tuple(
-                Related(Place(on_disk(near.place.span, near.place.path), near.place.path), near.message)
-                for near in related
+                Related(
+                    Place(on_origin(related_place.place.span, related_place.place.path), related_place.place.path),
+                    related_place.message,
+                )
+                for related_place in related
             )
-        fixes = tuple(placed for fix in each.fixes if (placed := _placed(workspace, path, fix)) is not None)
-        shown.append(replace(each, span=on_disk(each.span, path), related=related, fixes=fixes))
+        fixes = tuple(placed for fix in diagnostic.fixes if (placed := _placed(workspace, path, fix)) is not None)
+        shown.append(replace(diagnostic, span=on_origin(diagnostic.span, path), related=related, fixes=fixes))
     if not file.is_foreign:
         return shown
-    return [*(each for each in file.source_diagnostics if not is_silenced_in_xml(file.source, each)), *shown]
+    return [
+        *(diagnostic for diagnostic in file.source_diagnostics if not is_silenced_in_xml(file.source, diagnostic)),
+        *shown,
+    ]
 
 
 def _placed(workspace: Workspace, path: str, fix: Fix) -> Fix | None:
-    """The fix with its changes of files in XML as changes of the XML; None if they cannot be made there.
+    """The fix with its changes made in the XML; None if they cannot be made there.
 
     Fixes are safe for version 4 of the engine, so not in XML that may be for version 3.
     """
@@ -59,7 +65,7 @@ def _placed(workspace: Workspace, path: str, fix: Fix) -> Fix | None:
             is_safe = is_safe and workspace.store.ask(is_for_version_4, change.place.path or path)
         else:
             return None
-    spans = sorted(each.place.span for each in changes if each.place.path in (None, path))
+    spans = sorted(change.place.span for change in changes if change.place.path in (None, path))
     is_torn = any(one.end > other.start for one, other in pairwise(spans))  # of a word that the language has in pieces
     return None if is_torn else Fix(fix.title, tuple(changes), is_safe)
 

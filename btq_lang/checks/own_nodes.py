@@ -1,7 +1,7 @@
-"""Nodes that have the names of Nav2's and may be a team's own.
+"""Nodes with the name of one of Nav2 that may be a team's own.
 
-One invariant: only where a project names Nav2's nodes and no others, though its trees have others; a node that has just
-what Nav2's takes is Nav2's.
+One invariant: a node may be a team's own only if the project names Nav2's nodes and no others, though its trees have
+others.  A node with exactly the ports of Nav2's is Nav2's.
 """
 
 from __future__ import annotations
@@ -27,25 +27,25 @@ WHY: Final = (
 )
 
 
-def may_be_own(view: View, seen: ResolvedNode, ports: Collection[str], is_near: bool = False) -> bool:
+def may_be_own(view: View, resolved: ResolvedNode, ports: Collection[str], is_near: bool = False) -> bool:
     """Whether a node with the name of one of Nav2's may be another one.
 
     Args:
         ports: of Nav2's node.
-        is_near: whether what is wrong is nearly the name of one.
+        is_near: whether the wrong name is similar to that of a port.
     """
-    if seen.kind is not None or seen.id is None or not seen.is_defined:
+    if resolved.kind is not None or resolved.id is None or not resolved.is_defined:
         return False
-    given = {*filter(is_port_name, (pair.key.text for pair in seen.node.attributes))}
-    strange = given.difference(ports)
-    if given != strange and (is_near or not strange):
+    keys = {*filter(is_port_name, (pair.key.text for pair in resolved.node.attributes))}
+    strange = keys.difference(ports)
+    if keys != strange and (is_near or not strange):
         return False
-    model = view.ask(lookups.declaration, Kind.MODEL, seen.id.text)
-    return model is not None and model.path in FILES.values() and view.ask(_has_other_nodes)
+    model = view.ask(lookups.declaration, Kind.MODEL, resolved.id.text)
+    return model is not None and model.is_of_nav2 and view.ask(_has_other_nodes)
 
 
 def _has_other_nodes(store: Store[Workspace], viewpoint: str) -> bool:
-    """Whether nodes of a file are unknown and only Nav2's are named."""
+    """Whether a file has unknown nodes although its project names only Nav2's."""
     view = View(store, viewpoint)
     if any(path not in FILES.values() for path in view.ask(lookups.node_paths)):
         return False

@@ -35,19 +35,21 @@ _NOT_A_KIND = CATEGORIES | NODE_CLAUSES | DIRECTIONS | HEADS | VERB_WORDS | {"xm
 
 def classic_placeholder(view: View) -> Iterator[Diagnostic]:
     """A placeholder, with its short form."""
-    for seen in view.seen.placeholders:
-        if seen.name is None or seen.node.kind is None:
+    for resolved in view.seen.placeholders:
+        if resolved.name is None or resolved.node.kind is None:
             continue
-        name = _id_of(seen.name.text)
-        if _taken(view, name) is not None:
+        name = _id_of(resolved.name.text)
+        if _why_taken(view, name) is not None:
             continue  # reported as a clash
-        if _is_script(view, seen.name.text):
-            yield _code_as_name(seen.node, seen.node.kind, seen.name)
+        if _is_script(view, resolved.name.text):
+            yield _code_as_name(resolved.node, resolved.node.kind, resolved.name)
             continue
-        what = "the condition" if seen.category == "Condition" else "the action"
-        fix = _short_form(view, seen, name)
-        message = f"`{seen.node.kind.text}` without code is a placeholder for {what} `{name}`"
-        yield Diagnostic("classic-placeholder", seen.node.kind.span, message, fixes=(fix,) if fix is not None else ())
+        what = "the condition" if resolved.category == "Condition" else "the action"
+        fix = _short_form(view, resolved, name)
+        message = f"`{resolved.node.kind.text}` without code is a placeholder for {what} `{name}`"
+        yield Diagnostic(
+            "classic-placeholder", resolved.node.kind.span, message, fixes=(fix,) if fix is not None else ()
+        )
 
 
 def _is_script(view: View, name: str) -> bool:
@@ -75,16 +77,16 @@ def _code_as_name(node: Node, kind: Word, name: Word) -> Diagnostic:
 
 
 def placeholder_clash(view: View) -> Iterator[Diagnostic]:
-    """A name that becomes an ID which another name has become already, or which is taken."""
-    for seen in view.seen.placeholders:
-        name = seen.name
+    """A name that becomes the ID of another placeholder, of a built-in node or of a tree."""
+    for resolved in view.seen.placeholders:
+        name = resolved.name
         if name is None:
             continue
         legal = _id_of(name.text)
-        taken = _taken(view, legal)
+        reason = _why_taken(view, legal)
         other = view.ask(_first_name, legal)
-        if taken is not None:
-            yield Diagnostic("placeholder-clash", name.span, f"`{name.text}` becomes the node ID `{legal}`, {taken}")
+        if reason is not None:
+            yield Diagnostic("placeholder-clash", name.span, f"`{name.text}` becomes the node ID `{legal}`, {reason}")
         elif other != name.text and (first := view.ask(_first_place, legal)) is not None:
             message = f"`{other}` and `{name.text}` both become the node ID `{legal}`"
             yield Diagnostic("placeholder-clash", name.span, message, related=(Related(first, "first one"),))
@@ -97,10 +99,10 @@ def _first_name(store: Store[Workspace], viewpoint: str, legal: str) -> str | No
 
 @hub
 def _first_names(store: Store[Workspace], viewpoint: str) -> dict[str, str]:
-    found: dict[str, str] = {}
+    names: dict[str, str] = {}
     for _, tree in reversed(store.ask(inputs.trees, viewpoint)):
-        found.update(store.ask(_names_in, tree))
-    return found
+        names.update(store.ask(_names_in, tree))
+    return names
 
 
 def _first_place(store: Store[Workspace], viewpoint: str, legal: str) -> Place | None:
@@ -125,28 +127,29 @@ def _placeholders(tree: Facts) -> Iterator[Word]:
 
 @lru_cache(10_000)
 def _id_of(name: str) -> str:
-    """The ID that a placeholder's name becomes; cached, for a mission repeats the names of skills."""
+    """The ID that a placeholder's name becomes; cached, as a mission repeats the names of skills."""
     return legal_name(name)
 
 
-def _taken(view: View, name: str) -> str | None:
+def _why_taken(view: View, name: str) -> str | None:
     """Why a placeholder cannot become a node of this ID."""
     if name in BUILTINS:
         return "which is a built-in node"
     return "which is the name of a tree" if view.ask(lookups.is_defined, Kind.TREE, name) else None
 
 
-def _short_form(view: View, seen: ResolvedNode, name: str) -> Fix | None:
-    """`MoveBase (…)`, `Condition BatteryLow "BatteryLow?"`; None if what is around the name is unusual.
+def _short_form(view: View, resolved: ResolvedNode, name: str) -> Fix | None:
+    """The fix that writes `MoveBase (…)`, `Condition BatteryLow "BatteryLow?"`; None if the name is not in its usual
+    place.
 
     It is safe if no models are in scope: with models the node would be checked against them.
     """
-    node = seen.node
+    node = resolved.node
     if view.entry.diagnostics or node.children or node.kind is None or node.name is None:
         return None
     head = _as_kind(name)
-    if seen.category == "Condition" or _looks_like_builtin(name):
-        head = f"{seen.category} {head}"
+    if resolved.category == "Condition" or _looks_like_builtin(name):
+        head = f"{resolved.category} {head}"
     if (label := node.name).text != name:
         is_label = label.quoted or (is_name(label.raw) and label.raw not in _NOT_A_KIND)
         head = f"{head} {label.raw if is_label else quote(label.text)}"

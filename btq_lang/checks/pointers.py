@@ -13,20 +13,20 @@ def pointed_at(port: str, text: str) -> str | None:
     return port if text == "{=}" else text[1:-1]
 
 
-def remaps_all(seen: ResolvedNode) -> bool:
+def remaps_all(resolved: ResolvedNode) -> bool:
     """Whether a SubTree gets every entry under its own name; it never gets private ones, which begin with `_`."""
-    return is_on(seen, "_autoremap")
+    return is_on(resolved, "_autoremap")
 
 
-def is_on(seen: ResolvedNode, attribute: str) -> bool:
+def is_on(resolved: ResolvedNode, attribute: str) -> bool:
     """Whether an attribute has a value that the engine takes for true."""
-    value = seen.node.attribute(attribute)
+    value = resolved.node.attribute(attribute)
     return value is not None and value.text in ("true", "True", "TRUE", "1")
 
 
-def passed_on(seen: ResolvedNode, name: str) -> str | None:
+def passed_on(resolved: ResolvedNode, name: str) -> str | None:
     """The entry that a SubTree passes to its tree under a name; empty: a value; None: the entry is that tree's own."""
-    value = seen.node.attribute(name)
+    value = resolved.node.attribute(name)
     if value is not None:
         return pointed_at(name, value.text) or ""
-    return name if remaps_all(seen) and name[:1] != "_" else None
+    return name if remaps_all(resolved) and name[:1] != "_" else None

@@ -47,73 +47,83 @@ _WISHED = {
 
 def unknown_port(view: View) -> Iterator[Diagnostic]:
     """A port that the built-in, the model or the tree of a SubTree does not have."""
-    for seen in view.seen.given:
-        yield from _forbidden_id(seen) if ID_IN_COMPACT_FORM.holds(view.target) else ()
-        ports = _ports(view, seen)
-        if ports is None or not (meant := _meant(view, seen, ports)) or _may_have_more(view, seen):
+    for resolved in view.seen.given:
+        yield from _forbidden_id(resolved) if ID_IN_COMPACT_FORM.holds(view.target) else ()
+        ports = _ports(view, resolved)
+        if (
+            ports is None
+            or not (unknown_keys := _unknown_keys(view, resolved, ports))
+            or _may_have_more(view, resolved)
+        ):
             continue
-        known = ports.all
-        names = ", ".join(f"`{port.name}`" for port in known)
+        all_ports = ports.all
+        names = ", ".join(f"`{port.name}`" for port in all_ports)
         required = {port.name for port in ports.required}
-        stale = _of_model_in_xml(view, seen)
-        of_nav2 = ports_of(seen.id.text) if seen.id is not None and _is_of_pool(view, seen) else None
-        for key, likely in meant.items():
+        stale = _of_model_in_xml(view, resolved)
+        of_nav2 = ports_of(resolved.id.text) if resolved.id is not None and _is_of_pool(view, resolved) else None
+        for key, likely in unknown_keys.items():
             if key.text in (of_nav2 or ()):
                 continue  # the model may be one of another program, or a short one
             # The engine takes any port of a SubTree, a model without ports is often an unfinished one, and a program
             # may register another node than the one that another file of the project declares.
-            harmless = (seen.is_subtree and not required.intersection(likely)) or not (known or seen.kind)
-            harmless = harmless or _is_of_pool(view, seen)
-            fixes = _renamings(view, seen, ports, key, likely)
-            if node := _node_meant(seen, ports, key, likely):
+            harmless = (resolved.is_subtree and not required.intersection(likely)) or not (all_ports or resolved.kind)
+            harmless = harmless or _is_of_pool(view, resolved)
+            fixes = _renamings(view, resolved, ports, key, likely)
+            if node := _node_meant(resolved, ports, key, likely):
                 likely = (node,)
-                fixes = (replace_fix(f"Replace `{seen.node.head.text}` with `{node}`", seen.node.head.span, node),)
-            elif assigned := _assigned(view, seen, ports, key, likely):
+                fixes = (
+                    replace_fix(f"Replace `{resolved.node.head.text}` with `{node}`", resolved.node.head.span, node),
+                )
+            elif assigned := _assigned(view, resolved, ports, key, likely):
                 likely, fixes = assigned
-            is_own = not harmless and may_be_own(view, seen, ports.names, bool(near(key.text, ports.names)))
+            is_own = not harmless and may_be_own(view, resolved, ports.names, bool(near(key.text, ports.names)))
             what = OWN if is_own else ""
-            message = f"{seen.shown_kind} has no port `{key.text}`{what}{did_you_mean(likely) or stale}"
-            related = _declared(view, seen)
-            notes = (f"it has {names}" if known else "it has no ports", *_of_version_3(view, seen, key.text))
-            if seen.kind is not None and not likely and (note := of_other_engines(seen.kind.flow, key.text)):
+            message = f"{resolved.shown_kind} has no port `{key.text}`{what}{did_you_mean(likely) or stale}"
+            related = _declared(view, resolved)
+            notes = (f"it has {names}" if all_ports else "it has no ports", *_of_version_3(view, resolved, key.text))
+            if resolved.kind is not None and not likely and (note := of_other_engines(resolved.kind.flow, key.text)):
                 notes += (note,)
             notes += WHY if is_own else ()
             severity = Severity.WARNING if harmless or is_own else None
             yield Diagnostic("unknown-port", key.span, message, related, notes, fixes, severity=severity)
-            if not known and seen.kind is None:
+            if not all_ports and resolved.kind is None:
                 break  # all of the model's ports are missing
 
 
 def missing_port(view: View) -> Iterator[Diagnostic]:
     """A port without a value: one the engine requires, or an input without default of a model."""
-    for seen in view.nodes:
-        ports = _ports(view, seen)
+    for resolved in view.nodes:
+        ports = _ports(view, resolved)
         if ports is None or not ports.required:
             continue
-        given = {pair.key.text for pair in seen.node.attributes}
-        if seen.is_subtree:  # the engine passes to a tree only what it takes for ports
-            given = set(filter(is_port_name, given))
-        missing = _needed(view, seen, [port for port in ports.required if port.name not in given])
-        if not missing or (seen.is_subtree and _remaps_all(seen)) or view.is_torn(seen.node.start, seen.node.end):
+        keys = {pair.key.text for pair in resolved.node.attributes}
+        if resolved.is_subtree:  # the engine passes to a tree only what it takes for ports
+            keys = set(filter(is_port_name, keys))
+        missing = _needed(view, resolved, [port for port in ports.required if port.name not in keys])
+        if (
+            not missing
+            or (resolved.is_subtree and _remaps_all(resolved))
+            or view.is_torn(resolved.node.start, resolved.node.end)
+        ):
             continue  # a value may be on a line that could not be read
-        if _may_have_more(view, seen):
+        if _may_have_more(view, resolved):
             continue  # and so may a default
         misspelt = {
-            likely[0] for likely in _meant(view, seen, ports).values() if likely
+            likely[0] for likely in _unknown_keys(view, resolved, ports).values() if likely
         }  # reported as unknown, with a fix
         missing = [port for port in missing if port.name not in misspelt]
         if not missing:
             continue
         names = " and ".join(f"`{port.name}`" for port in missing)
-        as_value, to_port = _label_as_value(view, seen, missing)
-        is_own = may_be_own(view, seen, ports.names)
-        is_severe = not is_own and bool(seen.kind or seen.is_subtree or _throwing(seen))
+        as_value, to_port = _label_as_value(view, resolved, missing)
+        is_own = may_be_own(view, resolved, ports.names)
+        is_severe = not is_own and bool(resolved.kind or resolved.is_subtree or _throwing(resolved))
         yield Diagnostic(
             "missing-port",
-            seen.node.head.span,
-            f"{seen.shown_kind} requires {'a value' if len(missing) == 1 else 'values'} for its "
+            resolved.node.head.span,
+            f"{resolved.shown_kind} requires {'a value' if len(missing) == 1 else 'values'} for its "
             f"port{'s' if len(missing) > 1 else ''} {names}{OWN if is_own else ''}",
-            related=_declared(view, seen),
+            related=_declared(view, resolved),
             notes=(
                 *(f"`{port.name}`: {port.doc}" for port in missing if port.doc),
                 *(
@@ -124,8 +134,8 @@ def missing_port(view: View) -> Iterator[Diagnostic]:
                 *as_value,
                 *(WHY if is_own else ()),
             ),
-            fixes=(*to_port, *_passing_on(view, seen, missing)),
-            # Only the robot's program knows whether it requires an input, except for what is known of Nav2.
+            fixes=(*to_port, *_passing_on(view, resolved, missing)),
+            # Only the robot's program knows whether it requires an input, except for the nodes of Nav2.
             severity=None if is_severe else Severity.WARNING,
         )
 
@@ -138,17 +148,17 @@ def unknown_attribute(view: View) -> Iterator[Diagnostic]:
             if kind is not None and kind.is_script:
                 message = f"`{pair.key.text}` has no effect on a BehaviorTree: move it to the tree's node"
                 yield Diagnostic("unknown-attribute", pair.key.span, message)
-    for seen in view.seen.given:
-        for pair in seen.node.attributes:
+    for resolved in view.seen.given:
+        for pair in resolved.node.attributes:
             key = pair.key.text
             if is_port_name(key) or key in _OWN:
                 meant = _ATTRIBUTES.get(_plain(key)) if UNDERSCORES.holds(view.target) else None
-                if meant is not None and _ports(view, seen) is None:
-                    yield from _without_underscore(seen, pair.key, meant)
+                if meant is not None and _ports(view, resolved) is None:
+                    yield from _without_underscore(resolved, pair.key, meant)
                 continue
             if not UNDERSCORES.holds(view.target):
-                if seen.category != "SubTree" and key != "_description":
-                    message = f"{view.target} takes `{key}` for a port, and refuses {seen.shown_kind}"
+                if resolved.category != "SubTree" and key != "_description":
+                    message = f"{view.target} takes `{key}` for a port, and refuses {resolved.shown_kind}"
                     yield Diagnostic("unknown-attribute", pair.key.span, message, severity=Severity.ERROR)
                 continue
             if key in _KEPT:
@@ -188,9 +198,9 @@ def _wished(view: View, pair: Pair, value: Word) -> Diagnostic:
     return Diagnostic("unknown-attribute", pair.key.span, message, notes=(f'write `_skipIf="{script}"`',), fixes=(fix,))
 
 
-def _without_underscore(seen: ResolvedNode, key: Word, meant: str) -> Iterator[Diagnostic]:
+def _without_underscore(resolved: ResolvedNode, key: Word, meant: str) -> Iterator[Diagnostic]:
     """`skipIf` on a node whose ports are unknown; elsewhere it is an unknown port."""
-    if key.text.islower() and "_" not in key.text and not seen.is_subtree:
+    if key.text.islower() and "_" not in key.text and not resolved.is_subtree:
         return  # `while` and `post` may be ports
     message = f"the engine takes `{key.text}` for a port; did you mean `{meant}`?"
     fix = replace_fix(f"Replace `{key.text}` with `{meant}`", key.span, meant)
@@ -199,11 +209,11 @@ def _without_underscore(seen: ResolvedNode, key: Word, meant: str) -> Iterator[D
 
 def duplicate_attribute(view: View) -> Iterator[Diagnostic]:
     """Two values for one attribute: the first counts."""
-    for pairs, said_before in _attribute_lists(view):
+    for pairs, before_brackets in _attribute_lists(view):
         keys = {pair.key.text for pair in pairs}
-        if len(keys) == len(pairs) and keys.isdisjoint(said_before):
+        if len(keys) == len(pairs) and keys.isdisjoint(before_brackets):
             continue
-        first: dict[str, Word | Pair] = {key: word for key, word in said_before.items() if word is not None}
+        first: dict[str, Word | Pair] = {key: word for key, word in before_brackets.items() if word is not None}
         for pair in pairs:
             key = pair.key.text
             if key in first:
@@ -233,7 +243,7 @@ def misspelt_type(view: View) -> Iterator[Diagnostic]:
             name = port.type.text if port.type is not None else ""
             if not name.islower() or len(name) < 4 or is_known_type(plain_type(name)):
                 continue
-            likely = [known for known in _TYPES if distance(name, known, 1) == 1]
+            likely = [type_name for type_name in _TYPES if distance(name, type_name, 1) == 1]
             if port.type is None or not likely:
                 continue
             fix = replace_fix(f"Replace `{name}` with `{likely[0]}`", port.type.span, likely[0])
@@ -241,15 +251,15 @@ def misspelt_type(view: View) -> Iterator[Diagnostic]:
             yield Diagnostic("misspelt-type", port.type.span, message, fixes=(fix,))
 
 
-def first_port(view: View, seen: ResolvedNode) -> PortKind | None:
-    """The port that a value without a name is most likely for: the first that needs one, or else the first."""
-    ports = _ports(view, seen)
+def first_port(view: View, resolved: ResolvedNode) -> PortKind | None:
+    """The likely port of a value without a name: the first that needs a value, or else the first."""
+    ports = _ports(view, resolved)
     return next(iter((*ports.required, *ports.all)), None) if ports is not None else None
 
 
-def is_case(seen: ResolvedNode, key: str) -> bool:
+def is_case(resolved: ResolvedNode, key: str) -> bool:
     """Whether an attribute is a case of a Switch; which ones exist depends on the number of its children."""
-    return seen.flow == "switch" and key.startswith("case_") and key[5:].isdecimal()
+    return resolved.flow == "switch" and key.startswith("case_") and key[5:].isdecimal()
 
 
 class KnownPorts:
@@ -266,96 +276,101 @@ class KnownPorts:
         return next((port for port in self.all if port.name == name), None)
 
 
-def _ports(view: View, seen: ResolvedNode) -> KnownPorts | None:
+def _ports(view: View, resolved: ResolvedNode) -> KnownPorts | None:
     """The ports of a node; None if unknown."""
-    if seen.is_placeholder or (seen.is_subtree and not PORTS_OF_SUBTREE.holds(view.target)):
+    if resolved.is_placeholder or (resolved.is_subtree and not PORTS_OF_SUBTREE.holds(view.target)):
         return None
-    if seen.is_subtree:
+    if resolved.is_subtree:
         # The engine reads `default = ""` as none, requires outputs too, and adds up the models of a tree.
-        name = seen.node.id
+        name = resolved.node.id
         others = view.ask(lookups.ports_of_models, Kind.MODEL, name.text) if name is not None else ()
-        declared = {port.id.text: port for port in chain(ports_beside(view, seen), *others) if port.id is not None}
+        declared = {port.id.text: port for port in chain(ports_beside(view, resolved), *others) if port.id is not None}
         ports = [replace(port, required=not port.default) for port in map(as_kind, declared.values())]
         return KnownPorts(tuple(ports)) if ports else None
-    if seen.kind is not None:
-        return _builtin_ports(seen.kind.tag, is_before_4(view.target))
-    known = view.ask(_model_ports, seen.id.text) if seen.is_defined and seen.id is not None else None
-    if known is None or not (throws := _throwing(seen)):
-        return known
-    return KnownPorts(tuple([replace(port, required=port.required or port.name in throws) for port in known.all]))
+    if resolved.kind is not None:
+        return _builtin_ports(resolved.kind.tag, is_before_4(view.target))
+    model_ports = view.ask(_model_ports, resolved.id.text) if resolved.is_defined and resolved.id is not None else None
+    if model_ports is None or not (throws := _throwing(resolved)):
+        return model_ports
+    return KnownPorts(tuple([replace(port, required=port.required or port.name in throws) for port in model_ports.all]))
 
 
-def _throwing(seen: ResolvedNode) -> tuple[str, ...]:
-    """The ports without which a node of Nav2 is known to throw."""
-    behavior = seen.behavior if seen.kind is None else None
+def _throwing(resolved: ResolvedNode) -> tuple[str, ...]:
+    """The ports without which a node of Nav2 throws."""
+    behavior = resolved.behavior if resolved.kind is None else None
     return tuple([port.name for port in behavior.ports if port.required]) if behavior is not None else ()
 
 
-def _may_have_more(view: View, seen: ResolvedNode) -> bool:
+def _may_have_more(view: View, resolved: ResolvedNode) -> bool:
     """Whether a port may be declared on a line that could not be read."""
-    name = seen.id
-    if name is None or not (seen.is_subtree or seen.is_defined):
+    name = resolved.id
+    if name is None or not (resolved.is_subtree or resolved.is_defined):
         return False
-    kinds = (Kind.TREE, Kind.MODEL) if seen.is_subtree else (Kind.MODEL,)
+    kinds = (Kind.TREE, Kind.MODEL) if resolved.is_subtree else (Kind.MODEL,)
     return any(view.ask(lookups.is_torn, kind, name.text) for kind in kinds)
 
 
 def _model_ports(store: Store[Workspace], viewpoint: str, name: str) -> KnownPorts | None:
-    """The ports of a node with a model; of several that differ, those that any has, required if all require them."""
+    """The ports of a node with a model.  Of several models a port of any counts, and is required if all require it."""
     models = [[*map(as_kind, ports)] for ports in store.ask(lookups.ports_of_models, viewpoint, Kind.MODEL, name)]
     needed = [{port.name for port in ports if port.required} for ports in models]
     first: dict[str, PortKind] = {}
     for port in chain(*models):
         first.setdefault(port.name, port)
-    ports = [replace(port, required=all(port.name in each for each in needed)) for port in first.values()]
+    ports = [replace(port, required=all(port.name in names for names in needed)) for port in first.values()]
     return KnownPorts(tuple(ports))
 
 
-def _of_version_3(view: View, seen: ResolvedNode, key: str) -> tuple[str, ...]:
-    """What to do about a port that a built-in has in version 3 of the engine."""
-    if seen.kind is None or (seen.kind.tag, key) not in OLD_PORTS:
+def _of_version_3(view: View, resolved: ResolvedNode, key: str) -> tuple[str, ...]:
+    """The notes about a port that a built-in has in version 3 of the engine only."""
+    if resolved.kind is None or (resolved.kind.tag, key) not in OLD_PORTS:
         return ()
     return (f"version 3 of the engine has `{key}`", *way_in(view))
 
 
-def _of_model_in_xml(view: View, seen: ResolvedNode) -> str:
-    """The rest of a sentence about a port, if only a model in XML says which ones a node has: it may be an old one."""
-    name = seen.id if seen.is_defined and not (seen.kind or seen.is_subtree) else None
-    found = view.ask(lookups.declaration, Kind.MODEL, name.text) if name is not None else None
-    if name is None or found is None or not view.store.ask(lookups.is_xml, found.path):
+def _of_model_in_xml(view: View, resolved: ResolvedNode) -> str:
+    """The end of a message about a port of a node whose only model is in XML: the model may be out of date."""
+    name = resolved.id if resolved.is_defined and not (resolved.kind or resolved.is_subtree) else None
+    declaration = view.ask(lookups.declaration, Kind.MODEL, name.text) if name is not None else None
+    if name is None or declaration is None or not _is_xml(view, declaration.path):
         return ""
     if view.ask(lookups.is_repeated, Kind.MODEL, name.text):
         return ""
-    return f": its model in {view.project.shown(found.path)} lacks it"
+    return f": its model in {view.project.shown(declaration.path)} lacks it"
 
 
-def _is_of_pool(view: View, seen: ResolvedNode) -> bool:
+def _is_xml(view: View, path: str) -> bool:
+    """Whether a file is XML, and not C++ that registers nodes."""
+    return view.store.ask(lookups.is_xml, path) and not view.store.ask(lookups.is_cpp, path)
+
+
+def _is_of_pool(view: View, resolved: ResolvedNode) -> bool:
     """Whether only the model of a file that this one does not include declares a node."""
     return (
-        seen.kind is None
-        and seen.id is not None
-        and seen.is_defined
-        and not view.ask(lookups.is_defined, Kind.MODEL, seen.id.text)
+        resolved.kind is None
+        and resolved.id is not None
+        and resolved.is_defined
+        and not view.ask(lookups.is_defined, Kind.MODEL, resolved.id.text)
     )
 
 
-def _needed(view: View, seen: ResolvedNode, missing: list[PortKind]) -> list[PortKind]:
-    """Those of a node's missing ports that it seems to need.
+def _needed(view: View, resolved: ResolvedNode, missing: list[PortKind]) -> list[PortKind]:
+    """The missing ports that a node seems to need.
 
-    A model in XML does not say which inputs its node can do without; one of C++ does.  If there are several such nodes
-    and none has a value for a port, it can; and so it may if the model is one of another program.
+    A model in C++ says which inputs its node can do without; one in XML does not.  If there are several such nodes and
+    none has a value for a port, the port is optional; likewise if the model may be one of another program.
     """
-    if not missing or seen.kind is not None or seen.is_subtree or seen.id is None:
+    if not missing or resolved.kind is not None or resolved.is_subtree or resolved.id is None:
         return missing
-    name = seen.id.text
+    name = resolved.id.text
     definition = view.ask(inputs.definition, Kind.MODEL, name)
     if definition is None:
         return []
-    if not view.store.ask(lookups.is_xml, definition[0]):
+    if not _is_xml(view, definition[0]):
         return missing
     _, used, uses = view.ask(lookups.custom_node, name)
-    given = {port.name for port in used}
-    return missing if uses == 1 else [port for port in missing if port.name in given]
+    used_names = {port.name for port in used}
+    return missing if uses == 1 else [port for port in missing if port.name in used_names]
 
 
 @cache
@@ -365,35 +380,35 @@ def _builtin_ports(tag: str, has_old_names: bool) -> KnownPorts:
     return KnownPorts(tuple([replace(port, doc=f"{port.doc[0].lower()}{port.doc[1:]}") for port in named]))
 
 
-def _meant(view: View, seen: ResolvedNode, ports: KnownPorts) -> dict[Word, tuple[str, ...]]:
-    """The keys that are not ports, each with the ports that may be meant and have no value."""
+def _unknown_keys(view: View, resolved: ResolvedNode, ports: KnownPorts) -> dict[Word, tuple[str, ...]]:
+    """The keys that are not ports, each with the ports without a value that it may mean."""
     names = ports.names
-    given = [pair.key.text for pair in seen.node.attributes]
-    if names.issuperset(given):
+    keys = [pair.key.text for pair in resolved.node.attributes]
+    if names.issuperset(keys):
         return {}
-    has_value = set(given)
+    has_value = set(keys)
     free = [port for port in ports.all if port.name not in has_value]
-    found: dict[Word, tuple[str, ...]] = {}
-    for pair in seen.node.attributes:
+    unknown: dict[Word, tuple[str, ...]] = {}
+    for pair in resolved.node.attributes:
         key = pair.key.text
-        if key in names or key in _OWN or not is_port_name(key) or is_case(seen, key):
+        if key in names or key in _OWN or not is_port_name(key) or is_case(resolved, key):
             continue
-        old = OLD_PORTS.get((seen.kind.tag, key)) if seen.kind else None
+        old = OLD_PORTS.get((resolved.kind.tag, key)) if resolved.kind else None
         old = old or (_ATTRIBUTES.get(_plain(key)) if UNDERSCORES.holds(view.target) else None)
-        likely = near(key, (port.name for port in free)) if len(found) * len(free) < _MOST_COMPARED else ()
-        found[pair.key] = (old,) if old else likely
-    strange = [key for key, likely in found.items() if not likely]
+        likely = near(key, (port.name for port in free)) if len(unknown) * len(free) < _MOST_COMPARED else ()
+        unknown[pair.key] = (old,) if old else likely
+    strange = [key for key, likely in unknown.items() if not likely]
     missing = [port.name for port in free if port.required]
-    if len(strange) == len(missing) == 1 and not any(missing[0] in likely for likely in found.values()):
-        found[strange[0]] = (missing[0],)  # `timeout_ms` can only be `msec`
-    return found
+    if len(strange) == len(missing) == 1 and not any(missing[0] in likely for likely in unknown.values()):
+        unknown[strange[0]] = (missing[0],)  # `timeout_ms` can only be `msec`
+    return unknown
 
 
 def _renamings(
-    view: View, seen: ResolvedNode, ports: KnownPorts, key: Word, likely: tuple[str, ...]
+    view: View, resolved: ResolvedNode, ports: KnownPorts, key: Word, likely: tuple[str, ...]
 ) -> tuple[Fix, ...]:
-    """The fixes that write a port's name in place of a key, and with a unit what a key with that unit is given."""
-    value = seen.node.attribute(key.text)
+    """The fixes that write a port's name in place of a key; if the key names a unit, the value gets it."""
+    value = resolved.node.attribute(key.text)
     unit = _unit_in(key.text)
     fixes: list[Fix] = []
     for name in likely:
@@ -417,22 +432,28 @@ def _unit_in(key: str) -> Unit | None:
     return unit if unit is not None and dimension_name(unit) == "time" else None
 
 
-def _node_meant(seen: ResolvedNode, ports: KnownPorts, key: Word, likely: tuple[str, ...]) -> str | None:
+def _node_meant(resolved: ResolvedNode, ports: KnownPorts, key: Word, likely: tuple[str, ...]) -> str | None:
     """The one built-in with a port of this name, of another role than the missing one: `Loop (num_cycles = 3)`."""
     port = ports.named(likely[0]) if len(likely) == 1 else None
-    if seen.kind is None or port is None or near(key.text, likely):
+    if resolved.kind is None or port is None or near(key.text, likely):
         return None
-    beside = [kind for kind in BUILTINS.values() if kind.category == seen.kind.category and kind.port(key.text)]
+    beside = [kind for kind in BUILTINS.values() if kind.category == resolved.kind.category and kind.port(key.text)]
     meant = beside[0].port(key.text) if len(beside) == 1 else None
     return beside[0].tag if meant is not None and meant.role not in ("", port.role) else None
 
 
 def _assigned(
-    view: View, seen: ResolvedNode, ports: KnownPorts, key: Word, likely: tuple[str, ...]
+    view: View, resolved: ResolvedNode, ports: KnownPorts, key: Word, likely: tuple[str, ...]
 ) -> tuple[tuple[str, ...], tuple[Fix, ...]] | None:
-    """What a Script assigns as if its entry were a port: `Script (x = 3)`."""
-    port, value = ports.named(likely[0]) if len(likely) == 1 else None, seen.node.attribute(key.text)
-    if seen.flow != "succeeds" or port is None or port.content != "script" or value is None or near(key.text, likely):
+    """The suggestion and the fix for `Script (x = 3)`, which assigns to an entry as if it were a port."""
+    port, value = ports.named(likely[0]) if len(likely) == 1 else None, resolved.node.attribute(key.text)
+    if (
+        resolved.flow != "succeeds"
+        or port is None
+        or port.content != "script"
+        or value is None
+        or near(key.text, likely)
+    ):
         return None
     if not _ASSIGNABLE.fullmatch(value.text):
         return None  # perhaps a script itself
@@ -447,22 +468,22 @@ def _plain(key: str) -> str:
     return key.replace("_", "").casefold()
 
 
-def _forbidden_id(seen: ResolvedNode) -> Iterator[Diagnostic]:
+def _forbidden_id(resolved: ResolvedNode) -> Iterator[Diagnostic]:
     """`-> (ID = x)`: the engine accepts an ID in the explicit form only."""
-    node = seen.node
+    node = resolved.node
     if node.kind is None or node.category is not None or (not node.kind.quoted and node.kind.raw in KNOWN_WORDS):
         return
     for pair in node.attributes:
         if pair.key.text == "ID":
-            message = f"the engine refuses the attribute `ID` on {seen.shown_kind}"
+            message = f"the engine refuses the attribute `ID` on {resolved.shown_kind}"
             fix = replace_fix("Replace `ID` with `name`", pair.key.span, "name")
             fixes, notes = ((), ()) if node.name is not None else ((fix,), (NAME,))
             yield Diagnostic("unknown-port", pair.key.span, message, notes=notes, fixes=fixes)
 
 
-def _remaps_all(seen: ResolvedNode) -> bool:
-    """Whether a SubTree gets every entry under its own name, or is meant to, which is reported."""
-    values = [seen.node.attribute(key) for key in ("_autoremap", *_OF_TODAY)]
+def _remaps_all(resolved: ResolvedNode) -> bool:
+    """Whether a SubTree gets every entry under its own name, or has an attribute of version 3 that means it."""
+    values = [resolved.node.attribute(key) for key in ("_autoremap", *_OF_TODAY)]
     return any(value is not None and not _is_off(value) for value in values)
 
 
@@ -470,32 +491,40 @@ def _is_off(value: Word | None) -> bool:
     return value is not None and value.text in ("false", "False", "FALSE", "0")
 
 
-def _declared(view: View, seen: ResolvedNode) -> tuple[Related, ...]:
-    if seen.is_subtree:
-        return view.declared_at(Kind.TREE, seen.node.id.text, _DECLARED) if seen.node.id is not None else ()
-    return model_related(view, seen, _DECLARED)
+def _declared(view: View, resolved: ResolvedNode) -> tuple[Related, ...]:
+    if resolved.is_subtree:
+        return view.declared_at(Kind.TREE, resolved.node.id.text, _DECLARED) if resolved.node.id is not None else ()
+    return model_related(view, resolved, _DECLARED)
 
 
-def _passing_on(view: View, seen: ResolvedNode, missing: list[PortKind]) -> tuple[Fix, ...]:
+def _passing_on(view: View, resolved: ResolvedNode, missing: list[PortKind]) -> tuple[Fix, ...]:
     """The fix that passes to a custom node or a SubTree the blackboard entries named as its ports."""
-    if seen.kind is not None:
+    if resolved.kind is not None:
         return ()
     pairs = " ".join(f"{written(port.name)} = {{=}}" for port in missing)
-    return adding_fix(view, seen.node, f"Pass on the entr{'y' if len(missing) == 1 else 'ies'} of the same name", pairs)
+    return adding_fix(
+        view, resolved.node, f"Pass on the entr{'y' if len(missing) == 1 else 'ies'} of the same name", pairs
+    )
 
 
-def _label_as_value(view: View, seen: ResolvedNode, missing: list[PortKind]) -> tuple[tuple[str, ...], tuple[Fix, ...]]:
+def _label_as_value(
+    view: View, resolved: ResolvedNode, missing: list[PortKind]
+) -> tuple[tuple[str, ...], tuple[Fix, ...]]:
     """The note and the fix for `Precondition "x > 3"`, whose label is probably the value that a built-in lacks."""
-    label = seen.node.label
-    if seen.kind is None or label is None or not label.quoted or view.is_xml or len(missing) != 1:
+    label = resolved.node.label
+    if resolved.kind is None or label is None or not label.quoted or view.is_xml or len(missing) != 1:
         return (), ()
     pair = f"({written(missing[0].name)} = {label.raw})"
-    fixes = () if seen.node.attributes else (write_fix(pair, label.span),)
+    fixes = () if resolved.node.attributes else (write_fix(pair, label.span),)
     return (f"btq reads `{label.raw}` as its label; for a value, write `{pair}`",), fixes
 
 
 def adding_fix(view: View, node: Node, title: str, pairs: str) -> tuple[Fix, ...]:
-    """The fix that gives a node more attributes, written as in a file; none if they have no place."""
+    """The fix that adds attributes to a node; none if there is no place for them.
+
+    Args:
+        pairs: the attributes as a .btq file writes them.
+    """
     title = f"{title}: `{pairs}`"
     if node.attributes:
         end = node.attributes[-1].span.end
@@ -512,9 +541,9 @@ def _attribute_lists(view: View) -> Iterator[tuple[tuple[Pair, ...], dict[str, W
         yield item.attributes, {"ID": item.name}
         for port in item.ports:
             if port.attributes:
-                yield port.attributes, _said(port)
-        for seen in view.seen.given:
-            node = seen.node
+                yield port.attributes, _before_brackets(port)
+        for resolved in view.seen.given:
+            node = resolved.node
             if len(node.attributes) > 1 or node.label is not None or node.category is not None:
                 yield node.attributes, {"name": node.label, "ID": node.kind if node.category else None}
     elif isinstance(item, Include):
@@ -526,12 +555,12 @@ def _attribute_lists(view: View) -> Iterator[tuple[tuple[Pair, ...], dict[str, W
             yield model.attributes, {"ID": model.name}
         for part in model.body:
             if isinstance(part, Port) and part.attributes:
-                yield part.attributes, _said(part)
+                yield part.attributes, _before_brackets(part)
             elif isinstance(part, Meta):
                 yield part.attributes, {}
 
 
-def _said(port: Port) -> dict[str, Word | None]:
+def _before_brackets(port: Port) -> dict[str, Word | None]:
     return {"name": port.name, "type": port.type, "default": port.default}
 
 

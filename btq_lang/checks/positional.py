@@ -1,6 +1,6 @@
 """Values without the name of their port, as in calls of other languages: `MoveBase ("dock")`, `Retry 3`.
 
-One invariant: the parser has reported them; this only adds which port is meant, which it cannot know.
+One invariant: the parser reports them; this module adds which port is meant, which the parser cannot know.
 """
 
 from __future__ import annotations
@@ -20,22 +20,27 @@ from btq_lang.util.text import Span
 
 
 def with_ports(view: View, reported: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """What the parser has reported of an item, with the ports of values that lack one."""
-    for each in reported:
-        if isinstance(view.item, Tree) and (quoted := _with_quotes(view, each)) is not None:
+    """The parser's diagnostics of an item, with the ports of values that lack one."""
+    for diagnostic in reported:
+        if isinstance(view.item, Tree) and (quoted := _with_quotes(view, diagnostic)) is not None:
             yield quoted
             continue
-        is_script = view.text.startswith(":=", each.span.start)  # `Script (x := 3)`, taken for an attribute's sign
-        yield _with_port(view, each) if isinstance(view.item, Tree) and (is_script or not each.fixes) else each
+        # `Script (x := 3)`, taken for an attribute's sign
+        is_script = view.text.startswith(":=", diagnostic.span.start)
+        yield (
+            _with_port(view, diagnostic)
+            if isinstance(view.item, Tree) and (is_script or not diagnostic.fixes)
+            else diagnostic
+        )
 
 
 def _with_port(view: View, reported: Diagnostic) -> Diagnostic:
     text, span = view.text, reported.span
-    seen = view.node_before(span.start)
-    after = _AFTER.match(text, (seen.node.label or seen.node.head).end) if seen is not None else None
-    if seen is None or after is None or not after.end() <= span.start <= max(after.end(), seen.node.end):
+    resolved = view.node_before(span.start)
+    after = _AFTER.match(text, (resolved.node.label or resolved.node.head).end) if resolved is not None else None
+    if resolved is None or after is None or not after.end() <= span.start <= max(after.end(), resolved.node.end):
         return reported
-    port = first_port(view, seen)
+    port = first_port(view, resolved)
     value = _value(view, reported, after, port) if port is not None else None
     if port is None or value is None:
         return reported
@@ -50,15 +55,15 @@ def _with_port(view: View, reported: Diagnostic) -> Diagnostic:
 
 
 def _with_quotes(view: View, reported: Diagnostic) -> Diagnostic | None:
-    """What is reported of a script without quotes, with them: `Script x = 3`, `Go (_skipIf = x == 3)`."""
-    seen = view.node_before(reported.span.start)
-    if seen is None:
+    """The diagnostic for a script without quotes, `Script x = 3` or `Go (_skipIf = x == 3)`; None for any other."""
+    resolved = view.node_before(reported.span.start)
+    if resolved is None:
         return None
-    at = reported.span.start
-    pair = next((each for each in reversed(seen.node.attributes) if each.key.start < at), None)
-    if pair is not None and is_script(seen, pair):
+    offset = reported.span.start
+    pair = next((candidate for candidate in reversed(resolved.node.attributes) if candidate.key.start < offset), None)
+    if pair is not None and is_script(resolved, pair):
         unquoted = _UNQUOTED.match(view.text, pair.key.end)
-        if unquoted is None or at > unquoted.end():
+        if unquoted is None or offset > unquoted.end():
             return None
         text = quote(unquoted["script"])
         message, fix = (
@@ -66,14 +71,14 @@ def _with_quotes(view: View, reported: Diagnostic) -> Diagnostic | None:
             write_fix(text, Span(*unquoted.span("script"))),
         )
         return replace(reported, message=message, notes=(), fixes=(fix,))
-    kind = lookup(seen.node.head.text)
-    port = next((each for each in kind.ports if each.content == "script"), None) if kind is not None else None
-    bare = _BARE_SCRIPT.match(view.text, seen.node.head.end)
-    if kind is None or port is None or bare is None or at > bare.end():
+    kind = lookup(resolved.node.head.text)
+    ports = [port for port in kind.ports if port.content == "script"] if kind is not None else []
+    bare = _BARE_SCRIPT.match(view.text, resolved.node.head.end)
+    if kind is None or not ports or bare is None or offset > bare.end():
         return None
     sign = {"=": ":=" if kind.flow == "succeeds" else "=="}.get(bare["sign"], bare["sign"])
     script = quote(f"{bare['entry']} {sign} {bare['value']}")
-    shown = f"({port.name} = {script})"
+    shown = f"({ports[0].name} = {script})"
     message = f"a script goes in quotes after the name of its port: `{shown}`"
     return replace(
         reported, message=message, notes=(), fixes=(write_fix(shown, Span(bare.start("entry"), bare.end())),)
@@ -81,7 +86,7 @@ def _with_quotes(view: View, reported: Diagnostic) -> Diagnostic | None:
 
 
 def _value(view: View, reported: Diagnostic, after: re.Match[str], port: PortKind) -> str | None:
-    """The one value after a node, in brackets or at the end of the line; None if there is something else."""
+    """The only value after a node, in brackets or at the end of the line; None if more follows."""
     text, span = view.text, reported.span
     if text[after.end()] in _OPENS_VALUE:
         is_whole = span.start == after.end() and (_CLOSING if after[1] else _LAST).match(text, span.end)

@@ -18,12 +18,12 @@ _PASS_SKIPPED_ON = frozenset(
 
 
 def one_shot_monitor(view: View) -> Iterator[Diagnostic]:
-    """`_failureIf`, which is evaluated once, on a node that runs; `_successIf` is a hint, for it mostly means "do it
-    unless it is done"."""
-    for seen in view.seen.marked:
-        for pair in seen.node.attributes:
+    """`_failureIf` on a node that runs over several ticks, though it is evaluated once.  `_successIf` gives a hint, as
+    it mostly means "do it unless it is done"."""
+    for resolved in view.seen.marked:
+        for pair in resolved.node.attributes:
             key = pair.key.text
-            if key not in ("_failureIf", "_successIf") or not result(view, seen.node).ever & RUNNING:
+            if key not in ("_failureIf", "_successIf") or not result(view, resolved.node).ever & RUNNING:
                 continue
             if pair.value is None or pair.value.text.strip() in ("true", "false", "1", "0"):
                 continue
@@ -32,7 +32,7 @@ def one_shot_monitor(view: View) -> Iterator[Diagnostic]:
             start = view.spelt("->" if is_failure else "?")
             if is_failure and not view.is_xml:
                 watched, start = f"{watched}, or a requirement with `keeps`", f"a requirement with `needs`, or {start}"
-            message = f"the engine checks `{key}` once, when {seen.shown_kind} starts, and not while it runs"
+            message = f"the engine checks `{key}` once, when {resolved.shown_kind} starts, and not while it runs"
             notes = (
                 f"to check it at every tick, use {watched}",
                 f"to check it once, use {start} with a ScriptCondition in front of the node",
@@ -42,19 +42,19 @@ def one_shot_monitor(view: View) -> Iterator[Diagnostic]:
 
 
 def while_skip_is_success(view: View) -> Iterator[Diagnostic]:
-    """`_while` on a step of a Sequence: when it becomes false the step is halted, and the next one begins.
+    """`_while` on a step of a Sequence: when it becomes false, the step is halted and the next one begins.
 
     If another step has a `_while` or a `_skipIf` too, the steps are the branches of a choice, and that is intended.
     """
-    for seen in view.seen.marked:
-        pair = next((pair for pair in seen.node.attributes if pair.key.text == "_while"), None)
-        if pair is None or not result(view, seen.node).ever & RUNNING:
+    for resolved in view.seen.marked:
+        pair = next((pair for pair in resolved.node.attributes if pair.key.text == "_while"), None)
+        if pair is None or not result(view, resolved.node).ever & RUNNING:
             continue
-        step, parent = _skipped(seen)
+        step, parent = _skipped(resolved)
         if parent is None or not _takes_for_success(parent, step) or _is_choice(parent, step):
             continue
         message = (
-            f"when `_while` becomes false, {seen.shown_kind} is halted and {parent.shown_kind} continues "
+            f"when `_while` becomes false, {resolved.shown_kind} is halted and {parent.shown_kind} continues "
             "as if it had succeeded"
         )
         notes = (
@@ -66,25 +66,25 @@ def while_skip_is_success(view: View) -> Iterator[Diagnostic]:
 
 
 def skipped_condition(view: View) -> Iterator[Diagnostic]:
-    """`_skipIf` or `_while` on the condition of an IfThenElse or a WhileDoElse, which do not accept SKIPPED from it, or
-    on a child of a node that accepts it from none."""
-    for seen in view.seen.marked:
-        pair = next((pair for pair in seen.node.attributes if pair.key.text in ("_skipIf", "_while")), None)
+    """`_skipIf` or `_while` on a child from which its parent does not accept SKIPPED: the condition of an IfThenElse or
+    a WhileDoElse, and any child of some nodes."""
+    for resolved in view.seen.marked:
+        pair = next((pair for pair in resolved.node.attributes if pair.key.text in ("_skipIf", "_while")), None)
         if pair is None:
             continue
-        condition, parent = _skipped(seen)
+        condition, parent = _skipped(resolved)
         if parent is None or not (parent.flow == "together" or (parent.flow == "choice" and not condition.index)):
             continue
-        message = f"if `{pair.key.text}` skips {seen.shown_kind}, {parent.shown_kind} throws and the mission ends"
+        message = f"if `{pair.key.text}` skips {resolved.shown_kind}, {parent.shown_kind} throws and the mission ends"
         notes = (f"move `{pair.key.text}` to {parent.shown_kind}, or check it in a ScriptCondition",)
         yield Diagnostic("skipped-condition", pair.key.span, message, notes=notes)
 
 
-def _skipped(seen: ResolvedNode) -> tuple[ResolvedNode, ResolvedNode | None]:
-    """The node that is skipped with one, and its parent, which must do something about it."""
-    while seen.parent is not None and seen.parent.flow in _PASS_SKIPPED_ON:
-        seen = seen.parent
-    return seen, seen.parent
+def _skipped(resolved: ResolvedNode) -> tuple[ResolvedNode, ResolvedNode | None]:
+    """The topmost node that is skipped with a node, and its parent, which handles that."""
+    while resolved.parent is not None and resolved.parent.flow in _PASS_SKIPPED_ON:
+        resolved = resolved.parent
+    return resolved, resolved.parent
 
 
 def _takes_for_success(parent: ResolvedNode, step: ResolvedNode) -> bool:

@@ -1,4 +1,4 @@
-"""SuccessIf and FailureIf in a requirement's description: whether prose follows them, or a constraint."""
+"""Prose after SuccessIf and FailureIf in a requirement's description, where a constraint should be."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import Dimension, dimension_name, parse_unit
 from btq_lang.checks import lookups
-from btq_lang.checks.measures import is_measured
+from btq_lang.checks.requirements import is_measured
 from btq_lang.checks.strings import in_source
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
@@ -24,18 +24,18 @@ if TYPE_CHECKING:
 
 
 def prose_constraint(view: View) -> Iterator[Diagnostic]:
-    """A keyword followed by prose, in a requirement that has no clause yet: reported once, where it is defined."""
+    """A keyword followed by prose, in a requirement without clauses; reported once, where it is defined."""
     for symbol, requirement in view.requirements:
         if requirement.text is None or requirement.clauses:
             continue
-        found = _not_checked(view, requirement, symbol.name)
+        constraints = _not_checked(view, requirement, symbol.name)
         first = view.ask(lookups.declaration, Kind.REQUIREMENT, symbol.name)
-        if not found or (first is not None and first.symbol is not symbol):
+        if not constraints or (first is not None and first.symbol is not symbol):
             continue
         signals = _signals(view)
-        proposals = (_as_clause(each, signals) for each in found)
+        proposals = (_as_clause(constraint, signals) for constraint in constraints)
         clauses = tuple(dict.fromkeys(clause for clause in proposals if clause is not None))
-        keyword = found[0].keyword
+        keyword = constraints[0].keyword
         message = f"no tool can check the prose after `{requirement.text.text[keyword.start : keyword.end]}`"
         fixes = _fixes(view, requirement.text, symbol.name, clauses)
         notes = _notes(clauses)
@@ -43,20 +43,20 @@ def prose_constraint(view: View) -> Iterator[Diagnostic]:
 
 
 def _not_checked(view: View, requirement: Requirement, name: str) -> list[Constraint]:
-    """The constraints that are neither a script nor meaningful clauses."""
-    found = view.constraints(requirement)
-    is_checked = any(checkable for _, checkable in found) and view.ask(is_measured)
+    """The constraints that no tool can check: they are neither a script nor clauses."""
+    constraints = view.constraints(requirement)
+    is_checked = any(checkable for _, checkable in constraints) and view.ask(is_measured)
     if is_checked and view.defines_here(Kind.REQUIREMENT, name) and view.ask(_claims_nothing, name):
-        return [each for each, _ in found]
-    return [each for each, checkable in found if not checkable]
+        return [constraint for constraint, _ in constraints]
+    return [constraint for constraint, checkable in constraints if not checkable]
 
 
 def _claims_nothing(store: Store[Workspace], viewpoint: str, name: str) -> bool:
     """Whether a requirement, once resolved, claims nothing."""
     from btq_lang.requirements.definitions import requirement  # a file without clauses needs none of it
 
-    found, _ = store.ask(requirement, viewpoint, name)
-    return found is not None and not found.claims
+    resolved, _ = store.ask(requirement, viewpoint, name)
+    return resolved is not None and not resolved.claims
 
 
 def _as_clause(constraint: Constraint, signals: dict[str, Dimension]) -> str | None:
@@ -78,14 +78,14 @@ def _as_clause(constraint: Constraint, signals: dict[str, Dimension]) -> str | N
 
 def _signals(view: View) -> dict[str, Dimension]:
     """The signals in scope, with what they measure."""
-    found: dict[str, Dimension] = {}
+    dimensions: dict[str, Dimension] = {}
     for name in view.ask(inputs.names, Kind.SIGNAL):
         meaning = view.ask(lookups.meaning, Kind.SIGNAL, name)
         signal = meaning.target if meaning is not None else None
         unit = parse_unit(signal.unit.text) if isinstance(signal, Signal) and signal.unit is not None else None
         if unit is not None:
-            found[name] = unit.dimension
-    return found
+            dimensions[name] = unit.dimension
+    return dimensions
 
 
 def _notes(clauses: tuple[str, ...]) -> tuple[str, ...]:
@@ -95,7 +95,7 @@ def _notes(clauses: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def _fixes(view: View, text: Word, name: str, clauses: tuple[str, ...]) -> tuple[Fix, ...]:
-    """The fixes that add the clauses; none if the text is repeated in other places, which would then differ."""
+    """The fixes that add the clauses; none if other definitions repeat the text, which would then differ."""
     if not clauses or view.entry.diagnostics or view.ask(lookups.is_repeated, Kind.REQUIREMENT, name):
         return ()
     added = " ".join(clauses)

@@ -1,5 +1,5 @@
-"""Quality names: unknown, of another edition, or with several meanings.  None is an error: a model is open.  Also what
-is attached with the wrong word: a requirement with `satisfices`, or a quality with `satisfies`."""
+"""Names of qualities that are unknown, of another edition, or ambiguous; none is an error, as a quality model is open.
+Also what is attached with the wrong word: a requirement with `satisfices`, or a quality with `satisfies`."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from btq_lang.workspace.symbols import Use
 
 
 def quality_name(view: View) -> Iterator[Diagnostic]:
-    """An unknown edition; and of the qualities that no file in scope declares, those that are neither the standard's,
-    or only an alias or of another edition, or have several meanings."""
+    """An unknown edition; and qualities that no file in scope declares and that are unknown to the standard, an alias,
+    of another edition, or ambiguous."""
     if isinstance(view.item, Qualities) and view.item.edition is not None:
         edition = view.item.edition
         if edition.text not in EDITIONS:
@@ -62,7 +62,7 @@ def _old(view: View, use: Use, match: QualityMatch) -> Diagnostic:
         message = f"`{use.name}` is called `{match.candidates[0].id}` in {view.ask(lookups.edition)}"
     # "`x` is another word for y" adds nothing to such a message.
     notes = (match.explanation,) if match.explanation and not (is_alias and match.safe) else ()
-    meant = [each.id for each in match.candidates[:3]]
+    meant = [candidate.id for candidate in match.candidates[:3]]
     fixes = tuple(replace_fix(f"Replace it with `{id_}`", _whole(view, use), id_, safe=match.safe) for id_ in meant)
     tags = () if is_alias else (Tag.DEPRECATED,)
     return Diagnostic("old-quality-name", use.span, message, notes=notes, fixes=fixes, tags=tags)
@@ -82,23 +82,23 @@ def _ambiguous(view: View, use: Use, match: QualityMatch) -> Diagnostic:
 
 
 def other_word(view: View, use: Use, rule: str, *, requirement: bool, safe: bool = True) -> Diagnostic:
-    """The name of a requirement is in the place of a quality's, or the other way round.
+    """The diagnostic for a requirement in the place of a quality, or the other way round.
 
     Args:
-        requirement: whether it is one.
+        requirement: whether the name is that of a requirement.
         safe: whether the name would be right after the other word.
     """
-    is_, is_not = ("requirement", "quality") if requirement else ("quality", "requirement")
+    kind, other_kind = ("requirement", "quality") if requirement else ("quality", "requirement")
     word, other = _WORDS if requirement else _WORDS[::-1]
     span = _alone(view, use, word)
     fixes: tuple[Fix, ...] = (replace_fix(f"Replace `{word}` with `{other}`", span, other, safe=safe),) if span else ()
-    message = f"`{use.name}` is a {is_}, not a {is_not}"
+    message = f"`{use.name}` is a {kind}, not a {other_kind}"
     notes = ("`satisfices` names qualities, `satisfies` names requirements",)
     return Diagnostic(rule, use.span, message, notes=notes, fixes=fixes)
 
 
 def _whole(view: View, use: Use) -> Span:
-    """The span to replace: for `performance <time-behavior>` with the `>`, which is not a part of the name."""
+    """The span to replace; for `performance <time-behavior>` it includes the `>`, which is not part of the name."""
     text = view.text
     end = use.span.end
     if "<" in text[use.span.start : end]:

@@ -24,26 +24,26 @@ _APART = "put it in a Sequence of its own"
 
 def reactive_multiple_async(view: View) -> Iterator[Diagnostic]:
     """A running child of a reactive node after another one that runs: a warning if the other one certainly takes more
-    than a tick, a hint if it does only if a custom action does."""
-    for seen in view.seen.of_flow("sequence", "fallback"):
-        if seen.kind is None or not seen.kind.reactive:
+    than one tick, a hint if only a custom action in it may."""
+    for resolved in view.seen.of_flow("sequence", "fallback"):
+        if resolved.kind is None or not resolved.kind.reactive:
             continue
-        refused = _second_async_sequence(seen, view.target)
+        refused = _second_async_sequence(resolved, view.target)
         if refused is not None:
             yield refused
             continue
-        goes_on = SKIPPED | GOES_ON[seen.flow]
+        goes_on = SKIPPED | GOES_ON[resolved.flow]
         first: Node | None = None
         surely = False
         pausing: Node | None = None
-        for below in seen.children:
+        for below in resolved.children:
             child, results = below.node, result(view, below.node)
             pauses = _pauses(view, below)
             if pausing is not None and not surely and (pauses or results.first == RUNNING):
-                yield _pauses_again(seen, pausing, child)
+                yield _pauses_again(resolved, pausing, child)
                 break
             if first is not None and results.ever & RUNNING:
-                yield _never_gets_further(view, seen, first, child, surely)
+                yield _never_gets_further(view, resolved, first, child, surely)
                 break
             if first is None and not results.usual & goes_on and results.ever & goes_on:
                 first = child
@@ -53,8 +53,8 @@ def reactive_multiple_async(view: View) -> Iterator[Diagnostic]:
 
 
 def explicit_in_reactive(view: View) -> Iterator[Diagnostic]:
-    """An explicit form just below a ReactiveSequence: for a `.btq` file a build writes the compact one, if the name can
-    be a tag.
+    """An explicit form directly below a ReactiveSequence.  For a `.btq` file a build writes the compact form, if the
+    name can be a tag.
 
     Source: BehaviorTree.CPP 4.7 to 4.10, xml_parsing.cpp, where the tags of these children are looked up as nodes.
     """
@@ -62,9 +62,9 @@ def explicit_in_reactive(view: View) -> Iterator[Diagnostic]:
     nodes = view.seen
     if not any(inspects_children(tag) for tag in nodes.by_tag) or not NO_EXPLICIT_CHILD.holds(target):
         return
-    for seen in nodes.all:
-        parent, category, name = seen.parent, seen.node.category, seen.id
-        if parent is None or parent.kind is None or not parent.kind.inspects_children or seen.is_subtree:
+    for resolved in nodes.all:
+        parent, category, name = resolved.parent, resolved.node.category, resolved.id
+        if parent is None or parent.kind is None or not parent.kind.inspects_children or resolved.is_subtree:
             continue
         is_forbidden = name is not None and model_name_problem(name.text, target) is not None
         can_be_tag = name is None or (is_xml_name(name.text) and not is_forbidden)
@@ -78,7 +78,7 @@ def explicit_in_reactive(view: View) -> Iterator[Diagnostic]:
             message = f"the engine refuses <{category.raw}> directly below a {parent.kind.tag}"
             older = view.pin_note(lambda version: not NO_EXPLICIT_CHILD.holds(version))
             yield Diagnostic("explicit-in-reactive", category.span, message, notes=(note, *older))
-        elif name is None or can_be_tag or seen.kind is not None or seen.is_placeholder:
+        elif name is None or can_be_tag or resolved.kind is not None or resolved.is_placeholder:
             continue
         elif category is not None or not is_forbidden:  # else forbidden-name reports it
             message = f"the engine refuses `{name.text}` directly below a {parent.kind.tag}"
@@ -88,27 +88,31 @@ def explicit_in_reactive(view: View) -> Iterator[Diagnostic]:
 
 def condition_without_recheck(view: View) -> Iterator[Diagnostic]:
     """A Fallback at the top of a mission that chooses by a condition and then keeps its choice."""
-    choices = [seen for seen in view.seen.of_flow("fallback") if _is_at_the_top(seen) and not _begins_again(seen)]
+    choices = [
+        resolved
+        for resolved in view.seen.of_flow("fallback")
+        if _is_at_the_top(resolved) and not _begins_again(resolved)
+    ]
     if not choices or not view.is_main:
         return
-    for seen in choices:
+    for resolved in choices:
         guard: ResolvedNode | None = None
-        for child in seen.children:
+        for child in resolved.children:
             if guard is not None and result(view, child.node).usual & RUNNING:
-                yield _not_asked_again(view, seen, guard, child.node, fixable=_can_be_asked_again(view, seen))
+                yield _not_asked_again(view, resolved, guard, child.node, fixable=_can_be_asked_again(view, resolved))
                 break
             guard = guard or _guard(child)
 
 
-def _second_async_sequence(seen: ResolvedNode, version: str) -> Diagnostic | None:
-    """The engine checks only this kind, and only its children."""
-    if seen.kind is None or not seen.kind.inspects_children or not ONE_ASYNC_SEQUENCE.holds(version):
+def _second_async_sequence(resolved: ResolvedNode, version: str) -> Diagnostic | None:
+    """The diagnostic for a second asynchronous sequence: the engine checks only this kind, and only its children."""
+    if resolved.kind is None or not resolved.kind.inspects_children or not ONE_ASYNC_SEQUENCE.holds(version):
         return None
-    found = [child for child in seen.children if child.kind is not None and _is_async_sequence(child.kind)]
-    if len(found) < 2:
+    sequences = [child for child in resolved.children if child.kind is not None and _is_async_sequence(child.kind)]
+    if len(sequences) < 2:
         return None
-    first, second, *_ = found
-    message = f"the engine refuses a second {second.tag} in {seen.shown_kind}"
+    first, second, *_ = sequences
+    message = f"the engine refuses a second {second.tag} in {resolved.shown_kind}"
     related = (Related(Place(first.node.head.span), "first one"),)
     severity = Severity.ERROR
     return Diagnostic("reactive-multiple-async", second.node.head.span, message, related=related, severity=severity)
@@ -118,8 +122,8 @@ def _is_async_sequence(kind: NodeKind) -> bool:
     return kind.flow == "sequence" and kind.pauses and not kind.keeps_place
 
 
-def _never_gets_further(view: View, seen: ResolvedNode, first: Node, child: Node, surely: bool) -> Diagnostic:
-    other, this, shown = first.shown, child.shown, seen.shown_kind
+def _never_gets_further(view: View, resolved: ResolvedNode, first: Node, child: Node, surely: bool) -> Diagnostic:
+    other, this, shown = first.shown, child.shown, resolved.shown_kind
     message = f"{this} never gets beyond its first tick: {other} restarts and halts it"
     if not surely:
         message = f"if {other} takes longer than one tick, it restarts whenever {this} is RUNNING, and halts it"
@@ -133,19 +137,19 @@ def _never_gets_further(view: View, seen: ResolvedNode, first: Node, child: Node
     return Diagnostic("reactive-multiple-async", child.head.span, message, related, notes, severity=severity)
 
 
-def _pauses(view: View, seen: ResolvedNode) -> bool:
-    """Whether it returns RUNNING between its children, unless it begins with a condition, which chooses and is meant to
-    interrupt what is beside it."""
-    if seen.kind is None or not seen.kind.pauses or len(seen.node.children) < 2 or not seen.children:
+def _pauses(view: View, resolved: ResolvedNode) -> bool:
+    """Whether a node returns RUNNING between its children.  One that begins with a condition does not count: it
+    chooses, and is meant to interrupt its siblings."""
+    if resolved.kind is None or not resolved.kind.pauses or len(resolved.node.children) < 2 or not resolved.children:
         return False
-    return seen.children[0].category != "Condition" and bool(
-        result(view, seen.children[0].node).ever & GOES_ON.get(seen.kind.flow, 0)
+    return resolved.children[0].category != "Condition" and bool(
+        result(view, resolved.children[0].node).ever & GOES_ON.get(resolved.kind.flow, 0)
     )
 
 
-def _pauses_again(seen: ResolvedNode, first: Node, child: Node) -> Diagnostic:
+def _pauses_again(resolved: ResolvedNode, first: Node, child: Node) -> Diagnostic:
     """The finding for a child that is halted whenever another one pauses between its own children."""
-    other, this, shown = first.shown, child.shown, seen.shown_kind
+    other, this, shown = first.shown, child.shown, resolved.shown_kind
     message = f"{other} returns RUNNING between its children: it restarts whenever {this} is RUNNING, and halts it"
     notes = (
         f"{shown} starts with its first child at every tick, and halts all others when one returns RUNNING",
@@ -155,45 +159,49 @@ def _pauses_again(seen: ResolvedNode, first: Node, child: Node) -> Diagnostic:
     return Diagnostic("reactive-multiple-async", child.head.span, message, related, notes)
 
 
-def _is_at_the_top(seen: ResolvedNode) -> bool:
+def _is_at_the_top(resolved: ResolvedNode) -> bool:
     """Whether only decorators and reactive nodes are above: elsewhere a choice is part of a longer plan, and meant to
     be made once."""
-    return all(above.stated_category == "Decorator" or _begins_again(above) for above in seen.ancestors())
+    return all(above.stated_category == "Decorator" or _begins_again(above) for above in resolved.ancestors())
 
 
-def _begins_again(seen: ResolvedNode) -> bool:
-    """Whether it is a sequence or a fallback that begins with its first child at every tick."""
-    return seen.kind is not None and seen.kind.reactive and seen.kind.flow in GOES_ON
+def _begins_again(resolved: ResolvedNode) -> bool:
+    """Whether a node is a sequence or a fallback that begins with its first child at every tick."""
+    return resolved.kind is not None and resolved.kind.reactive and resolved.kind.flow in GOES_ON
 
 
 def _guard(branch: ResolvedNode) -> ResolvedNode | None:
-    """The condition that begins a branch `-> [condition, …]`; a condition alone is not a branch: what follows it in the
-    Fallback achieves it. One in `R->` guards what runs beside it: it is evaluated all the while."""
+    """The condition that begins a branch `-> [condition, …]`.  A condition alone is not a branch: the next child of the
+    Fallback achieves it.  One in `R->` is evaluated while its siblings run."""
     if not _is_resuming_sequence(branch) or len(branch.node.children) < 2:
         return None
-    seen: ResolvedNode | None = branch
-    while seen is not None and seen.category != "Condition":
-        inside = _is_resuming_sequence(seen) or seen.flow == "invert"
-        seen = next((child for child in seen.children if inside and child.index == 0), None)
-    return seen
+    resolved: ResolvedNode | None = branch
+    while resolved is not None and resolved.category != "Condition":
+        inside = _is_resuming_sequence(resolved) or resolved.flow == "invert"
+        resolved = next((child for child in resolved.children if inside and child.index == 0), None)
+    return resolved
 
 
-def _is_resuming_sequence(seen: ResolvedNode) -> bool:
-    return seen.flow == "sequence" and not _begins_again(seen)
+def _is_resuming_sequence(resolved: ResolvedNode) -> bool:
+    return resolved.flow == "sequence" and not _begins_again(resolved)
 
 
-def _can_be_asked_again(view: View, seen: ResolvedNode) -> bool:
-    """Whether `R?` would restart only what its condition is for: any other child that takes time and fails would
-    restart at the next tick, and halt what was to follow it."""
-    return all(_guard(child) is not None or not result(view, child.node).ever & RUNNING for child in seen.children[:-1])
+def _can_be_asked_again(view: View, resolved: ResolvedNode) -> bool:
+    """Whether `R?` would restart guarded children only.  Any other child that takes time and fails would restart at the
+    next tick, and halt the next child."""
+    return all(
+        _guard(child) is not None or not result(view, child.node).ever & RUNNING for child in resolved.children[:-1]
+    )
 
 
-def _not_asked_again(view: View, seen: ResolvedNode, guard: ResolvedNode, branch: Node, *, fixable: bool) -> Diagnostic:
-    kind, reactive = seen.node.head, view.spelt("R?")
+def _not_asked_again(
+    view: View, resolved: ResolvedNode, guard: ResolvedNode, branch: Node, *, fixable: bool
+) -> Diagnostic:
+    kind, reactive = resolved.node.head, view.spelt("R?")
     message = f"while {branch.shown} runs, {guard.shown} is not checked again"
     notes = (
-        f"{seen.shown_kind} resumes the running child; {reactive} starts with the first child at every tick",
-        f"keep {seen.shown_kind} if the choice is to be made only once",
+        f"{resolved.shown_kind} resumes the running child; {reactive} starts with the first child at every tick",
+        f"keep {resolved.shown_kind} if the choice is to be made only once",
     )
     related = (
         Related(Place(guard.node.head.span), "checked once, and then not again until the Fallback has completed"),
@@ -205,7 +213,7 @@ def _not_asked_again(view: View, seen: ResolvedNode, guard: ResolvedNode, branch
 
 def _reactive(kind: Word) -> str:
     """The reactive Fallback, spelt like the one that it replaces."""
-    fallback = next(each for each in BUILTINS.values() if each.flow == "fallback" and each.reactive)
+    fallback = next(builtin for builtin in BUILTINS.values() if builtin.flow == "fallback" and builtin.reactive)
     if kind.quoted:
         return quote(fallback.tag)
     return fallback.tag if kind.text.isalpha() else fallback.symbols[0]

@@ -1,7 +1,8 @@
 """Guards on values that nothing writes while the guarded node runs: they are effectively checked once.
 
-One invariant: all that may run beside a node is assumed to run, and all that may write an entry to write it, so a
-finding is true for every run of the mission.  What the robot's program writes is not known here.
+One invariant: every node that may run in parallel to another one is assumed to run, and every node that may write an
+entry to write it, so a finding is true for every run of the mission.  This module does not know what the robot's
+program writes.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ _ONE_AT_A_TIME = frozenset(("sequence", "fallback", "choice", "switch", "resume"
 
 
 def guard_never_renewed(demanded: Demanded) -> Iterator[Found]:
-    """A guard whose signals all have writers in the mission, none of which is ticked while the node runs."""
+    """A guard whose signals all have writers in the mission, but no writer is ticked while the node runs."""
     for applied, claim, node, place, why in demanded.hard:
         signals = _watched(applied.requirement, claim) if why is None else ()
         keys = dict.fromkeys([signal.entry for signal in signals])
@@ -38,7 +39,9 @@ def guard_never_renewed(demanded: Demanded) -> Iterator[Found]:
             continue
         writers = [*dict.fromkeys([writer for key in keys for writer in demanded.view.ask(_writers, key)])]
         places = (place, *(writer.place for writer in writers))
-        shown = next((each for each in places if each is not None and each.path == demanded.view.path), None)
+        shown = next(
+            (candidate for candidate in places if candidate is not None and candidate.path == demanded.view.path), None
+        )
         if shown is None:
             continue
         names = " and ".join(f"`{key}`" for key in keys)
@@ -77,14 +80,14 @@ def _is_fixed(demanded: Demanded, node: ResolvedNode, key: str) -> bool:
 
 
 def _is_renewed_beside(writing: frozenset[int], carrying: frozenset[int], node: ResolvedNode) -> bool:
-    """Whether an entry may be written while a node runs, by one above it in the tree, or below one of these.
+    """Whether a node above another one in its tree, or below such a node, may write an entry while the other one runs.
 
     Args:
         writing, carrying: the result of `_renewing` for the tree.
     """
-    for below, at in pairwise((node, *node.ancestors())):
-        beside = () if _runs_one_at_a_time(at) else [each for each in at.children if each is not below]
-        if id(at) in writing or any(id(each) in carrying for each in beside):
+    for below, above in pairwise((node, *node.ancestors())):
+        beside = () if _runs_one_at_a_time(above) else [sibling for sibling in above.children if sibling is not below]
+        if id(above) in writing or any(id(sibling) in carrying for sibling in beside):
             return True
     return False
 
@@ -110,21 +113,21 @@ def _renewing(
 
 
 def _writers(store: Store[Workspace], viewpoint: str, key: str) -> tuple[ResolvedNode, ...]:
-    """The nodes that may write an entry of this name; empty if others may too, or if no node certainly does."""
+    """The nodes that may write an entry of this name; empty if the program may too, or if no node certainly does."""
     view = View(store, viewpoint)
     if view.ask(nodes.mission) is None or not view.ask(inputs.is_complete) or not view.is_read:
         return ()
     if view.ask(inputs.is_included) or store.ask(inputs.has_xml, viewpoint):
         return ()
     entries = view.ask(all_entries)
-    if any(each.is_open or key in each.mentioned for each in entries) or key in view.ask(_keys_of_defaults):
+    if any(of_tree.is_open or key in of_tree.mentioned for of_tree in entries) or key in view.ask(_keys_of_defaults):
         return ()
-    writing = [each for each in entries if key in each.written]
-    writers = [node for each in writing for node, name in each.writes if name.removeprefix("@") == key]
+    writing = [of_tree for of_tree in entries if key in of_tree.written]
+    writers = [node for of_tree in writing for node, name in of_tree.writes if name.removeprefix("@") == key]
     running = view.ask(_reached)
     if not all(writer.tree in running for writer in writers):
-        return ()  # perhaps another mission that runs beside this one
-    sure = [write for each in writing for write in each.sure]
+        return ()  # perhaps another mission that runs in parallel
+    sure = [write for of_tree in writing for write in of_tree.sure]
     if not any(name.removeprefix("@") == key for _, name in sure) or isolated(view, sure, key) is not None:
         return ()
     return tuple(dict.fromkeys(writers))
@@ -133,13 +136,13 @@ def _writers(store: Store[Workspace], viewpoint: str, key: str) -> tuple[Resolve
 def _keys_of_defaults(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
     """The entries, without their `@`, that are defaults of ports of trees and models in scope."""
     view = View(store, viewpoint)
-    found: set[str] = set()
+    keys: set[str] = set()
     for name in (*view.ask(inputs.names, Kind.TREE), *view.ask(inputs.names, Kind.MODEL)):
         for port in declared_ports(view, name):
             text = port.default.text if port.default is not None else ""
             if is_pointer(text):
-                found.add(key_of(text, port.name.text if port.name is not None else "").removeprefix("@"))
-    return frozenset(found)
+                keys.add(key_of(text, port.name.text if port.name is not None else "").removeprefix("@"))
+    return frozenset(keys)
 
 
 def _carrying(store: Store[Workspace], viewpoint: str, key: str) -> frozenset[str]:
@@ -149,7 +152,7 @@ def _carrying(store: Store[Workspace], viewpoint: str, key: str) -> frozenset[st
 
 
 def _is_renewed_above(store: Store[Workspace], viewpoint: str, tree: str | None, key: str) -> bool:
-    """Whether an entry may be written while a tree runs, by nodes above it or beside it; or nothing runs the tree."""
+    """Whether nodes of other trees may write an entry while a tree runs, or nothing runs the tree."""
     if tree not in store.ask(_reached, viewpoint):
         return True
     for name in _with_callers(store, viewpoint, tree):

@@ -1,22 +1,39 @@
-"""Requirements that are unknown, contradictory, unused, or empty; signals and contexts to which nothing refers."""
+"""Requirements that are unknown, contradictory, unused, empty, or cannot be resolved; claims about nothing; signals and
+contexts to which nothing refers.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks import lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.qualities import other_word
-from btq_lang.checks.view import COUNTS, SECOND, View, has_trees, is_used, misspelt_clause, near_names, quality_named
+from btq_lang.checks.view import (
+    COUNTS,
+    SECOND,
+    View,
+    has_names,
+    has_trees,
+    is_used,
+    misspelt_clause,
+    near_names,
+    quality_named,
+)
 from btq_lang.diagnostics.model import Diagnostic, Related, Tag, replace_fix
 from btq_lang.syntax.tree import Claim, Context, OnViolation, Requirement, Signal, Tree, written
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts
-from btq_lang.workspace.queries import Store
+from btq_lang.workspace.queries import Store, hub
 from btq_lang.workspace.symbols import Symbol, names_subject, same_requirement
 from btq_lang.workspace.workspace import Workspace
+
+if TYPE_CHECKING:
+    from btq_lang.requirements.model import ResolvedClaim
 
 
 def unknown_requirement(view: View) -> Iterator[Diagnostic]:
@@ -42,7 +59,7 @@ def unknown_requirement(view: View) -> Iterator[Diagnostic]:
 
 
 def conflicting_requirement(view: View) -> Iterator[Diagnostic]:
-    """One ID with two texts; one ID with one text is one requirement in several places."""
+    """Two requirements of one ID with different content; with the same content they are one requirement."""
     for first, second in view.clashes(Kind.REQUIREMENT):
         if _differ(second.symbol, first.symbol):
             related = (Related(first.place, COUNTS), Related(second.place, "other definition"))
@@ -51,13 +68,13 @@ def conflicting_requirement(view: View) -> Iterator[Diagnostic]:
     for symbol, other, counts in view.repeated(Kind.REQUIREMENT):
         if _differ(symbol, other.symbol):
             message = f"conflicting definitions of the requirement `{symbol.name}`"
-            which = Related(other.place, COUNTS if counts else SECOND)
+            definition = Related(other.place, COUNTS if counts else SECOND)
             notes = (_other_way(view, symbol),)
-            yield Diagnostic("conflicting-requirement", symbol.span, message, related=(which,), notes=notes)
+            yield Diagnostic("conflicting-requirement", symbol.span, message, related=(definition,), notes=notes)
 
 
 def unused_requirement(view: View) -> Iterator[Diagnostic]:
-    """A requirement at file level that no node, no `apply` and no subject of its own connects to the mission."""
+    """A requirement at file level that is attached to nothing: by no node, no `apply` and no subject of its own."""
     requirement = view.item
     if not isinstance(requirement, Requirement) or requirement.name is None:
         return
@@ -118,7 +135,7 @@ def _other_way(view: View, symbol: Symbol) -> str:
 
 
 def _differ(symbol: Symbol, first: Symbol) -> bool:
-    """Whether two definitions contradict each other; an empty one is reported as such."""
+    """Whether two definitions contradict each other; another rule reports an empty one."""
     mine, other = symbol.target, first.target
     return (
         isinstance(mine, Requirement)
@@ -141,13 +158,13 @@ def _is_empty(requirement: Requirement) -> bool:
 
 
 def _is_meant(store: Store[Workspace], viewpoint: str, name: str) -> bool:
-    """Whether something uses an undeclared name that looks like this one, which is reported already."""
+    """Whether something uses an undeclared name that is similar to this one; another rule reports it."""
     view = View(store, viewpoint)
-    asked = view.ask(lookups.asked_for_in_vain)
+    names = view.ask(lookups.asked_for_in_vain)
     declared = len(view.ask(inputs.names, Kind.SIGNAL)) + len(view.ask(inputs.names, Kind.CONTEXT))
-    if len(asked) * declared > _MOST_COMPARED:
+    if len(names) * declared > _MOST_COMPARED:
         return True  # among so many unknown names there is a similar one to any
-    return bool(near(name, asked, limit=1))
+    return bool(near(name, names, limit=1))
 
 
 def _is_misspelt_use(store: Store[Workspace], viewpoint: str, name: str) -> bool:
@@ -157,6 +174,86 @@ def _is_misspelt_use(store: Store[Workspace], viewpoint: str, name: str) -> bool
 def _misspelt_uses(_: Store[Workspace], facts: Facts) -> frozenset[str]:
     nodes = facts.item.walk() if isinstance(facts.item, Tree) else ()
     return frozenset(node.label.text for node in nodes if node.label is not None and misspelt_clause(node))
+
+
+@hub
+def is_measured(store: Store[Workspace], viewpoint: str) -> bool:
+    """Whether any requirement in scope has a clause, or a signal or context is declared; else there is nothing to
+    resolve."""
+    view = View(store, viewpoint)
+    if view.ask(has_names, Kind.SIGNAL) or view.ask(has_names, Kind.CONTEXT):
+        return True
+    names = view.ask(inputs.names, Kind.REQUIREMENT)
+    return any(view.ask(_has_clauses, name) for name in names) or view.ask(lookups.has_apply)
+
+
+def _has_clauses(store: Store[Workspace], viewpoint: str, name: str) -> bool:
+    view = View(store, viewpoint)
+    meaning = view.ask(lookups.meaning, Kind.REQUIREMENT, name)
+    target = meaning.target if meaning is not None else None
+    return isinstance(target, Requirement) and bool(
+        target.clauses or target.parameters or any(checkable for _, checkable in view.constraints(target))
+    )
+
+
+def unresolved(view: View) -> Iterator[Diagnostic]:
+    """The problems in the requirements of an entry that show when they are resolved: units, signals, paths,
+    arguments."""
+    if not view.ask(is_measured):
+        return
+    from btq_lang.requirements.resolve import problems_in  # a file without clauses needs none of it
+
+    yield from [problem.diagnostic for problem in view.ask(problems_in, view.path, view.facts)]
+
+
+def requirement_without_subject(view: View) -> Iterator[Diagnostic]:
+    """A claim without a subject in a requirement that has claims with one; if none has one, the requirement is unused
+    and another rule reports it.  Also a claim about a span or a sum whose verb applies only to nodes."""
+    if not isinstance(view.item, Requirement) or not view.ask(is_measured):
+        return
+    names = [symbol.name for symbol in view.facts.summary.symbols]
+    diagnostics = [
+        diagnostic
+        for name in names
+        if view.defines_here(Kind.REQUIREMENT, name)
+        for diagnostic in _without_subject(view, name)
+    ]
+    if (
+        diagnostics and view.is_read and not view.ask(inputs.is_included)
+    ):  # last, for both often change with an edit elsewhere
+        yield from diagnostics
+
+
+def _without_subject(view: View, name: str) -> Iterator[Diagnostic]:
+    from btq_lang.requirements.definitions import requirement  # as above
+    from btq_lang.requirements.model import DurationSum, Interval
+    from btq_lang.requirements.nodes import has_nodes
+
+    resolved, _ = view.ask(requirement, name)
+    claims = resolved.claims if resolved is not None and view.ask(has_nodes) else ()
+    is_about_nothing = all(claim.subject is None for claim in claims)
+    for claim in claims:
+        if isinstance(claim.subject, Interval | DurationSum) and VERBS[claim.verb].limits != "completion":
+            subject = (
+                "the time from one event to another" if isinstance(claim.subject, Interval) else "a sum of durations"
+            )
+            message = f"`{claim.verb}` is about a node, not about {subject}, so nothing can check it"
+            note = "write `takes` after it, or a node before the verb"
+            yield _diagnostic(claim, message, note)
+        elif claim.subject is None and not is_about_nothing and not view.ask(_is_attached, name):
+            message = f"missing subject of `{claim.text}`"
+            note = "write a node before the verb, or attach the requirement to a node with `satisfies`"
+            yield _diagnostic(claim, message, note)
+
+
+def _diagnostic(claim: ResolvedClaim, message: str, note: str) -> Diagnostic:
+    return Diagnostic("requirement-without-subject", claim.place.span, message, notes=(note,))
+
+
+def _is_attached(store: Store[Workspace], viewpoint: str, name: str) -> bool:
+    from btq_lang.requirements.attach import attached_names  # as above
+
+    return name in store.ask(attached_names, viewpoint)
 
 
 _MOST_COMPARED = 200_000  # pairs of names: some tenths of a second

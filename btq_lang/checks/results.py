@@ -1,8 +1,8 @@
 """The possible results of a file's nodes, as far as their kinds, attributes and children determine them.
 
 One invariant: every status that a node can return is included, so a missing one is impossible; an unknown leaf can
-return anything.  Only `first` has an assumption: a custom action takes longer than one tick.  Not known here: the
-blackboard, and so whether a condition is ever true.
+return anything.  Only `first` and `usual` assume that some actions take longer than one tick.  This module does not
+know the blackboard, and so not whether a condition is ever true.
 """
 
 from __future__ import annotations
@@ -58,18 +58,18 @@ def results(view: View) -> Mapping[int, Results]:
 @inputs.of_scope
 def _of_tree(store: Store[Workspace], viewpoint: str, tree: str) -> Results:
     """The possible results of a tree by its name; all, if it runs itself."""
-    found = store.ask(inputs.definition, viewpoint, Kind.TREE, tree)
-    item = found[1].item if found is not None else None
-    if found is None or not isinstance(item, Tree) or _is_filled_in(View(store, viewpoint), tree, item):
+    definition = store.ask(inputs.definition, viewpoint, Kind.TREE, tree)
+    item = definition[1].item if definition is not None else None
+    if definition is None or not isinstance(item, Tree) or _is_filled_in(View(store, viewpoint), tree, item):
         return UNKNOWN
     roots = [child for child in item.children if isinstance(child, Node)]
-    return _of_nodes(store, viewpoint, *found)[id(roots[0])] if len(roots) == 1 else UNKNOWN
+    return _of_nodes(store, viewpoint, *definition)[id(roots[0])] if len(roots) == 1 else UNKNOWN
 
 
 def _is_filled_in(view: View, name: str, tree: Tree) -> bool:
-    """Whether a tree that does nothing is one in the place of which the program registers another: by its name,
-    `__BringUp__`, or because C++ of the project has that name."""
-    is_stub = len(tree.children) < 2 and all(isinstance(each, Node) and _succeeds(each) for each in tree.children)
+    """Whether a tree does nothing because the program replaces it: its name is like `__BringUp__`, or C++ of the
+    project has that name."""
+    is_stub = len(tree.children) < 2 and all(isinstance(child, Node) and _succeeds(child) for child in tree.children)
     return is_stub and (_TEMPLATE(name) is not None or view.ask(lookups.is_in_cpp, name))
 
 
@@ -82,47 +82,51 @@ def _of_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) 
     """The possible results of the nodes of a tree.  `_of_tree` does not ask for it, or it would be part of each
     circle."""
     view = View(store, viewpoint)
-    found: dict[int, Results] = {}
-    for seen in reversed(view.seen_in(path, facts).all):  # children before their parents
-        found[id(seen.node)] = _of_node(view, seen, found)
-    return found
+    by_node: dict[int, Results] = {}
+    for resolved in reversed(view.seen_in(path, facts).all):  # children before their parents
+        by_node[id(resolved.node)] = _of_node(view, resolved, by_node)
+    return by_node
 
 
-def _of_node(view: View, seen: ResolvedNode, known: dict[int, Results]) -> Results:
-    found = UNKNOWN
-    if seen.is_subtree:
-        found = view.ask(_of_tree, seen.id.text) if seen.id is not None and seen.id.text else UNKNOWN
-    elif seen.behavior is not None:
-        children = tuple([known.get(id(child), UNKNOWN) for child in seen.node.children])
-        found = _of_known(seen.behavior, seen.node, children)
-    elif not seen.node.children:
-        name = seen.id.text if seen.id is not None and seen.is_defined and seen.stated_category == "Action" else None
+def _of_node(view: View, resolved: ResolvedNode, by_node: dict[int, Results]) -> Results:
+    possible = UNKNOWN
+    if resolved.is_subtree:
+        possible = view.ask(_of_tree, resolved.id.text) if resolved.id is not None and resolved.id.text else UNKNOWN
+    elif resolved.behavior is not None:
+        children = tuple([by_node.get(id(child), UNKNOWN) for child in resolved.node.children])
+        possible = _of_behavior(resolved.behavior, resolved.node, children)
+    elif not resolved.node.children:
+        name = (
+            resolved.id.text
+            if resolved.id is not None and resolved.is_defined and resolved.stated_category == "Action"
+            else None
+        )
         at_once = name is not None and view.ask(lookups.ends_at_once, Kind.MODEL, name)
-        found = _AT_ONCE if at_once else _CUSTOM.get(seen.stated_category or "", _UNKNOWN_LEAF)
+        possible = _AT_ONCE if at_once else _CUSTOM.get(resolved.stated_category or "", _UNKNOWN_LEAF)
     added = 0
-    for pair in seen.node.attributes:
+    for pair in resolved.node.attributes:
         added |= _ADDED.get(pair.key.text, 0)
-    return Results(found.first | added, found.usual | added, found.ever | added) if added else found
+    return Results(possible.first | added, possible.usual | added, possible.ever | added) if added else possible
 
 
-def _of_known(kind: NodeKind, node: Node, children: tuple[Results, ...]) -> Results:
-    """Cached, for most nodes have no attributes and few kinds of children."""
+def _of_behavior(kind: NodeKind, node: Node, children: tuple[Results, ...]) -> Results:
+    """The possible results by a node's row; cached, as most nodes have no attributes and few kinds of children."""
     key = id(kind), *[child.first | child.usual << 4 | child.ever << 8 for child in children]
-    found = _without_ports.get(key) if not node.attributes else None
-    if found is not None:
-        return found
+    possible = _without_ports.get(key) if not node.attributes else None
+    if possible is not None:
+        return possible
     if kind.flow == "timeout" and len(children) == 1 and children[0].usual == RUNNING:
         first = RUNNING  # an action with a limited time takes time
     else:
         first = of_kind(kind, node, [child.first for child in children], starting=True)
-    found = Results(
+    possible = Results(
         first,
         of_kind(kind, node, [child.usual for child in children], starting=True),
         of_kind(kind, node, [child.ever for child in children], starting=False),
     )
     if not node.attributes and len(children) < _FEW:
-        _without_ports[key] = found
-    return found
+        _without_ports[key] = possible
+    return possible
 
 
 _TEMPLATE: Final = re.compile("__.+__").fullmatch

@@ -17,50 +17,49 @@ from btq_lang.workspace.resolved import ResolvedNode
 
 
 def script_error(view: View) -> Iterator[Diagnostic]:
-    """What is wrong with a script, in any version that the project targets: script-error, empty-script,
-    script-version."""
-    for seen, pair, value in view.seen.values():
-        expects_value = _expects_value(seen, pair)
+    """The problems in a script, in any version that the project targets: script-error, empty-script, script-version."""
+    for resolved, pair, value in view.seen.values():
+        expects_value = _expects_value(resolved, pair)
         if expects_value is not None:
-            yield from _problems(view, seen, pair.key.text, value, expects_value)
+            yield from _problems(view, resolved, pair.key.text, value, expects_value)
 
 
-def is_script(seen: ResolvedNode, pair: Pair) -> bool:
+def is_script(resolved: ResolvedNode, pair: Pair) -> bool:
     """Whether an attribute holds a script."""
-    return _expects_value(seen, pair) is not None
+    return _expects_value(resolved, pair) is not None
 
 
-def _expects_value(seen: ResolvedNode, pair: Pair) -> bool | None:
+def _expects_value(resolved: ResolvedNode, pair: Pair) -> bool | None:
     """Whether a script in this attribute must have a value, like a condition; None if it is not a script."""
     key = pair.key.text
     attribute = RESERVED_ATTRIBUTES.get(key)
     if attribute is not None:
         return attribute.group == "pre" if attribute.is_script else None
-    port = seen.kind.port(key) if seen.kind is not None else None
+    port = resolved.kind.port(key) if resolved.kind is not None else None
     if port is None or port.content != "script" or (pair.value is not None and is_pointer(pair.value.text)):
         return None
-    return seen.flow != "succeeds"  # else the node succeeds whatever the value
+    return resolved.flow != "succeeds"  # else the node succeeds whatever the value
 
 
-def _problems(view: View, seen: ResolvedNode, key: str, value: Word, expects_value: bool) -> Iterator[Diagnostic]:
+def _problems(view: View, resolved: ResolvedNode, key: str, value: Word, expects_value: bool) -> Iterator[Diagnostic]:
     from btq_lang.syntax.script.check import check_script, is_in_double_quotes  # few files have a script; it is large
 
     for problem in check_script(view.script(value.text), versions=view.engines, expects_value=expects_value):
-        found = moved(problem, value)
+        diagnostic = moved(problem, value)
         notes: tuple[str, ...] = ()
         if problem.rule == "empty-script":
-            found = _empty(seen, key, value, found)
+            diagnostic = _empty(resolved, key, value, diagnostic)
         elif problem.rule == "script-version" and not view.is_pinned:
             notes = (f'if you run {view.target}, set `engine = "{view.target}"` in btq.toml',)
         elif problem.rule == "script-error" and is_in_double_quotes(value.text, problem.span):
             notes = view.pin_note(lambda version: not NEW_SCRIPTS.holds(version))
-        yield replace(found, notes=(*found.notes, *notes))
+        yield replace(diagnostic, notes=(*diagnostic.notes, *notes))
 
 
-def _empty(seen: ResolvedNode, key: str, value: Word, found: Diagnostic) -> Diagnostic:
-    """The whole value is the place; the engine runs a Script without any character, and refuses all other empty
-    ones."""
-    is_port = seen.kind is not None and seen.kind.port(key) is not None
-    if is_port and seen.flow == "succeeds" and value.text == "":
-        return replace(found, span=value.span, message="empty script", severity=Severity.WARNING)
-    return replace(found, span=value.span)
+def _empty(resolved: ResolvedNode, key: str, value: Word, diagnostic: Diagnostic) -> Diagnostic:
+    """The diagnostic for an empty script, at the whole value: the engine runs a Script without any character, and
+    refuses all other empty ones."""
+    is_port = resolved.kind is not None and resolved.kind.port(key) is not None
+    if is_port and resolved.flow == "succeeds" and value.text == "":
+        return replace(diagnostic, span=value.span, message="empty script", severity=Severity.WARNING)
+    return replace(diagnostic, span=value.span)

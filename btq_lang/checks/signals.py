@@ -18,6 +18,7 @@ from btq_lang.util.spelling import near
 from btq_lang.workspace import inputs
 from btq_lang.workspace.port_types import is_text
 from btq_lang.workspace.queries import Store
+from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
 _READING = words(operands=("condition", "use"))
@@ -30,59 +31,78 @@ def of_signals(view: View, guards: Sequence[Guard]) -> Iterator[Found]:
         guards: all claims for which the engine reads signals.
     """
     names = view.ask(inputs.names, Kind.SIGNAL)
-    signals = [found for name in names if (found := view.ask(reader.signal, name)[0]) is not None]
-    here = [each for each in signals if each.place.path == view.path and each.key is not None]
+    signals = [resolved for name in names if (resolved := view.ask(reader.signal, name)[0]) is not None]
+    own_signals = [signal for signal in signals if signal.place.path == view.path and signal.key is not None]
     yield from _may_be_unset(view, guards)
-    if here:
-        yield from _never_written(view, here, guards)
-        yield from _of_text(view, here)
+    if own_signals:
+        yield from _never_written(view, own_signals, guards)
+        yield from _of_text(view, own_signals)
 
 
 def guards(demanded: Demanded) -> Iterator[Guard]:
     """The signals and the entries that the engine reads to enforce a claim, each once, and where to report it."""
-    known: dict[tuple[int, ...], tuple[tuple[ResolvedSignal, ...], tuple[str, ...]]] = {}
+    by_parts: dict[tuple[int, ...], tuple[tuple[ResolvedSignal, ...], tuple[str, ...]]] = {}
     for applied, claim, _, place in demanded.claims:
         if claim.verb not in _READING or not applied.requirement.is_enforceable:
             continue
         parts = (claim.condition, claim.signal, *(scope.condition for scope in applied.requirement.scopes))
         key = tuple(map(id, parts))  # one claim may apply to many nodes
-        if key not in known:
+        if key not in by_parts:
             from btq_lang.requirements.classic import entries_in  # few missions have a claim that is enforced
             from btq_lang.requirements.model import signals_in
 
-            signals = tuple({each.name: each for each in signals_in(parts)}.values())
-            known[key] = signals, entries_in(claim.condition)
-        yield *known[key], place
+            signals = tuple({signal.name: signal for signal in signals_in(parts)}.values())
+            by_parts[key] = signals, entries_in(claim.condition)
+        yield *by_parts[key], place
 
 
-def _never_written(view: View, here: list[ResolvedSignal], guards: Sequence[Guard]) -> Iterator[Found]:
+def _never_written(view: View, own_signals: list[ResolvedSignal], guards: Sequence[Guard]) -> Iterator[Found]:
     """A signal whose blackboard entry no port and no script of the mission writes, if another entry has nearly the same
-    name, or if a guard reads it; the robot's program may write it, so then it is a hint.  A guard reads the root
-    blackboard, so what a tree writes into its own is another entry."""
+    name, or if a guard reads it.  The latter is a hint, as the robot's program may write the entry.  A guard reads the
+    root blackboard: an entry in a tree's own blackboard is another one."""
     if not view.ask(has_nodes) or not view.ask(inputs.is_complete) or not view.is_read:
         return
     if view.ask(inputs.is_included):
         return  # it may be written in the files that include this one
-    written = view.ask(written_keys)
-    writes = [write for each in view.ask(all_entries) for write in each.writes] if guards else []
+    keys = view.ask(written_keys)
+    writes = [write for of_tree in view.ask(all_entries) for write in of_tree.writes] if guards else []
     guarding = {signal.name for signals, *_ in guards for signal in signals}
-    for signal in here:
+    related: tuple[Related, ...]
+    for signal in own_signals:
         key = signal.entry
-        if key in written and signal.name in guarding and (writer := isolated(view, writes, key)) is not None:
+        if key in keys and signal.name in guarding and (writer := isolated(view, writes, key)) is not None:
             message = f"`{signal.name}` reads the root's `{key}`, but the tree `{writer.tree}` writes its own `{key}`"
             notes = (f"write `{{@{key}}}`, or pass the entry on to the tree: `{key} = {{{key}}}`",)
             related = (Related(writer.place, "written here"),)
             yield found_at(signal.place, "signal-never-written", message, related, notes)
             continue
-        if key in written:
+        if key in keys:
             continue
         likely = view.ask(_near_keys, key)
         if not (likely or signal.name in guarding):
             continue
         message = f"no port and no script writes `{key}`, the entry of `{signal.name}`"
         notes = (f"did you mean `{likely[0]}`?" if likely else "ignore this if the robot's program writes it",)
-        severity = None if likely else Severity.HINT
-        yield found_at(signal.place, "signal-never-written", message, notes=notes, severity=severity)
+        lost, port = (None, "") if likely else _unconnected(view, signal)
+        related = ()
+        if lost is not None:
+            notes = (f"connect the output `{port}` of {lost.shown_kind}: `{port} = {{@{key.removeprefix('@')}}}`",)
+            related = (Related(lost.place, f"writes `{port}` nowhere"),)
+        severity = None if likely or lost is not None else Severity.HINT
+        yield found_at(signal.place, "signal-never-written", message, related, notes, severity=severity)
+
+
+def _unconnected(view: View, signal: ResolvedSignal) -> tuple[ResolvedNode | None, str]:
+    """The first node that has an output of the name of a signal or of its entry and writes it nowhere, and the name."""
+    names = dict.fromkeys((signal.name, signal.entry.removeprefix("@")))
+    for path, tree in view.ask(inputs.trees):
+        for node in [node for node in view.seen_in(path, tree).all if node.is_defined]:
+            given = {pair.key.text for pair in node.node.attributes}
+            for name in [name for name in names if name not in given]:
+                port = port_of(view, node, name)
+                if port is not None and port.direction == "output":
+                    return node, name
+    return None, ""
 
 
 def _near_keys(store: Store[Workspace], viewpoint: str, key: str) -> tuple[str, ...]:
@@ -90,14 +110,14 @@ def _near_keys(store: Store[Workspace], viewpoint: str, key: str) -> tuple[str, 
     return near(key, store.ask(written_keys, viewpoint))
 
 
-def _of_text(view: View, here: list[ResolvedSignal]) -> Iterator[Found]:
-    """A numeric signal whose entry a text port writes: a script that compares it converts the text, and throws if it is
-    not a number."""
+def _of_text(view: View, own_signals: list[ResolvedSignal]) -> Iterator[Found]:
+    """A numeric signal whose entry a text port writes.  A script that compares it converts the text, and throws if that
+    is not a number."""
     main = view.ask(mission)
-    numbers = {signal.entry: signal for signal in here if signal.sort == "number"}
-    entries = [each for each in view.ask(all_entries) if not numbers.keys().isdisjoint(each.pointers)]
+    numbers = {signal.entry: signal for signal in own_signals if signal.sort == "number"}
+    entries = [of_tree for of_tree in view.ask(all_entries) if not numbers.keys().isdisjoint(of_tree.pointers)]
     for key, signal in numbers.items():
-        for node, pair, is_of_root in (pointer for each in entries for pointer in each.pointers.get(key, ())):
+        for node, pair, is_of_root in (pointer for of_tree in entries for pointer in of_tree.pointers.get(key, ())):
             if not is_of_root and (main is None or node.tree != main.tree):
                 continue
             port = port_of(view, node, pair.key.text) if node.kind is None else None
@@ -112,8 +132,8 @@ def _of_text(view: View, here: list[ResolvedSignal]) -> Iterator[Found]:
 
 
 def _may_be_unset(view: View, guards: Iterable[Guard]) -> Iterator[Found]:
-    """A guard on a signal without a first value, or of a classic description on an entry that nothing writes: until
-    something writes it, the engine ends the mission."""
+    """A guard on a signal without an initial value, or a classic guard on an entry that nothing writes: the engine ends
+    the mission if it reads the entry before anything writes it."""
     reported: dict[str, tuple[ResolvedSignal, list[Related]]] = {}
     for read, entries, place in guards:
         for entry in entries:

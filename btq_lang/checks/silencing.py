@@ -1,7 +1,7 @@
-"""Where a comment that silences rules goes: at the end of a line or above it; in XML before the element.
+"""Edits that add a comment to silence rules: at the end of a line or above it; in XML before the element.
 
-One invariant: an edit adds a comment, and blanks and line ends around it, and changes nothing else.  Whether the
-comment has the effect is for `suppressions`, which reads it.
+One invariant: an edit adds a comment, and blanks and line ends around it, and changes nothing else.  `suppressions`
+reads the comment, and decides what it silences.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from btq_lang.workspace.file import File
 
 
 def line_to_silence(file: File, diagnostic: Diagnostic) -> int | None:
-    """The line on which a comment can silence a diagnostic of a file; None: nothing can.
+    """The line on which a comment can silence a diagnostic of a file; None if no comment can.
 
     Args:
         diagnostic: counted from the start of the file on the disk.
@@ -28,7 +28,7 @@ def line_to_silence(file: File, diagnostic: Diagnostic) -> int | None:
         return None
     if not file.is_foreign:
         return file.lines.position(start).line
-    if any(each.rule == diagnostic.rule for each in file.source_diagnostics):  # it is about the XML, not about a line
+    if any(other.rule == diagnostic.rule for other in file.source_diagnostics):  # it is about the XML, not about a line
         return None
     offset = file.from_disk(start, exact=False)
     return None if offset is None else file.lines.position(offset).line
@@ -60,25 +60,25 @@ def before_element(file: File, line: int, rules: Sequence[str], reason: str = ""
     xml, start = file.source, file.lines.offset(Position(line, 0))
     end = start + len(file.lines.line(line))
     begins = [piece[2] for piece in file.places.pieces if start <= piece[0] < end]
-    at = xml.rfind("<", 0, begins[0]) if begins else -1
-    return _before(xml, at, rules, reason) if at >= 0 else None
+    offset = xml.rfind("<", 0, begins[0]) if begins else -1
+    return _comment_before(xml, offset, rules, reason) if offset >= 0 else None
 
 
 def before_tag(file: File, diagnostic: Diagnostic, reason: str = "") -> Edit | None:
-    """A comment before the tag, or the text, that a diagnostic of the XML itself is about; None for any other."""
+    """A comment before the tag or the text of a diagnostic about the XML itself; None for any other diagnostic."""
     if not file.is_foreign or diagnostic.rule in UNREADABLE or diagnostic not in file.source_diagnostics:
         return None
     start = diagnostic.span.start
     tags = (tag.span() for tag in re.finditer(_TAG, file.source, re.DOTALL))
-    at = next((begin for begin, end in tags if begin <= start < end), start)
-    return _before(file.source, at, (diagnostic.rule,), reason)
+    offset = next((begin for begin, end in tags if begin <= start < end), start)
+    return _comment_before(file.source, offset, (diagnostic.rule,), reason)
 
 
-def _before(xml: str, at: int, rules: Sequence[str], reason: str) -> Edit:
-    blanks = xml[xml.rfind("\n", 0, at) + 1 : at]
+def _comment_before(xml: str, offset: int, rules: Sequence[str], reason: str) -> Edit:
+    blanks = xml[xml.rfind("\n", 0, offset) + 1 : offset]
     above = "" if not blanks.strip() else _line_end(xml)  # else the comment would belong to what is before it
     after = _line_end(xml) + (blanks if not above else "")
-    return Edit(Span(at, at), f"{above}<!-- {_directive(rules, reason)} -->{after}")
+    return Edit(Span(offset, offset), f"{above}<!-- {_directive(rules, reason)} -->{after}")
 
 
 _TAG = r"""<!--.*?-->|<(?:[^"'>]|"[^"]*"|'[^']*')*>"""
@@ -89,8 +89,8 @@ def _directive(rules: Sequence[str], reason: str) -> str:
 
 
 def _line_end(text: str) -> str:
-    found = LINE_END.search(text)
-    return found[0] if found else "\n"
+    match = LINE_END.search(text)
+    return match[0] if match else "\n"
 
 
 def _runs_on(text: str, kind: int) -> bool:

@@ -37,41 +37,45 @@ class SortedNodes:
         placeholders: those that represent a skill.
         strangers: those that are neither a built-in, a placeholder nor a SubTree, and have no model.
         by_tag: the built-ins, by their tag.
-        by_flow: the nodes of which it is known what they do, by their flow.
+        by_flow: the nodes with a known flow, by that.
     """
 
     def __init__(self, nodes: tuple[ResolvedNode, ...]) -> None:
         self.all: Final = nodes
-        self.given: Final = [seen for seen in nodes if seen.node.attributes]
+        self.given: Final = [resolved for resolved in nodes if resolved.node.attributes]
         self.marked: Final = [
-            seen for seen in self.given if any(not pair.key.raw[:1].isalpha() for pair in seen.node.attributes)
+            resolved
+            for resolved in self.given
+            if any(not pair.key.raw[:1].isalpha() for pair in resolved.node.attributes)
         ]
-        self.demanding: Final = [seen for seen in nodes if seen.node.clauses]
-        self.named: Final = [seen for seen in nodes if seen.name is not None]
-        self.categorized: Final = [seen for seen in nodes if seen.node.category is not None]
-        self.subtrees: Final = [seen for seen in nodes if seen.is_subtree]
-        self.placeholders: Final = [seen for seen in nodes if seen.is_placeholder]
+        self.demanding: Final = [resolved for resolved in nodes if resolved.node.clauses]
+        self.named: Final = [resolved for resolved in nodes if resolved.name is not None]
+        self.categorized: Final = [resolved for resolved in nodes if resolved.node.category is not None]
+        self.subtrees: Final = [resolved for resolved in nodes if resolved.is_subtree]
+        self.placeholders: Final = [resolved for resolved in nodes if resolved.is_placeholder]
         self.strangers: Final = [
-            seen
-            for seen in nodes
-            if seen.kind is None and seen.of_model is None and not (seen.is_placeholder or seen.is_subtree)
+            resolved
+            for resolved in nodes
+            if resolved.kind is None
+            and resolved.of_model is None
+            and not (resolved.is_placeholder or resolved.is_subtree)
         ]
         self.by_tag: Final[dict[str, list[ResolvedNode]]] = {}
         self.by_flow: Final[dict[Flow, list[ResolvedNode]]] = {}
-        for seen in nodes:
-            if seen.kind is not None:
-                self.by_tag.setdefault(seen.kind.tag, []).append(seen)
-            if seen.flow:
-                self.by_flow.setdefault(seen.flow, []).append(seen)
+        for resolved in nodes:
+            if resolved.kind is not None:
+                self.by_tag.setdefault(resolved.kind.tag, []).append(resolved)
+            if resolved.flow:
+                self.by_flow.setdefault(resolved.flow, []).append(resolved)
 
     def values(self) -> Iterator[tuple[ResolvedNode, Pair, Word]]:
         """The attributes that have a value."""
-        for seen in self.given:
-            yield from ((seen, pair, pair.value) for pair in seen.node.attributes if pair.value is not None)
+        for resolved in self.given:
+            yield from ((resolved, pair, pair.value) for pair in resolved.node.attributes if pair.value is not None)
 
     def of_flow(self, *flows: Flow) -> list[ResolvedNode]:
         """The nodes of these flows, flow by flow."""
-        return [seen for flow in flows for seen in self.by_flow.get(flow, ())]
+        return [resolved for flow in flows for resolved in self.by_flow.get(flow, ())]
 
 
 NO_NODES: Final = SortedNodes(())

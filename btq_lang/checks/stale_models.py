@@ -1,4 +1,4 @@
-"""Models that say otherwise of a node than the C++ that registers it."""
+"""Models that differ from the C++ that registers their node."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from btq_lang.workspace.symbols import may_be_one_type
 
 
 def stale_model(view: View) -> Iterator[Diagnostic]:
-    """A model with another category, or with a port that the C++ of its node has not, or has otherwise."""
+    """A model with another category than in C++, or with a port that the C++ lacks or declares differently."""
     for symbol, other, _ in view.repeated(Kind.MODEL):
         model, of_code = symbol.target, other.symbol.target
         is_cpp = view.store.ask(lookups.is_cpp, other.path)
@@ -34,11 +34,11 @@ def stale_model(view: View) -> Iterator[Diagnostic]:
 
 
 def _of_port(view: View, model: Model, port: Port, other: lookups.Declaration) -> Iterator[Diagnostic]:
-    """What is wrong with a port of a model."""
+    """The differences of a port in a model and in C++."""
     of_code = other.symbol.target
     assert isinstance(of_code, Model), "the caller has looked"
     assert port.id is not None, "the caller has looked"
-    ports = {each.id.text: each for each in of_code.ports if each.id is not None}
+    ports = {code_port.id.text: code_port for code_port in of_code.ports if code_port.id is not None}
     in_code, name = ports.get(port.id.text), f"`{port.id.text}`"
     if in_code is None:
         if not view.ask(lookups.is_torn, Kind.MODEL, other.symbol.name):
@@ -46,11 +46,12 @@ def _of_port(view: View, model: Model, port: Port, other: lookups.Declaration) -
         return
     assert in_code.id is not None, "it was looked up by its name"
     related = (Related(Place(in_code.id.span, other.path, other.owner.item), _IN_CPP),)
-    here, there = port.direction, in_code.direction
-    if here.raw != there.raw:
-        fix = replace_fix(f"Replace `{here.raw}` with `{there.raw}`", here.span, there.raw)
-        message = f"the port {name} is an {_DIRECTIONS[here.raw]} in this model, and an {_DIRECTIONS[there.raw]} in C++"
-        yield Diagnostic(_RULE, here.span, message, related, fixes=(fix,))
+    direction, code_direction = port.direction, in_code.direction
+    if direction.raw != code_direction.raw:
+        fix = replace_fix(f"Replace `{direction.raw}` with `{code_direction.raw}`", direction.span, code_direction.raw)
+        in_model, in_cpp = _DIRECTIONS[direction.raw], _DIRECTIONS[code_direction.raw]
+        message = f"the port {name} is an {in_model} in this model, and an {in_cpp} in C++"
+        yield Diagnostic(_RULE, direction.span, message, related, fixes=(fix,))
     if port.type is not None and in_code.type is not None and not may_be_one_type(in_code.type, port.type):
         fix = replace_fix(f"Replace `{port.type.text}` with `{in_code.type.text}`", port.type.span, in_code.type.raw)
         message = f"the type of the port {name} is `{port.type.text}` in this model, and `{in_code.type.text}` in C++"
@@ -60,9 +61,13 @@ def _of_port(view: View, model: Model, port: Port, other: lookups.Declaration) -
 def _unknown(view: View, model: Model, port: Port, other: lookups.Declaration, ports: dict[str, Port]) -> Diagnostic:
     """A port that the C++ does not provide, with the one that may have taken its place."""
     assert port.id is not None, "the caller has looked"
-    written_down = {each.id.text for each in model.ports if each.id is not None}
-    free = [name for name, each in ports.items() if name not in written_down and _is_alike(each, port)]
-    gone = [each.id.text for each in model.ports if each.id is not None and each.id.text not in ports]
+    written_down = {model_port.id.text for model_port in model.ports if model_port.id is not None}
+    free = [name for name, code_port in ports.items() if name not in written_down and _is_alike(code_port, port)]
+    gone = [
+        model_port.id.text
+        for model_port in model.ports
+        if model_port.id is not None and model_port.id.text not in ports
+    ]
     likely = near(port.id.text, free) or (tuple(free) if len(free) == len(gone) == 1 else ())
     fixes = [replace_fix(f"Replace `{port.id.text}` with `{name}`", port.id.span, written(name)) for name in likely]
     fixes.append(replace_fix(f"Remove the port `{port.id.text}`", with_blanks(view.text, port), ""))

@@ -1,4 +1,4 @@
-"""The possible results of a node of which it is known what it does, given those of its children.
+"""The possible results of a node with a known flow, given those of its children.
 
 One invariant: every status that the node returns in any version is included.  A set of statuses is a sum of
 powers of two; a missing or surplus child can return anything.
@@ -48,40 +48,41 @@ def of_kind(kind: NodeKind, node: Node, children: Sequence[int], starting: bool)
 
 
 def _number(kind: NodeKind, node: Node, role: Role) -> int | None:
-    """The literal integer of the port; None if that is not an integer."""
-    value = _written(kind, node, role)
+    """The literal integer of a port; None if the value is anything else."""
+    value = _port_value(kind, node, role)
     text = value.text if value is not None else ""
     return int(text) if text.removeprefix("-").isdecimal() and len(text) < 12 else None
 
 
-def _written(kind: NodeKind, node: Node, role: Role) -> Word | None:
+def _port_value(kind: NodeKind, node: Node, role: Role) -> Word | None:
     port = kind.port_for(role)
     return node.attribute(port.name) if port is not None else None
 
 
 def _in_order(children: Sequence[int], goes_on: int, pauses: bool, starting: bool) -> int:
-    """A sequence goes on after SUCCESS, a fallback after FAILURE.
+    """The results of a node that ticks its children one after the other.
 
-    `pauses`: whether it returns RUNNING between two children that complete at once.
+    Args:
+        goes_on: the status after which it ticks the next child: SUCCESS for a sequence, FAILURE for a fallback.
+        pauses: whether it returns RUNNING between two children that complete at once.
     """
-    found = 0
+    results = 0
     skipped = ANYTHING
     for index, child in enumerate(children):
-        found |= child & (RUNNING | SUCCESS | FAILURE) & ~goes_on
+        results |= child & (RUNNING | SUCCESS | FAILURE) & ~goes_on
         skipped &= child
         if pauses and child & goes_on and index + 1 < len(children):
-            found |= RUNNING
+            results |= RUNNING
             child &= ~goes_on if starting else ANYTHING
         if not child & (goes_on | SKIPPED):
-            return found
+            return results
     # Resumed at a child that was running and is now skipped, it has forgotten that earlier ones were skipped too.
     resumed = not starting and skipped & SKIPPED and any(child & RUNNING for child in children)
     passed = goes_on if resumed or any(child & goes_on for child in children) else 0
-    return found | passed | (skipped & SKIPPED)
+    return results | passed | (skipped & SKIPPED)
 
 
 def _if(results: int, status: int, then: int) -> int:
-    """What follows if a status is possible."""
     return then if results & status else 0
 
 
@@ -93,45 +94,46 @@ def _if_then_else(children: Sequence[int], *_: object) -> int:
     if len(children) not in (2, 3):
         return ANYTHING
     condition, then, otherwise = (*children, FAILURE)[:3]
-    found = condition & RUNNING | _if(condition, SUCCESS, then) | _if(condition, FAILURE, otherwise)
-    return found if not condition & SKIPPED else ANYTHING
+    results = condition & RUNNING | _if(condition, SUCCESS, then) | _if(condition, FAILURE, otherwise)
+    return results if not condition & SKIPPED else ANYTHING
 
 
 def _parallel(children: Sequence[int], kind: NodeKind, node: Node) -> int:
-    """Without thresholds all must succeed and one may fail; with some, any completed child may decide."""
-    found = _any_of(children)
+    """The results of a Parallel: without thresholds all children must succeed, and one failure decides; with some, any
+    completed child may decide."""
+    results = _any_of(children)
     everyone = ANYTHING
     for child in children:
         everyone &= child | _if(child, SKIPPED, SUCCESS)
-    if not found & (SUCCESS | FAILURE | SKIPPED):
-        return found
-    if any(_written(kind, node, role) is not None for role in ("successes", "failures")):
-        return found | SUCCESS | FAILURE
-    return (found & (FAILURE | RUNNING | SKIPPED)) | (everyone & SUCCESS)
+    if not results & (SUCCESS | FAILURE | SKIPPED):
+        return results
+    if any(_port_value(kind, node, role) is not None for role in ("successes", "failures")):
+        return results | SUCCESS | FAILURE
+    return (results & (FAILURE | RUNNING | SKIPPED)) | (everyone & SUCCESS)
 
 
 def _rotate(children: Sequence[int], kind: NodeKind, node: Node) -> int:
-    """One child after the other; without a first one after the last, it fails after that."""
-    found, last = _any_of(children), children[-1]
+    """The results of a node that takes the next child after a failure; unless it wraps, it fails after the last one."""
+    results, last = _any_of(children), children[-1]
     without = _any_of(children[:-1]) | last & ~SUCCESS | _if(last, SUCCESS | SKIPPED, FAILURE)
     goes_round = wraps(kind, node)
-    return found if goes_round else without if goes_round is False else found | without
+    return results if goes_round else without if goes_round is False else results | without
 
 
 def _again(child: int, repeats: int, count: int | None, starting: bool) -> int:
-    """It repeats after SUCCESS or after FAILURE; a count of -1 is unlimited."""
+    """The results of a loop that repeats after SUCCESS or after FAILURE; a count of -1 is unlimited."""
     if count is not None and (count == 0 or count < -1):
         return repeats | SKIPPED
     if count == 1 or not child & repeats:
         return child
-    found = child | RUNNING
+    results = child | RUNNING
     counted = not starting or child & SKIPPED  # a skipped child does not change the count
-    return found if count is None or (count > 0 and counted) else found & ~repeats
+    return results if count is None or (count > 0 and counted) else results & ~repeats
 
 
 def _otherwise(kind: NodeKind, node: Node) -> int:
-    """The result without its child."""
-    port, value = kind.port_for("otherwise"), _written(kind, node, "otherwise")
+    """The result that a node returns instead of its child's."""
+    port, value = kind.port_for("otherwise"), _port_value(kind, node, "otherwise")
     text = value.text if value is not None else port.default if port is not None else None
     return _STATUSES.get(text or "", ANYTHING)
 

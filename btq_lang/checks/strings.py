@@ -51,9 +51,9 @@ def _starts(word: Word) -> list[int]:
     """Where each character of the text begins in the source, and where the last one ends."""
     raw = word.raw
     starts = []
-    at = 1
+    offset = 1
     for _ in word.text:
-        starts.append(word.start + at)
-        pair = raw[at : at + 2]
-        at += 2 if pair == "\r\n" or (pair[:1] == "\\" and pair[1:] and pair[1] in _ESCAPED) else 1
-    return [*starts, word.start + at]
+        starts.append(word.start + offset)
+        pair = raw[offset : offset + 2]
+        offset += 2 if pair == "\r\n" or (pair[:1] == "\\" and pair[1:] and pair[1] in _ESCAPED) else 1
+    return [*starts, word.start + offset]

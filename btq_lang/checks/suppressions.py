@@ -45,25 +45,25 @@ class Suppressions:
     """The comments of a file that silence rules.
 
     Attributes:
-        useless: what is wrong with comments, these and others; spans count from the start of the file.
+        useless: diagnostics about comments; spans count from the start of the file.
     """
 
     def __init__(self, file: File) -> None:
         self._lines = file.lines
-        self._is_btq = not file.is_foreign
+        self._is_btq = file.is_btq
         self._everything: set[int] = set()
         self._silenced: dict[int, set[str]] = {}
         self.useless: list[Diagnostic] = []
-        meant: dict[int, int] = {}  # from lines that are only a comment to the next line that is more
+        target_lines: dict[int, int] = {}  # by each line that is only a comment, the next line that is not
         for token in reversed(file.parsed.tokens):
             if token.kind != COMMENT:
                 continue
             start = file.lines.position(token.start)
             line = start.line
             if not file.lines.line(line)[: start.column].strip():
-                behind = file.lines.position(token.end).line + 1
-                meant[line] = meant.get(behind, behind)
-                line = meant[line]
+                next_line = file.lines.position(token.end).line + 1
+                target_lines[line] = target_lines.get(next_line, next_line)
+                line = target_lines[line]
             self._read(token, line)
 
     def silence(self, diagnostic: Diagnostic) -> bool:
@@ -92,12 +92,12 @@ class Suppressions:
 
 def _include(token: Token) -> Iterator[Diagnostic]:
     """`#include "stations.btq"`, as in C++."""
-    meant = re.fullmatch(r"""#(?:include|import)[ \t]*["'<]?([^"'<>\s]+\.(?:btq|xml))["'>]?[ \t]*;?""", token.text)
-    if meant is not None:
+    match = re.fullmatch(r"""#(?:include|import)[ \t]*["'<]?([^"'<>\s]+\.(?:btq|xml))["'>]?[ \t]*;?""", token.text)
+    if match is not None:
         span = Span(token.start, token.end)
-        written = f"include {quote(meant[1])}"
-        message = f"this is a comment; did you mean `{written}`?"
-        yield Diagnostic("missing-include", span, message, fixes=(write_fix(written, span),), severity=Severity.HINT)
+        line = f"include {quote(match[1])}"
+        message = f"this is a comment; did you mean `{line}`?"
+        yield Diagnostic("missing-include", span, message, fixes=(write_fix(line, span),), severity=Severity.HINT)
 
 
 def _useless(name: str, span: Span) -> Iterator[Diagnostic]:

@@ -12,8 +12,8 @@ from btq_lang.catalog.versions import DEEP_TREES
 from btq_lang.checks import calls, lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.lookups import VisibleMeaning
+from btq_lang.checks.misplaced_children import below, sequence_above
 from btq_lang.checks.missing_ids import missing_id
-from btq_lang.checks.one_parent import below, sequence_above
 from btq_lang.checks.view import View, is_first_tree, near_names
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related, Tag, replace_fix
 from btq_lang.diagnostics.rules import Severity
@@ -35,11 +35,11 @@ _LAST_WINS = "the engine does not report this: it runs the last one that it read
 
 def unknown_tree(view: View) -> Iterator[Diagnostic]:
     """A SubTree, or a Root, whose tree does not exist."""
-    for seen in view.seen.subtrees:
-        word = seen.node.category
-        is_nameless = seen.id is None or seen.id.text == ""
-        if word is not None and is_nameless and not view.is_torn(seen.node.start, seen.node.end):
-            what, pairs = "missing tree of this SubTree", seen.node.attributes
+    for resolved in view.seen.subtrees:
+        word = resolved.node.category
+        is_nameless = resolved.id is None or resolved.id.text == ""
+        if word is not None and is_nameless and not view.is_torn(resolved.node.start, resolved.node.end):
+            what, pairs = "missing tree of this SubTree", resolved.node.attributes
             yield missing_id(view, "unknown-tree", word.span, what, "SubTree", pairs)
     for use in view.uses(Kind.TREE):
         if use.name == "" or view.ask(lookups.is_defined, Kind.TREE, use.name) or view.is_pooled(Kind.TREE, use.name):
@@ -68,7 +68,7 @@ def unknown_tree(view: View) -> Iterator[Diagnostic]:
 
 
 def _nowhere(view: View) -> str:
-    """Where a tree was looked for, for a message."""
+    """The end of a message about an unknown tree: where it was looked for."""
     if view.factory is not None:
         return "; no file of its factory defines it"
     is_pooled = view.is_xml and view.project.pool_of(view.path) is not None
@@ -76,20 +76,20 @@ def _nowhere(view: View) -> str:
 
 
 def nested_too_deep(view: View) -> Iterator[Diagnostic]:
-    """A node deeper than 4.6 reads; what no version reads is reported by the parser."""
+    """A node deeper than 4.6 reads; the parser reports one deeper than any version reads."""
     nodes = view.nodes
     if len(nodes) <= _DEEPEST_OF_4_6 or DEEP_TREES.holds(view.engines[0]):
         return
     levels: dict[int, int] = {}
-    for seen in nodes:
-        level = levels[id(seen)] = 1 if seen.parent is None else levels[id(seen.parent)] + 1
+    for resolved in nodes:
+        level = levels[id(resolved)] = 1 if resolved.parent is None else levels[id(resolved.parent)] + 1
         if level <= _DEEPEST_OF_4_6:
             continue
         pin = f'if you run a later version, set `engine = "{view.target}"` in btq.toml'
         message = f"BehaviorTree.CPP 4.6 reads at most {_DEEPEST_OF_4_6} levels of nodes"
         notes = (OF_ITS_OWN,) if view.is_pinned else (OF_ITS_OWN, pin)
         severity = None if view.is_pinned else Severity.WARNING
-        yield Diagnostic("nested-too-deep", seen.node.head.span, message, notes=notes, severity=severity)
+        yield Diagnostic("nested-too-deep", resolved.node.head.span, message, notes=notes, severity=severity)
         return
 
 
@@ -114,7 +114,7 @@ def recursive_tree(view: View) -> Iterator[Diagnostic]:
     if circle is None or not view.defines_here(Kind.TREE, name):
         return
     places = [(use.name, use.span) for use in view.uses(Kind.TREE)]
-    places += [(seen.id.text, seen.id.span) for seen in view.seen.subtrees if seen.id is not None]
+    places += [(resolved.id.text, resolved.id.span) for resolved in view.seen.subtrees if resolved.id is not None]
     span = next(span for called, span in places if called == circle[1])
     way = " → ".join(f"`{step}`" for step in circle)
     message = f"the tree `{name}` contains itself" + (f": {way}" if len(circle) > 2 else "")
@@ -123,7 +123,7 @@ def recursive_tree(view: View) -> Iterator[Diagnostic]:
 
 
 def unused_tree(view: View) -> Iterator[Diagnostic]:
-    """A tree to which nothing refers, or only such trees, in a file with a mission."""
+    """A tree that the main trees of a mission do not reach: nothing refers to it, or only unreached trees do."""
     name = view.tree_name
     if (
         name is None
@@ -132,7 +132,7 @@ def unused_tree(view: View) -> Iterator[Diagnostic]:
     ):
         return
     mains = view.ask(lookups.main_trees)
-    main = f"main tree{'s are' if len(mains) > 1 else ' is'} {', '.join(f'`{each}`' for each in mains)}"
+    main = f"main tree{'s are' if len(mains) > 1 else ' is'} {', '.join(f'`{tree}`' for tree in mains)}"
     if not view.defines_here(Kind.TREE, name.text):
         return  # another tree of that name counts, which is reported
     users = view.ask(calls.callers, name.text)
@@ -147,7 +147,7 @@ def unused_tree(view: View) -> Iterator[Diagnostic]:
 
 
 def unknown_main_tree(view: View) -> Iterator[Diagnostic]:
-    """Several trees of which none is marked as the mission, reported at the first; or a factory's missing main tree."""
+    """Several trees without a mark of the main one, reported at the first; or a factory's missing main tree."""
     if not view.ask(is_first_tree, view.facts):
         return
     if view.factory is not None:
@@ -256,7 +256,9 @@ def tree_named_like_node(view: View) -> Iterator[Diagnostic]:
         owner = "a built-in node"
     elif model is not None and not _is_subtree_model(model):
         owner, related = "a node", view.declared_at(Kind.MODEL, name.text, "node declared here")
-    elif inside := [seen.id for seen in view.seen.strangers if seen.id is not None and seen.id.text == name.text]:
+    elif inside := [
+        resolved.id for resolved in view.seen.strangers if resolved.id is not None and resolved.id.text == name.text
+    ]:
         owner, related = "a node in it", (Related(Place(inside[0].span), "the node"),)
     else:
         return
@@ -264,19 +266,19 @@ def tree_named_like_node(view: View) -> Iterator[Diagnostic]:
     yield Diagnostic("tree-named-like-node", name.span, message, related)
 
 
-def as_uncreated(view: View, found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """What was found in an item; errors are only warnings if the engine never comes to them."""
+def as_uncreated(view: View, diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+    """The diagnostics of an item; errors become warnings if the engine never reaches their tree."""
     name = view.tree_name.text if view.tree_name is not None else ""
     factory = view.factory
     if factory is None or not view.ask(calls.is_uncreated, name):
-        yield from found
+        yield from diagnostics
         return
     note = f"no main tree of the factory `{factory.name}` reaches `{name}`; the engine would refuse to create it"
-    for each in found:
-        if each.rule in AT_CREATION and each.effective_severity is Severity.ERROR:
-            yield replace(each, severity=Severity.WARNING, notes=(*each.notes, note))
+    for diagnostic in diagnostics:
+        if diagnostic.rule in AT_CREATION and diagnostic.effective_severity is Severity.ERROR:
+            yield replace(diagnostic, severity=Severity.WARNING, notes=(*diagnostic.notes, note))
         else:
-            yield each
+            yield diagnostic
 
 
 def _as_node(use: Use) -> tuple[Fix, ...]:
@@ -289,20 +291,20 @@ def _as_node(use: Use) -> tuple[Fix, ...]:
 
 
 def _main_tree_fix(view: View, name: str) -> Fix:
-    """The fix that names the main tree: in the existing Root, or in a line of its own after the includes."""
-    at, margin = view.ask(lookups.head)
+    """The fix that names the main tree: in the existing Root, or on a line of its own after the includes."""
+    offset, margin = view.ask(lookups.head)
     text = f"{margin}Root {written(name)}\n"
     if (root := view.ask(lookups.root)) is not None:
-        at, text = root, f" {written(name)}"
-    return Fix(f"Make `{name}` the main tree", (FixEdit(Place(Span(at, at), view.path), text),))
+        offset, text = root, f" {written(name)}"
+    return Fix(f"Make `{name}` the main tree", (FixEdit(Place(Span(offset, offset), view.path), text),))
 
 
 def _is_subtree_model(meaning: VisibleMeaning) -> bool:
     return isinstance(meaning.target, Model) and meaning.target.category.raw == "SubTree"
 
 
-# What 4.6.2 and 4.10.0 load in such a tree, and refuse when it is created or ticked.  They refuse at once, and with it
-# all trees of the file: wrong numbers of children, unknown nodes, names that they forbid, an ID that is missing.
+# 4.6.2 and 4.10.0 load a tree with these mistakes, and refuse it when it is created or ticked.  Other mistakes they
+# refuse at once, with all trees of the file: wrong numbers of children, unknown nodes, forbidden names, a missing ID.
 AT_CREATION: Final = frozenset(
     (
         "unknown-port",

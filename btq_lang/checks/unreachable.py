@@ -16,69 +16,69 @@ from btq_lang.workspace.resolved import ResolvedNode
 
 
 def unreachable_child(view: View) -> Iterator[Diagnostic]:
-    """A child that can never run; reported once for all those after one place."""
-    for seen in view.nodes:
-        if len(seen.node.children) < 2:
+    """A child that can never run; reported once for all children after the cause."""
+    for resolved in view.nodes:
+        if len(resolved.node.children) < 2:
             continue
-        flow = seen.flow
+        flow = resolved.flow
         if flow in GOES_ON:
-            found = _behind(view, seen.node.children, GOES_ON[flow])
+            diagnostic = _unreached_after(view, resolved.node.children, GOES_ON[flow])
         elif flow == "try":
-            found = _in_try(view, seen)
+            diagnostic = _in_try(view, resolved)
         elif flow == "choice":
-            found = _by_condition(view, seen)
+            diagnostic = _by_condition(view, resolved)
         elif flow == "recover":
-            found = _behind(view, seen.node.children[:2], FAILURE)
+            diagnostic = _unreached_after(view, resolved.node.children[:2], FAILURE)
         elif flow == "switch":
-            found = _in_switch(seen)
+            diagnostic = _in_switch(resolved)
         else:
             continue
-        if found is not None:
-            yield found
+        if diagnostic is not None:
+            yield diagnostic
 
 
-def _behind(view: View, children: tuple[Node | Verbatim, ...], goes_on: int) -> Diagnostic | None:
-    """The child after one that can only end the node."""
-    known = results(view)
+def _unreached_after(view: View, children: tuple[Node | Verbatim, ...], goes_on: int) -> Diagnostic | None:
+    """The diagnostic for the child after one that always ends its parent."""
+    by_node = results(view)
     for child, following in pairwise(children):
-        if isinstance(child, Node) and not known.get(id(child), UNKNOWN).ever & (goes_on | SKIPPED):
+        if isinstance(child, Node) and not by_node.get(id(child), UNKNOWN).ever & (goes_on | SKIPPED):
             never = "succeeds" if goes_on == SUCCESS else "fails"
             return _unreachable(following, f"{_shown(child)} before it never {never}", child)
     return None
 
 
-def _in_try(view: View, seen: ResolvedNode) -> Diagnostic | None:
-    """The last child of a try, which cleans up after a failure and perhaps after a halt, if it can never run."""
-    *tried, last = seen.node.children
-    found = _behind(view, tuple(tried), SUCCESS)
-    if found is not None or seen.node.attribute("catch_on_halt") is not None:
-        return found
+def _in_try(view: View, resolved: ResolvedNode) -> Diagnostic | None:
+    """The diagnostic for the last child of a try, which cleans up after a failure and perhaps after a halt."""
+    *tried, last = resolved.node.children
+    diagnostic = _unreached_after(view, tuple(tried), SUCCESS)
+    if diagnostic is not None or resolved.node.attribute("catch_on_halt") is not None:
+        return diagnostic
     if any(result(view, child).ever & FAILURE for child in tried):
         return None
     return _unreachable(last, "nothing before it can fail", None)
 
 
-def _by_condition(view: View, seen: ResolvedNode) -> Diagnostic | None:
-    condition, *branches = seen.node.children
-    results = result(view, condition).ever
-    if not isinstance(condition, Node) or not results & (SUCCESS | FAILURE):
+def _by_condition(view: View, resolved: ResolvedNode) -> Diagnostic | None:
+    condition, *branches = resolved.node.children
+    possible = result(view, condition).ever
+    if not isinstance(condition, Node) or not possible & (SUCCESS | FAILURE):
         return None
-    if not results & SUCCESS:
+    if not possible & SUCCESS:
         return _unreachable(branches[0], f"the condition {_shown(condition)} never succeeds", condition)
-    if not results & FAILURE and len(branches) > 1:
+    if not possible & FAILURE and len(branches) > 1:
         return _unreachable(branches[1], f"the condition {_shown(condition)} never fails", condition)
     return None
 
 
-def _in_switch(seen: ResolvedNode) -> Diagnostic | None:
+def _in_switch(resolved: ResolvedNode) -> Diagnostic | None:
     """A case that repeats an earlier one, or that a literal variable does not name."""
-    variable = seen.node.attribute("variable")
+    variable = resolved.node.attribute("variable")
     if variable is None:
-        reason = f"without a `variable` {seen.shown_kind} runs its last child"
-        return _unreachable(seen.node.children[0], reason, None)
+        reason = f"without a `variable` {resolved.shown_kind} runs its last child"
+        return _unreachable(resolved.node.children[0], reason, None)
     first: set[str] = set()
-    for number, child in enumerate(seen.node.children[:-1], 1):
-        case = seen.node.attribute(f"case_{number}")
+    for number, child in enumerate(resolved.node.children[:-1], 1):
+        case = resolved.node.attribute(f"case_{number}")
         if case is None or is_pointer(case.text):
             continue
         if case.text in first:

@@ -1,8 +1,8 @@
 """Entries that are read, or assigned to, where nothing can have set them.
 
-One invariant: a warning is certain but for what C++ does without a port; where the robot's program or a node without a
-model may set an entry, there is a hint at most.  Found here is what is wrong in a tree; what happens to its entries in
-other trees is known by flow.py.
+One invariant: a warning is certain, except for what C++ does without a port.  If the robot's program or a node without
+a model may set an entry, there is a hint at most.  This module looks at one tree; flow.py says what happens to its
+entries in other trees.
 """
 
 from __future__ import annotations
@@ -14,7 +14,8 @@ from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import callers, is_missed
-from btq_lang.checks.entries import EntryMention, handling, mentions
+from btq_lang.checks.entries import EntryMention, handling
+from btq_lang.checks.entries import mentions as mentions_in
 from btq_lang.checks.flow import EntryUse, calls_of, of_program, uses, writes_alone
 from btq_lang.checks.meant_entries import meant_entry
 from btq_lang.checks.misspelt import misspelt_entry
@@ -34,52 +35,70 @@ from btq_lang.workspace.workspace import Workspace
 
 
 def unset_entry(view: View) -> Iterator[Diagnostic]:
-    """What is wrong with the entries of a tree: unset-entry, uncreated-entry."""
+    """The problems with the entries of a tree: unset-entry, uncreated-entry."""
     name = view.tree_name
     if name is None or not view.defines_here(Kind.TREE, name.text):
         return
-    named = view.ask(mentions, view.path, view.facts)
-    found = _found(view, name.text, named, set())
-    if not found or not view.ask(inputs.is_complete):
+    mentions = view.ask(mentions_in, view.path, view.facts)
+    diagnostics = _diagnostics(view, name.text, mentions, set())
+    if not diagnostics or not view.ask(inputs.is_complete):
         return
-    told = _told(view, named)
-    yield from _found(view, name.text, named, told) if told else found
+    reported = _reported_otherwise(view, mentions)
+    yield from _diagnostics(view, name.text, mentions, reported) if reported else diagnostics
 
 
-def _found(view: View, tree: str, named: Sequence[EntryMention], but: set[str]) -> list[Diagnostic]:
-    """What is wrong with entries, except some."""
-    return [*_uncreated(view, tree, named, but), *_unset(view, tree, named, but)]
+def _diagnostics(view: View, tree: str, mentions: Sequence[EntryMention], excluded: set[str]) -> list[Diagnostic]:
+    return [*_uncreated(view, tree, mentions, excluded), *_unset(view, tree, mentions, excluded)]
 
 
-def _told(view: View, named: Sequence[EntryMention]) -> set[str]:
-    """The entries of which another rule tells what is wrong: they are misspelt, or in a script that is."""
+def _reported_otherwise(view: View, mentions: Sequence[EntryMention]) -> set[str]:
+    """The entries that another rule reports: they are misspelt, or in a script with an error."""
     spans: list[Span] = []
-    for each in chain(misspelt_entry(view), meant_entry(view)):
-        spans += (each.span, *(related.place.span for related in each.related))
-    wrong = [each.span for each in script_error(view)]
+    for diagnostic in chain(misspelt_entry(view), meant_entry(view)):
+        spans += (diagnostic.span, *(related.place.span for related in diagnostic.related))
+    wrong = [problem.span for problem in script_error(view)]
     spans += [pair.span for _, pair, _ in view.seen.values() if any(map(pair.span.contains, wrong))]
-    return {each.name for each in named if any(span.touches(each.span) for span in spans)}
+    return {mention.name for mention in mentions if any(span.touches(mention.span) for span in spans)}
 
 
-def _uncreated(view: View, tree: str, named: Sequence[EntryMention], but: set[str]) -> Iterator[Diagnostic]:
+def _uncreated(view: View, tree: str, mentions: Sequence[EntryMention], excluded: set[str]) -> Iterator[Diagnostic]:
     """The first assignment to each entry that nothing creates."""
-    created = {each.name for each in named if each.creates} | but
-    for name, mention in _first([each for each in named if each.in_script and each.writes], created).items():
+    assigning = [
+        mention for mention in mentions if mention.in_script and mention.writes and _is_created_later(mention, mentions)
+    ]
+    later = {mention.name for mention in assigning if view.ask(_is_of_tree_alone, tree, mention.name)}
+    created = ({mention.name for mention in mentions if mention.creates} - later) | excluded
+    writing = [mention for mention in mentions if mention.in_script and mention.writes]
+    for name, mention in _first_mentions(writing, created).items():
         use = view.ask(uses, tree, name)
-        if use & (EntryUse.CREATED | EntryUse.GIVEN | EntryUse.OPEN):
+        is_created = name not in later and use & EntryUse.CREATED
+        if is_created or use & (EntryUse.GIVEN | EntryUse.OPEN):
             continue
-        if use & EntryUse.OUTSIDE and next(each for each in named if each.name == name) is not mention:
+        if use & EntryUse.OUTSIDE and next(other for other in mentions if other.name == name) is not mention:
             continue  # programs set what scripts read first
         is_certain = not use & EntryUse.STRANGE and (not use & EntryUse.OUTSIDE or _is_known_root(view, tree))
-        message = f"a script assigns to `{name}`, which nothing creates"
+        message = f"a script assigns to `{name}`, which nothing creates{' before' * (name in later)}"
         creating, fixes = _creating(view, mention)
         notes = (f"the engine throws when it runs the script; {creating}",)
         severity = None if is_certain else Severity.HINT
         yield Diagnostic("uncreated-entry", mention.span, message, notes=notes, fixes=fixes, severity=severity)
 
 
+def _is_created_later(mention: EntryMention, named: Sequence[EntryMention]) -> bool:
+    """Whether only scripts that run later create an entry, and no port does when the engine creates the tree."""
+    of_name = [each for each in named if each.name == mention.name]
+    creating = [each for each in of_name if each.creates]
+    return (
+        bool(creating)
+        and mention.name.isidentifier()
+        and of_name[0] is mention
+        and all(each.in_script for each in of_name)
+        and all(_runs_first(mention.node, each.node) for each in creating)
+    )
+
+
 def _creating(view: View, mention: EntryMention) -> tuple[str, tuple[Fix, ...]]:
-    """How an entry is created that a script assigns to, and the fix if that is done with another sign."""
+    """The note on how to create the entry that a script assigns to, and the fix if another sign does it."""
     from btq_lang.syntax.script.tree import Assign  # few scripts assign to what nothing creates
 
     pairs = [pair for pair in mention.node.node.attributes if pair.span.contains(mention.span)]
@@ -91,26 +110,32 @@ def _creating(view: View, mention: EntryMention) -> tuple[str, tuple[Fix, ...]]:
             target, assigned = statement.target, script.text[statement.value.start : statement.value.end]
             if in_source(value, Span(target.start, target.end)) != mention.span:
                 continue
-            at = script.text.index("=", target.end)
-            fix = replace_fix("Write `:=`", in_source(value, Span(at, at + 1)), ":=")
+            offset = script.text.index("=", target.end)
+            fix = replace_fix("Write `:=`", in_source(value, Span(offset, offset + 1)), ":=")
             return f"write `{mention.name} := {assigned}`", (fix,)
     return f"create the entry before: `{mention.name} := …`", ()
 
 
-def _unset(view: View, tree: str, named: Sequence[EntryMention], but: set[str]) -> Iterator[Diagnostic]:
+def _unset(view: View, tree: str, mentions: Sequence[EntryMention], excluded: set[str]) -> Iterator[Diagnostic]:
     """The first reading of each entry that nothing writes."""
     outside: list[EntryMention] = []
-    for name, mention in _first([each for each in named if _reads(each)], but).items():
+    for name, mention in _first_mentions([mention for mention in mentions if _reads(mention)], excluded).items():
         use = view.ask(uses, tree, name) if name.isidentifier() else EntryUse.OPEN
         if use & (EntryUse.GIVEN | EntryUse.OPEN):
             continue
         if use & EntryUse.WRITTEN:
             if not view.ask(callers, tree) and view.ask(_is_before_all, tree, name):
                 outside.append(mention)
+            elif not use & (EntryUse.OUTSIDE | EntryUse.STRANGE) and _is_too_early(view, tree, mention):
+                yield _too_early(mention, mentions)
             continue
         if not use & EntryUse.READ:
             continue  # trees get it that do not read it
-        writers = [seen for seen in view.seen.subtrees if seen.id and view.ask(writes_alone, tree, seen.id.text, name)]
+        writers = [
+            resolved
+            for resolved in view.seen.subtrees
+            if resolved.id and view.ask(writes_alone, tree, resolved.id.text, name)
+        ]
         if writers:
             yield _lost(view, mention, writers, use)
         elif use & EntryUse.OUTSIDE:
@@ -120,20 +145,39 @@ def _unset(view: View, tree: str, named: Sequence[EntryMention], but: set[str]) 
         elif not use & EntryUse.STRANGE and view.ask(_needs, tree, name):
             yield _not_given(view, tree, mention)
     of_program = view.ask(lookups.set_in_cpp)
-    outside = [each for each in outside if each.name not in of_program and view.ask(_needs, tree, each.name)]
+    outside = [
+        mention for mention in outside if mention.name not in of_program and view.ask(_needs, tree, mention.name)
+    ]
     if outside and _is_known_root(view, tree):
         yield from _never_set(view, outside)
 
 
 def _lost(view: View, mention: EntryMention, writers: Sequence[ResolvedNode], use: EntryUse) -> Diagnostic:
     """An entry that SubTrees write for themselves."""
-    name, seen = mention.name, writers[0]
-    assert seen.id is not None, "its tree is known"
-    message = f"nothing writes `{name}`, which is read here: `{seen.id.text}` writes an entry of its own"
-    related = (Related(Place(seen.node.head.span), f"does not pass on `{name}`"),)
-    fixes = adding_fix(view, seen.node, f"Pass on `{name}`", f"{written(name)} = {{{name}}}")
+    name, resolved = mention.name, writers[0]
+    assert resolved.id is not None, "its tree is known"
+    message = f"nothing writes `{name}`, which is read here: `{resolved.id.text}` writes an entry of its own"
+    related = (Related(Place(resolved.node.head.span), f"does not pass on `{name}`"),)
+    fixes = adding_fix(view, resolved.node, f"Pass on `{name}`", f"{written(name)} = {{{name}}}")
     severity = Severity.HINT if use & EntryUse.STRANGE else None
     return Diagnostic("unset-entry", mention.span, message, related, fixes=fixes, severity=severity)
+
+
+def _is_too_early(view: View, tree: str, mention: EntryMention) -> bool:
+    """Whether a node surely reads an entry of its tree alone before the tree writes it."""
+    name = mention.name
+    if mention.in_script or not _is_needed(view, mention) or not view.ask(_is_before_all, tree, name):
+        return False
+    of_tree = [each for each in view.ask(mentions_in, view.path, view.facts) if each.name == name]
+    return all(_runs_first(mention.node, each.node) for each in of_tree if each.writes)
+
+
+def _too_early(mention: EntryMention, named: Sequence[EntryMention]) -> Diagnostic:
+    """An entry that is written only after it is read."""
+    message = f"nothing writes `{mention.name}` before it is read here"
+    writer = next(each for each in named if each.name == mention.name and each.writes)
+    related = (Related(Place(writer.node.node.head.span), "writes it, but runs later"),)
+    return Diagnostic("unset-entry", mention.span, message, related)
 
 
 def _not_given(view: View, tree: str, mention: EntryMention) -> Diagnostic:
@@ -150,39 +194,43 @@ def _runs_without(store: Store[Workspace], viewpoint: str, tree: str, name: str)
     return view.declared_at(Kind.TREE, caller, f"runs `{tree}`") if caller is not None else ()
 
 
-def _never_set(view: View, named: Sequence[EntryMention]) -> Iterator[Diagnostic]:
-    """Entries of the root blackboard: a warning each if it is known what the program sets; else a hint for all."""
+def _never_set(view: View, mentions: Sequence[EntryMention]) -> Iterator[Diagnostic]:
+    """The diagnostics for entries of the root blackboard: a warning for each if the entries that the program sets are
+    known; else one hint for all."""
     if view.ask(lookups.outside_entries):
-        for each in named:
-            message = f"nothing writes `{each.name}` before it is read here, and bt_navigator does not set it"
-            yield Diagnostic("unset-entry", each.span, message)
+        for mention in mentions:
+            message = f"nothing writes `{mention.name}` before it is read here, and bt_navigator does not set it"
+            yield Diagnostic("unset-entry", mention.span, message)
         return
-    names = ", ".join(f"`{each.name}`" for each in named[:_MOST]) + (" …" if len(named) > _MOST else "")
-    them = "it is" if len(named) == 1 else "they are"
-    message = f"nothing here writes {names} before {them} read"
+    names = ", ".join(f"`{mention.name}`" for mention in mentions[:_MOST]) + (" …" if len(mentions) > _MOST else "")
+    they_are = "it is" if len(mentions) == 1 else "they are"
+    message = f"nothing here writes {names} before {they_are} read"
     notes = (
         "ignore this where the robot's program sets the entry"
-        if len(named) == 1
+        if len(mentions) == 1
         else "ignore this for those that the robot's program sets",
-        *_not_written(view, named),
+        *_not_written(view, mentions),
     )
-    related = tuple([Related(Place(each.span), f"`{each.name}`") for each in named[1:_MOST]])
-    yield Diagnostic("unset-entry", named[0].span, message, related, notes, severity=Severity.HINT)
+    related = tuple([Related(Place(mention.span), f"`{mention.name}`") for mention in mentions[1:_MOST]])
+    yield Diagnostic("unset-entry", mentions[0].span, message, related, notes, severity=Severity.HINT)
 
 
-def _not_written(view: View, named: Sequence[EntryMention]) -> Iterator[str]:
-    """What in the tree was probably meant to write the entries: one with a similar name, or an input."""
-    of_tree = view.ask(mentions, view.path, view.facts)
-    read = {each.name for each in of_tree if each.reads or each.node.is_subtree}
-    written_only = [each.name for each in of_tree if each.writes and each.name not in read]
-    for each in named:
-        if likely := near(each.name, written_only, 1):
+def _not_written(view: View, mentions: Sequence[EntryMention]) -> Iterator[str]:
+    """The notes about what in the tree was meant to write the entries: a similar name, or an input."""
+    of_tree = view.ask(mentions_in, view.path, view.facts)
+    read = {mention.name for mention in of_tree if mention.reads or mention.node.is_subtree}
+    written_only = [mention.name for mention in of_tree if mention.writes and mention.name not in read]
+    for mention in mentions:
+        if likely := near(mention.name, written_only, 1):
             yield f"did you mean `{likely[0]}`, which a node writes?"
         elif (
-            not each.in_script and each.node.of_model is not None and sum(each.name == one.name for one in of_tree) > 1
+            not mention.in_script
+            and mention.node.of_model is not None
+            and sum(mention.name == other.name for other in of_tree) > 1
         ):
-            port = next(pair.key.text for pair in each.node.node.attributes if pair.span.contains(each.span))
-            yield f"if `{each.node.node.head.text}` writes `{each.name}`, its model declares `{port}` as an output"
+            node = mention.node.node
+            port = next(pair.key.text for pair in node.attributes if pair.span.contains(mention.span))
+            yield f"if `{node.head.text}` writes `{mention.name}`, its model declares `{port}` as an output"
 
 
 def _reads(mention: EntryMention) -> bool:
@@ -192,20 +240,20 @@ def _reads(mention: EntryMention) -> bool:
 
 @on_circle(False)
 def _needs(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
-    """Whether a node in a tree, or in those that get the entry from it, cannot do without its value."""
+    """Whether a node in a tree, or in the trees that get the entry from it, needs its value."""
     view = View(store, viewpoint)
-    found = view.ask(inputs.definition, Kind.TREE, tree)
-    named = view.ask(mentions, *found) if found is not None else ()
-    if any(each.name == name and not each.node.is_subtree and _is_needed(view, each) for each in named):
+    definition = view.ask(inputs.definition, Kind.TREE, tree)
+    mentions = view.ask(mentions_in, *definition) if definition is not None else ()
+    if any(mention.name == name and not mention.node.is_subtree and _is_needed(view, mention) for mention in mentions):
         return True
     calls = view.ask(handling, tree).calls
     below = {(call.tree, port) for call in calls for port, passed in call.given.items() if passed == name}
     below |= {(call.tree, name) for call in calls if call.passed(name) == name}
-    return any(view.ask(_needs, *each) for each in sorted(below))
+    return any(view.ask(_needs, *entry) for entry in sorted(below))
 
 
 def _is_needed(view: View, mention: EntryMention) -> bool:
-    """Whether a node cannot do without the value of an entry."""
+    """Whether the node of a mention needs the value of the entry."""
     if mention.in_script or mention.node.kind is not None:
         return True
     pairs = [pair for pair in mention.node.node.attributes if pair.value is not None and is_pointer(pair.value.text)]
@@ -217,69 +265,81 @@ def _is_needed(view: View, mention: EntryMention) -> bool:
     return any(port is not None and port.required for port in ports)
 
 
-def _first(named: Sequence[EntryMention], but: set[str]) -> dict[str, EntryMention]:
+def _first_mentions(mentions: Sequence[EntryMention], excluded: set[str]) -> dict[str, EntryMention]:
     """The first mention of each name."""
-    found: dict[str, EntryMention] = {}
-    for each in named:
-        if each.name not in but:
-            found.setdefault(each.name, each)
-    return found
+    by_name: dict[str, EntryMention] = {}
+    for mention in mentions:
+        if mention.name not in excluded:
+            by_name.setdefault(mention.name, mention)
+    return by_name
 
 
 def _is_before_all(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
     """Whether a tree reads an entry of the root blackboard before it writes it: at an earlier child of one Sequence."""
     view = View(store, viewpoint)
-    found = view.ask(inputs.definition, Kind.TREE, tree)
-    if found is None or view.ask(of_program, name) & EntryUse.WRITTEN:
+    definition = view.ask(inputs.definition, Kind.TREE, tree)
+    if definition is None or not view.ask(_is_of_tree_alone, tree, name):
         return False
-    named = [each for each in view.ask(mentions, *found) if each.name == name]
-    own = view.ask(handling, tree)
-    if any(call.passed(name) is not None or name in call.given.values() for call in own.calls) or name in own.named:
-        return False
-    first, others = named[0], [each for each in named if each.writes]
-    is_read_first = first.reads and not first.writes and bool(others)
-    return is_read_first and all(_is_earlier(first.node, each.node) for each in others)
+    mentions = [mention for mention in view.ask(mentions_in, *definition) if mention.name == name]
+    first, writers = mentions[0], [mention for mention in mentions if mention.writes]
+    is_read_first = first.reads and not first.writes and bool(writers)
+    return is_read_first and all(_is_earlier(first.node, mention.node) for mention in writers)
 
 
-def _is_earlier(seen: ResolvedNode, other: ResolvedNode) -> bool:
+def _is_of_tree_alone(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
+    """Whether no other tree gets an entry from a tree or gives it to it, nor the program."""
+    view = View(store, viewpoint)
+    handled = view.ask(handling, tree)
+    if view.ask(of_program, name) & EntryUse.WRITTEN or name in handled.named:
+        return False
+    if any(call.passed(name) is not None or name in call.given.values() for call in handled.calls):
+        return False
+    return not any(call.passed(name) is not None or name in call.values for _, call in calls_of(view, tree))
+
+
+def _is_earlier(resolved: ResolvedNode, other: ResolvedNode) -> bool:
     """Whether one node ends before another begins, whenever both run: no node above them begins again."""
-    above = [*_above(other)]
-    shared = [each for each in _above(seen) if each in above]
+    above = [*other.ancestors()]
+    shared = [ancestor for ancestor in resolved.ancestors() if ancestor in above]
     return (
-        seen is not other
+        resolved is not other
         and bool(shared)
         and shared[0].flow == "sequence"
-        and all(each.flow in ("sequence", "fallback") for each in shared)
-        and seen not in above
-        and other not in _above(seen)
+        and all(ancestor.flow in ("sequence", "fallback") for ancestor in shared)
+        and resolved not in above
+        and other not in resolved.ancestors()
     )
 
 
-def _above(seen: ResolvedNode) -> Iterator[ResolvedNode]:
-    while seen.parent is not None:
-        seen = seen.parent
-        yield seen
+def _runs_first(resolved: ResolvedNode, other: ResolvedNode) -> bool:
+    """Whether one node has run whenever another begins: it is below nothing but Sequences, and nothing skips it."""
+    if not _is_earlier(resolved, other):
+        return False
+    above = [*other.ancestors()]
+    own = (resolved, *(each for each in resolved.ancestors() if each not in above))
+    is_skipped = any(pair.key.text[:1] == "_" for each in own for pair in each.node.attributes)
+    return not is_skipped and all(each.flow == "sequence" for each in own[1:])
 
 
 def _is_known_root(view: View, tree: str) -> bool:
-    """Whether the root blackboard is that of a main tree, which runs a tree: no file that is not in scope runs it and
-    gives it entries."""
+    """Whether a known main tree has the root blackboard and runs a tree: no file out of scope runs that tree and gives
+    it entries."""
     mains = view.ask(lookups.main_trees) or ((view.main_tree,) if view.main_tree is not None else ())
     if not mains or view.ask(is_missed, tree):
         return False
     is_alone = not view.ask(inputs.is_included) and not any(
-        view.ask(lookups.is_run_elsewhere, each) for each in (*mains, tree)
+        view.ask(lookups.is_run_elsewhere, other) for other in (*mains, tree)
     )
     return view.factory is not None or is_alone
 
 
 @on_circle(True)
 def _is_passed(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
-    """Whether a tree above names the entry that it passes down, and so is where its fault is found."""
+    """Whether a tree above names the entry that it passes down; a mistake is then reported there."""
     for caller, call in calls_of(View(store, viewpoint), tree):
         if name in call.given or store.ask(_is_passed, viewpoint, caller, name):
             return True
-        if any(each.name == name for each in store.ask(handling, viewpoint, caller).touches):
+        if any(touch.name == name for touch in store.ask(handling, viewpoint, caller).touches):
             return True
     return False
 

@@ -16,7 +16,8 @@ from btq_lang.workspace.file import Signs
 
 
 def version_3_file(view: View) -> Iterator[Diagnostic]:
-    """What says that a file is for version 3, once: all else that version 4 refuses in it follows."""
+    """A file for version 3, reported once with its words of that version; what version 4 refuses in it follows from
+    that."""
     words, project = view.ask(old_words), view.project
     if not words or project.written_for:
         return
@@ -28,7 +29,7 @@ def version_3_file(view: View) -> Iterator[Diagnostic]:
     elif distribution is not None:
         declared = f", but {distribution.title()} has {ENGINES[distribution]}"
     message = f"this file is for version 3 of the engine: it has {shown}{declared}"
-    is_refused = view.ask(is_for_version_3)  # else a version 4 loads it, and takes it otherwise
+    is_refused = view.ask(is_for_version_3)  # else version 4 loads it, with another meaning
     instead = (
         f"`btq check --target {DEFAULT_VERSION}` finds what version 4 refuses or takes otherwise, and `btq import` "
         "translates the file"
@@ -43,16 +44,20 @@ def version_3_file(view: View) -> Iterator[Diagnostic]:
     yield Diagnostic("version-3-file", _root(view), message, notes=notes, severity=severity)
 
 
-def refuses(found: Iterable[Diagnostic], signs: Signs | None) -> bool:
-    """Whether version 3 refuses several things in a file that version 4 takes, or one if nothing but the file's own
-    declaration says that it is for version 3; its own words say that it is for it."""
+def refuses(diagnostics: Iterable[Diagnostic], signs: Signs | None) -> bool:
+    """Whether version 3 refuses several things in a file that version 4 takes; one is enough if only the file's own
+    declaration names version 3.  A file with words of version 3 is for that version."""
     is_declared = signs is not None and signs.is_new and signs.format == VERSION_3[:1]
-    rules = [each.rule for each in found if each.effective_severity is Severity.ERROR or each.rule == _OLD_WORD]
+    rules = [
+        diagnostic.rule
+        for diagnostic in diagnostics
+        if diagnostic.effective_severity is Severity.ERROR or diagnostic.rule == _OLD_WORD
+    ]
     return _OLD_WORD not in rules and sum(rule in _OF_VERSION_4 for rule in rules) > (not is_declared)
 
 
 def version_4_file(view: View) -> Diagnostic:
-    """What says that a file is for version 4, in place of all that version 3 refuses in it; the item is its Root."""
+    """The diagnostic for a file for version 4, in place of all that version 3 refuses in it; the item is its Root."""
     distribution = view.ask(lookups.distribution)
     declared = f"btq.toml names {view.project.target}"
     if distribution is not None and not view.project.pinned:

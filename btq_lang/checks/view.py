@@ -1,7 +1,7 @@
 """What a check sees: one item in the scope of a viewpoint, with the look-ups that many checks need.
 
-It decides nothing and caches nothing: every result comes from the query store.  A look-up that only one rule needs does
-not belong here.
+A view decides nothing and caches nothing: every result comes from the query store.  A look-up that only one rule needs
+does not belong here.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ class View:
 
     @property
     def head(self) -> Span:
-        """Where a diagnostic about the whole item points: to the name of a tree or the path of an include, if there is
+        """The span of a diagnostic about the whole item: the name of a tree or the path of an include, if there is
         one."""
         word = self.item.path if isinstance(self.item, Include) else self.tree_name
         return word.span if word is not None else Span(self.item.start, self.item.end)
@@ -133,13 +133,13 @@ class View:
     def is_torn(self, start: int, end: int) -> bool:
         """Whether something could not be read that begins between two offsets of the item, both included."""
         starts = self.ask(_torn_places, self.facts)
-        at = bisect_left(starts, start)
-        return at < len(starts) and starts[at] <= end
+        index = bisect_left(starts, start)
+        return index < len(starts) and starts[index] <= end
 
     def node_before(self, offset: int) -> ResolvedNode | None:
         """The last node that begins before an offset of the item."""
-        at = bisect_left(self.nodes, offset, key=lambda seen: seen.node.start)
-        return self.nodes[at - 1] if at else None
+        index = bisect_left(self.nodes, offset, key=lambda resolved: resolved.node.start)
+        return self.nodes[index - 1] if index else None
 
     @property
     def is_main(self) -> bool:
@@ -162,14 +162,14 @@ class View:
         return self.is_xml and self.ask(lookups.is_pooled, kind, name)
 
     def declared_at(self, kind: Kind, name: str, message: str) -> tuple[Related, ...]:
-        """The place where a name is defined, to be shown beside a diagnostic."""
+        """The definition of a name as a related place."""
         declaration = self.ask(lookups.declaration, kind, name)
         return (Related(declaration.place, message),) if declaration is not None else ()
 
     def defines_here(self, kind: Kind, name: str) -> bool:
         """Whether the item has the definition of a name that counts."""
-        found = self.ask(inputs.definition, kind, name)
-        return found is not None and found[1] is self.facts
+        definition = self.ask(inputs.definition, kind, name)
+        return definition is not None and definition[1] is self.facts
 
     def repeated(self, *kinds: Kind) -> Iterator[tuple[Symbol, Declaration, bool]]:
         """The names that the item and another one define, with that definition, and whether it is the one that takes
@@ -187,8 +187,12 @@ class View:
         counts and the other one."""
         if not isinstance(self.item, Include):
             return []
-        found = self.ask(lookups.clashes)
-        return [(first, second) for at, first, second in found if at is self.facts and second.symbol.kind in kinds]
+        collisions = self.ask(lookups.clashes)
+        return [
+            (first, second)
+            for include, first, second in collisions
+            if include is self.facts and second.symbol.kind in kinds
+        ]
 
     def seen_in(self, path: str, tree: Facts) -> SortedNodes:
         """The nodes of a tree of any file in scope, sorted; empty for any other item."""
@@ -199,7 +203,7 @@ class View:
     @property
     def is_xml(self) -> bool:
         """Whether the file is XML that the engine loads as it is, without a build."""
-        return self.ask(lookups.is_foreign)
+        return self.ask(lookups.is_xml)
 
     @property
     def is_read(self) -> bool:
@@ -223,7 +227,7 @@ class View:
 
     @property
     def is_pinned(self) -> bool:
-        """Whether the file is for other versions than all that are known."""
+        """Whether the file is for particular versions, and not for all known ones."""
         return self.engines != VERSIONS
 
     @property
@@ -233,7 +237,7 @@ class View:
 
     @property
     def factory(self) -> Factory | None:
-        """The factory that the file is looked at in; None: the file is one of its own."""
+        """The factory in whose scope the file is checked; None if it is checked by itself."""
         return self.store.ask(inputs.factory)
 
     @property
@@ -248,7 +252,7 @@ class View:
         return f"`<{kind.tag}>`" if self.is_xml and kind is not None else f"`{symbol}`"
 
     def pin_note(self, accepts: Callable[[str], bool]) -> tuple[str, ...]:
-        """A note for XML that only newer versions of the engine refuse: how to say that an older one runs.
+        """The note for XML that only newer versions of the engine refuse: how to name an older one.
 
         Args:
             accepts: whether a version accepts it.
@@ -263,7 +267,7 @@ class View:
         return self.store.ask(_script, text)
 
     def constraints(self, requirement: Requirement) -> tuple[tuple[Constraint, bool], ...]:
-        """What follows SuccessIf and FailureIf in a description, and whether it is more than prose."""
+        """The constraints after SuccessIf and FailureIf in a description, each with whether a tool can check it."""
         if requirement.text is None or requirement.clauses:
             return ()
         from btq_lang.requirements.constraints import (  # requirements with clauses need none of it
@@ -274,14 +278,20 @@ class View:
         def is_name(word: str) -> bool:
             return self.ask(lookups.is_node_name, word)
 
-        return tuple([(each, can_be_checked(each.text, is_name)) for each in constraints(requirement.text)])
+        return tuple(
+            [(constraint, can_be_checked(constraint.text, is_name)) for constraint in constraints(requirement.text)]
+        )
 
 
-def ports_beside(view: View, seen: ResolvedNode) -> tuple[Port, ...]:
+def ports_beside(view: View, resolved: ResolvedNode) -> tuple[Port, ...]:
     """The ports that the model of a node declares, or the tree of a SubTree; not those of a built-in."""
-    if seen.is_subtree:
-        return declared_ports(view, seen.node.id.text) if seen.node.id is not None else ()
-    model = view.ask(lookups.meaning, Kind.MODEL, seen.id.text) if seen.is_defined and seen.id is not None else None
+    if resolved.is_subtree:
+        return declared_ports(view, resolved.node.id.text) if resolved.node.id is not None else ()
+    model = (
+        view.ask(lookups.meaning, Kind.MODEL, resolved.id.text)
+        if resolved.is_defined and resolved.id is not None
+        else None
+    )
     return model.ports if model is not None else ()
 
 
@@ -294,12 +304,12 @@ def declared_ports(view: View, name: str) -> tuple[Port, ...]:
     return ()
 
 
-def port_of(view: View, seen: ResolvedNode, name: str) -> PortKind | None:
+def port_of(view: View, resolved: ResolvedNode, name: str) -> PortKind | None:
     """A node's port of a name; None if nothing declares it."""
-    if seen.kind is not None:
-        builtin = seen.kind.port(name)
+    if resolved.kind is not None:
+        builtin = resolved.kind.port(name)
         return of_version(builtin, view.target) if builtin is not None else None
-    port = port_named(ports_beside(view, seen), name)
+    port = port_named(ports_beside(view, resolved), name)
     return as_kind(port) if port is not None else None
 
 
@@ -314,7 +324,7 @@ def misspelt_clause(node: Node) -> str | None:
 
 
 def _torn_places(store: Store[Workspace], viewpoint: str, facts: Facts) -> list[int]:
-    """Where in an item something begins that could not be read."""
+    """The offsets in an item at which something begins that could not be read."""
     entry = store.ask(inputs.entry, viewpoint, facts)
     return sorted([problem.span.start for problem in entry.diagnostics])
 

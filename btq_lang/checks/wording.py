@@ -1,7 +1,7 @@
 """The clause for a sentence about a bound: "shall take at most 30 sec" is `takes at most 30 s`.
 
 One invariant: there is a result only if the sentence has one number with a unit, one comparison, and no word that could
-change its meaning (and, or, if, per, average …).  Files are not known here; signals are arguments.
+change its meaning (and, or, if, per, average …).  It looks at no files; signals are arguments.
 """
 
 from __future__ import annotations
@@ -23,22 +23,24 @@ def as_clause(sentence: str, *, violates: bool, signals: Mapping[str, Dimension]
     """
     sentence = " ".join(sentence.split())
     words = frozenset(_WORD.findall(sentence.lower()))
-    found = _bound_pattern().search(sentence)
-    if found is None or len(_NUMBER.findall(sentence)) != 1 or words & _QUALIFIERS:
+    match = _bound_pattern().search(sentence)
+    if match is None or len(_NUMBER.findall(sentence)) != 1 or words & _QUALIFIERS:
         return None
-    comparison = found["comparison"].lower()
+    comparison = match["comparison"].lower()
     relation = _COMPARISONS[comparison]
-    for turned in (found["negation"] is not None, violates):
+    for turned in (match["negation"] is not None, violates):
         relation = _OPPOSITE[relation] if turned else relation
-    if found["unit"].lower() in _TRIES:
-        counts = found["number"].isdecimal() and relation in ("<=", "<")
-        return f"tries {_BOUNDS[relation]} {found['number']}" if counts else None
-    unit = parse_unit(found["unit"])
+    if match["unit"].lower() in _TRIES:
+        counts = match["number"].isdecimal() and relation in ("<=", "<")
+        return f"tries {_BOUNDS[relation]} {match['number']}" if counts else None
+    unit = parse_unit(match["unit"])
     if unit is None:
         return None
-    quantity = f"{found['number']} {unit.symbol}"
+    quantity = f"{match['number']} {unit.symbol}"
     if unit.dimension != TIME:
-        return _measured(words, relation, quantity, [name for name, of in signals.items() if of == unit.dimension])
+        return _measured(
+            words, relation, quantity, [name for name, dimension in signals.items() if dimension == unit.dimension]
+        )
     if comparison == "within":
         return f"succeeds within {quantity}" if relation == "<=" else None
     is_duration = comparison in ("longer than", "shorter than") or words & _DURATIONS

@@ -1,7 +1,7 @@
 """Which nodes write which blackboard entries, as far as a mission determines it.
 
-One invariant: every node that may write an entry is included; only ports that are declared as inputs are not.  When
-nodes run is not known here.
+One invariant: every node that may write an entry is included; only ports that are declared as inputs are not.  This
+module does not know when nodes run.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Entries(Record):
 def written_keys(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
     """The entries that something in scope or its program may write, without their `@`."""
     outside = [name for name, direction in store.ask(lookups.outside_entries, viewpoint) if direction != "input"]
-    return frozenset(outside).union(*[each.written for each in store.ask(all_entries, viewpoint)])
+    return frozenset(outside).union(*[of_tree.written for of_tree in store.ask(all_entries, viewpoint)])
 
 
 @inputs.of_scope
@@ -98,7 +98,7 @@ def _entries_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts
 
 
 def key_of(pointer: str, port: str) -> str:
-    """The entry that a port is given: `{speed}`, or `{=}` for one of the port's own name."""
+    """The entry that a port's value points to: `speed` for `{speed}`, the port's own name for `{=}`."""
     key = pointer[1:-1].strip()
     return port if key == "=" else key
 
@@ -144,9 +144,9 @@ def _writes(view: View, node: ResolvedNode, port: str) -> bool | None:
 
 def _passed_on(node: ResolvedNode, name: str) -> Iterator[str]:
     """The names under which a tree that runs another one passes an entry to that."""
-    given = {pair.key.text: pair.value.text for pair in node.node.attributes if pair.value is not None}
-    yield from (port for port, text in given.items() if is_pointer(text) and key_of(text, port) == name)
-    if remaps_all(node) and name not in given and name[:1] != "_":
+    values = {pair.key.text: pair.value.text for pair in node.node.attributes if pair.value is not None}
+    yield from (port for port, text in values.items() if is_pointer(text) and key_of(text, port) == name)
+    if remaps_all(node) and name not in values and name[:1] != "_":
         yield name
 
 

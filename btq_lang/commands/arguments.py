@@ -9,13 +9,15 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any, Final, NoReturn, TypeAlias
 
-from btq_lang.commands.verdict_formats import FORMATS as VERDICT_FORMATS
+from btq_lang.commands.verify_options import FORMATS as VERDICT_FORMATS
+from btq_lang.commands.verify_options import VerifyOptions
 from btq_lang.evidence.compare import FORMATS as COMPARISON_FORMATS
 from btq_lang.graph import DIRECTIONS
 from btq_lang.graph import FORMATS as GRAPH_FORMATS
 from btq_lang.projects.options import CheckOptions, add_server_options
 from btq_lang.render import FORMATS
 from btq_lang.trace import FORMATS as TRACE_FORMATS
+from btq_lang.util.record import as_dict
 from btq_lang.util.spelling import near
 from btq_lang.util.version import __version__
 
@@ -161,7 +163,7 @@ def _add_check(parser: SuggestingParser) -> None:
     parser.add("--jobs", type=int, metavar="N", help="number of processes; default: chosen by btq")
     _add_config(parser)
     _add_color(parser)
-    parser.set_defaults(**{name: value for name, value in vars(CheckOptions).items() if not name.startswith("_")})
+    _set_defaults(parser, CheckOptions())
 
 
 @_command(
@@ -281,7 +283,6 @@ def _add_verify(parser: SuggestingParser) -> None:
     parser.add(
         "--mission",
         action="append",
-        default=[],
         metavar="FILE",
         help="the mission, may be repeated; default: all of the project, and those of side files beside the logs",
     )
@@ -318,7 +319,6 @@ def _add_verify(parser: SuggestingParser) -> None:
     kept.add_argument(
         "--by",
         action="append",
-        default=[],
         choices=("label", "robot"),
         help="without logs: verdicts for each label or robot; may be repeated",
     )
@@ -331,7 +331,7 @@ def _add_verify(parser: SuggestingParser) -> None:
     )
     robot.add_argument("--robot", metavar="NAME", help="whose logs these are; a bag's topics name the robot themselves")
     robot.add_argument("--robot-by", choices=folders, help="name the robot of each log in the same way")
-    parser.add("--jobs", type=int, default=1, metavar="N", help="judge logs in N processes; default: 1")
+    parser.add("--jobs", type=int, metavar="N", help="judge logs in N processes; default: 1")
     parser.add("--format", choices=VERDICT_FORMATS, help="default: as the file of -o ends, else table")
     parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
     parser.flag("--verbose", "in the table, explain more violations of each clause")
@@ -340,6 +340,7 @@ def _add_verify(parser: SuggestingParser) -> None:
     fails.add_argument("--exit-zero", action="store_true", help="exit 0 also if a requirement is violated")
     _add_config(parser)
     _add_color(parser)
+    _set_defaults(parser, VerifyOptions())
 
 
 @_command(
@@ -545,6 +546,15 @@ def _add_evidence(parser: SuggestingParser, default: str) -> None:
         help="with each requirement its verdict, last value and history: by logs, of a store, or of a file of"
         f" btq verify --format json; may be repeated; default: {default}",
     )
+
+
+def _set_defaults(parser: SuggestingParser, options: CheckOptions | VerifyOptions) -> None:
+    """Take the defaults of a record for a command's options; argparse appends to lists."""
+    values = as_dict(options)
+    for action in parser._actions:  # argparse has no public access to them
+        if action.option_strings and action.dest in values:
+            value = values[action.dest]
+            action.default = [*value] if isinstance(value, tuple) else value
 
 
 def _add_config(parser: SuggestingParser) -> None:

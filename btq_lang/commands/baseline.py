@@ -1,4 +1,4 @@
-"""`btq check --baseline`: findings that a team knows already, in a file, and what is new beside them.
+"""`btq check --baseline`: a file of findings that a team knows already, and the new findings.
 
     {"format": 1, "tool": "btq",
      "findings": [{"path": "missions/lab.btq", "rule": "unknown-node", "fingerprint": "5783b43235c1b533", "count": 2}]}
@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import json
 import os
-import sys
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
@@ -23,6 +22,7 @@ from btq_lang.workspace.loader import LoadProblem, absolute, read, shown, write_
 
 if TYPE_CHECKING:
     from btq_lang.projects.files import FileGroup
+    from btq_lang.projects.messages import CommandOutput
     from btq_lang.projects.options import CheckOptions
     from btq_lang.render import Finding
 
@@ -31,11 +31,15 @@ if TYPE_CHECKING:
 
 
 def compared(
-    findings: Sequence[Finding], groups: Iterable[FileGroup], options: CheckOptions, is_whole: bool
+    findings: Sequence[Finding],
+    groups: Iterable[FileGroup],
+    options: CheckOptions,
+    messages: CommandOutput,
+    is_whole: bool,
 ) -> tuple[list[Finding], int, tuple[LoadProblem, ...]]:
-    """The findings that are not in the baseline of the command line, or else of the project of their file; the number
-    of the others; and what is wrong with baselines.  With `--update-baseline`, they are written first if `is_whole`:
-    all files could be read."""
+    """The findings that are not in the baseline, which the command line or else the project of their file names; the
+    number of the others; and problems with baselines.  With `--update-baseline`, the findings are written first if
+    `is_whole`: all files could be read."""
     checked: dict[str, set[str]] = {}
     for group in groups:
         path = absolute(options.baseline) if options.baseline else group.project.baseline
@@ -44,14 +48,14 @@ def compared(
     problems: list[LoadProblem] = []
     new = [*findings]
     for path, files in checked.items():
-        known, problem = _read(path, options.update_baseline)
+        baseline, problem = _read_baseline(path, options.update_baseline)
         if problem is None and options.update_baseline and is_whole:
-            mine = Counter(_identity(each) for each in findings if _may_be_known(each, files))
-            known, problem = _updated(path, known, mine, files)
+            mine = Counter(_identity(finding) for finding in findings if _may_be_known(finding, files))
+            baseline, problem = _updated_baseline(path, baseline, mine, files, messages)
         if problem is not None:
             problems.append(problem)
         else:
-            new = _without(known, new, files)
+            new = _new_findings(baseline, new, files)
     return new, len(findings) - len(new), tuple(problems)
 
 
@@ -69,56 +73,60 @@ def update_problem(options: CheckOptions) -> str | None:
     return f"--update-baseline needs all findings; leave out {some[0]}" if some else None
 
 
-def _read(path: str, may_be_absent: bool) -> tuple[Known, LoadProblem | None]:
-    known: Known = Counter()
+def _read_baseline(path: str, may_be_absent: bool) -> tuple[Known, LoadProblem | None]:
+    baseline: Known = Counter()
     if not os.path.exists(path):
         message = "does not exist; `btq check --update-baseline` creates it"
-        return known, None if may_be_absent else LoadProblem(path, message)
+        return baseline, None if may_be_absent else LoadProblem(path, message)
     text, problem = read(path)
     try:
         document = json.loads(text or "")
         if document["format"] != 1 or document["tool"] != "btq":
             raise ValueError
-        for each in document["findings"]:
-            there = absolute(os.path.join(os.path.dirname(path), each["path"]))
-            known[there, str(each["rule"]), str(each["fingerprint"])] += int(each["count"])
+        for entry in document["findings"]:
+            full_path = absolute(os.path.join(os.path.dirname(path), entry["path"]))
+            baseline[full_path, str(entry["rule"]), str(entry["fingerprint"])] += int(entry["count"])
     except (ValueError, TypeError, KeyError, RecursionError):
-        return known, problem or LoadProblem(path, "this is not a baseline that `btq check --update-baseline` wrote")
-    return known, None
+        return baseline, problem or LoadProblem(path, "this is not a baseline that `btq check --update-baseline` wrote")
+    return baseline, None
 
 
-def _updated(path: str, known: Known, mine: Known, files: set[str]) -> tuple[Known, LoadProblem | None]:
-    """The baseline after an update; files that were not checked keep their findings as long as they are there."""
-    others = {key: count for key, count in known.items() if key[0] not in files and os.path.exists(key[0])}
-    after = Counter(others) + mine
-    added, gone = (after - known).total(), (known - after).total()
+def _updated_baseline(
+    path: str, before: Known, checked: Known, files: set[str], messages: CommandOutput
+) -> tuple[Known, LoadProblem | None]:
+    """The baseline after an update; files that were not checked keep their findings as long as they exist."""
+    others = {key: count for key, count in before.items() if key[0] not in files and os.path.exists(key[0])}
+    after = Counter(others) + checked
+    added, gone = (after - before).total(), (before - after).total()
     try:
         if added or gone or not os.path.exists(path):
             write_whole(path, _text(after, os.path.dirname(path)))
     except OSError as error:
-        return known, LoadProblem(path, f"cannot be written: {error.strerror}")
-    print(f"{shown(path)}: {added} added, {gone} removed, {after.total() - added} kept", file=sys.stderr)
+        return before, LoadProblem(path, f"cannot be written: {error.strerror}")
+    messages.remark(f"{shown(path)}: {added} added, {gone} removed, {after.total() - added} kept")
     return after, None
 
 
-def _text(known: Known, folder: str) -> str:
+def _text(baseline: Known, folder: str) -> str:
     """The file, with a line for each finding, so that changes of several people can be merged."""
     lines = []
-    for (path, rule, text), count in known.items():
-        there = os.path.relpath(path, folder).replace(os.sep, "/")
-        lines.append(json.dumps({"path": there, "rule": rule, "fingerprint": text, "count": count}))
+    for (path, rule, text), count in baseline.items():
+        relative_path = os.path.relpath(path, folder).replace(os.sep, "/")
+        lines.append(json.dumps({"path": relative_path, "rule": rule, "fingerprint": text, "count": count}))
     findings = ",".join(f"\n    {line}" for line in sorted(lines)) + ("\n  " if lines else "")
     return f'{{\n  "format": 1,\n  "tool": "btq",\n  "findings": [{findings}]\n}}\n'
 
 
-def _without(known: Known, findings: Iterable[Finding], files: set[str]) -> list[Finding]:
-    """The findings that are not known, in order; of equal ones the first are known."""
-    left = known.copy()
-    new = [each for each in findings if not (_may_be_known(each, files) and _take(left, _identity(each)))]
+def _new_findings(baseline: Known, findings: Iterable[Finding], files: set[str]) -> list[Finding]:
+    """The findings that are not in the baseline, in order; of equal findings the first ones are in it."""
+    remaining = baseline.copy()
+    new = [
+        finding for finding in findings if not (_may_be_known(finding, files) and _take(remaining, _identity(finding)))
+    ]
     moved: Counter[tuple[str, str]] = Counter()
-    for (path, rule, text), count in left.items():
+    for (path, rule, text), count in remaining.items():
         moved[rule, text] += 0 if os.path.exists(path) else count
-    return [each for each in new if not (_may_be_known(each, files) and _take(moved, _identity(each)[1:]))]
+    return [finding for finding in new if not (_may_be_known(finding, files) and _take(moved, _identity(finding)[1:]))]
 
 
 def _take(left: Counter[Key], key: Key) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from argparse import Namespace
 from collections.abc import Iterator, Mapping, Sequence
 from glob import escape, glob
 from typing import TYPE_CHECKING
@@ -28,34 +27,38 @@ def candidates(requested: Sequence[str], logs: Sequence[str], problems: list[str
     folder's project, else the trees in the logs.
     """
     sides = {side.mission: side for side in side_files_beside(logs)}
-    there = [mission for mission in sides if os.path.isfile(mission)]
-    found = (
-        [] if requested else [each for side in sides.values() if side.mission not in there for each in _restored(side)]
+    existing = [mission for mission in sides if os.path.isfile(mission)]
+    missions = (
+        []
+        if requested
+        else [
+            mission for side in sides.values() if side.mission not in existing for mission in _missions_as_built(side)
+        ]
     )
     home = find_project(".")
-    groups, unreadable = Files().groups(requested or [*there, home.project.root])
+    groups, unreadable = Files().groups(requested or [*existing, home.project.root])
     # A mission of a broken project elsewhere was not requested.
-    elsewhere = {each.path for each in unreadable if is_project_file(each.path) and each.path != home.path}
+    elsewhere = {problem.path for problem in unreadable if is_project_file(problem.path) and problem.path != home.path}
     broken = elsewhere if not requested else set()
-    problems += [str(each) for each in unreadable if each.path not in broken]
+    problems += [str(problem) for problem in unreadable if problem.path not in broken]
     for group in groups:
         for path in group.given if group.project_file not in broken else ():
             side = side_of(path, sides)
-            if path.endswith(".xml") and side is not None and (built := [*_restored(side)]):
-                found += built
+            if path.endswith(".xml") and side is not None and (built := [*_missions_as_built(side)]):
+                missions += built
             elif requested or path not in group.workspace.included_files:
-                found.append(candidate(group.workspace, path, side))
-    if not found and not problems and not requested:
+                missions.append(candidate(group.workspace, path, side))
+    if not missions and not problems and not requested:
         return _of_logs(logs, problems)
-    if not found and not problems:
+    if not missions and not problems:
         problems.append(NO_MISSION)
-    return found
+    return missions
 
 
-def strict_problem(options: Namespace, missions: Sequence[Candidate]) -> list[str]:
-    """Why not every requirement can be satisfied: there is no mission."""
-    is_known = any(not isinstance(each, OwnTree) for each in missions)
-    return [] if is_known or not options.strict else [f"--strict: {NO_MISSION}"]
+def strict_problem(is_strict: bool, missions: Sequence[Candidate]) -> list[str]:
+    """The reason why not every requirement can be satisfied: there is no mission."""
+    has_mission = any(not isinstance(mission, OwnTree) for mission in missions)
+    return [] if has_mission or not is_strict else [f"--strict: {NO_MISSION}"]
 
 
 def _of_logs(logs: Sequence[str], problems: list[str]) -> Sequence[Candidate]:
@@ -64,10 +67,10 @@ def _of_logs(logs: Sequence[str], problems: list[str]) -> Sequence[Candidate]:
     treeless: list[str] = []
     for log in logs:
         try:
-            own_trees.add(found := trees(log), log)
+            own_trees.add(logged_trees := trees(log), log)
         except (NotALog, OSError):
             continue  # judging it reports that
-        treeless += [] if found else [log]
+        treeless += [] if logged_trees else [log]
     beside = dict.fromkeys(path for log in treeless for path in _xml_beside(log))
     groups, unreadable = Files().groups([*beside]) if beside else ((), ())
     problems += map(str, unreadable)
@@ -80,8 +83,8 @@ def _of_logs(logs: Sequence[str], problems: list[str]) -> Sequence[Candidate]:
 def _xml_beside(log: str) -> Sequence[str]:
     """The XML file beside a log that has its name, else all."""
     folder, name = os.path.split(absolute(log))
-    own = os.path.join(folder, f"{os.path.splitext(name)[0]}.xml")
-    return [own] if os.path.isfile(own) else sorted(glob(os.path.join(escape(folder), "*.xml")))
+    same_named = os.path.join(folder, f"{os.path.splitext(name)[0]}.xml")
+    return [same_named] if os.path.isfile(same_named) else sorted(glob(os.path.join(escape(folder), "*.xml")))
 
 
 def side_of(path: str, sides: Mapping[str, SideFile]) -> SideFile | None:
@@ -95,11 +98,11 @@ def candidate(workspace: Workspace, path: str, side: SideFile | None) -> Candida
 
 
 def name_of(path: str) -> str:
-    """What a mission is called: its file's name without the suffix."""
+    """The name of a mission: that of its file without the suffix."""
     return os.path.splitext(os.path.basename(path))[0]
 
 
-def _restored(side: SideFile) -> Iterator[Candidate]:
+def _missions_as_built(side: SideFile) -> Iterator[Candidate]:
     """The mission as built, if only the XML and the side file are available."""
     built = as_built(xml_path(side.path), Disk())
     if built is not None:

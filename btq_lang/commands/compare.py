@@ -4,81 +4,99 @@ from __future__ import annotations
 
 import os
 import re
-import sys
-from argparse import Namespace
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 from btq_lang.commands.output import form_of, form_problem, write_output
 from btq_lang.commands.stored import NO_STORE, store_of_project
 from btq_lang.evidence.compare import FORMATS, write
+from btq_lang.projects.messages import CommandOutput
 from btq_lang.projects.options import Refused, refuse
+from btq_lang.util.record import Record
 
 
-def run(options: Namespace) -> int:
-    """Compare, and print what was found; returns the exit code."""
-    store, sides = _named(options)
-    refuse(_problem(options, sides) or form_problem(options, FORMATS))
-    at_least = _share(options.at_least)
+class CompareOptions(Record):
+    """The options of `btq compare`.
+
+    Attributes:
+        store, before, after: as on the command line; without `after`, the other two are the sides.
+        by: what the sides are, `label` or `robot`.
+        label: of robots, only the runs with this label.
+        at_least: the least difference that counts, as a percentage.
+    """
+
+    store: str
+    before: str
+    after: str | None
+    by: str
+    label: str | None
+    at_least: str
+    format: str | None
+    output: str | None
+
+
+def run(options: CompareOptions, messages: CommandOutput) -> int:
+    """Compare, and print the differences; returns the exit code."""
+    store, sides = _store_and_sides(options)
+    refuse(_problem(options, sides) or form_problem(options.format, options.output, FORMATS))
+    at_least = _fraction(options.at_least)
     if store is not None:
-        return _compared(options, store, sides, at_least)
+        return _compare(options, store, sides, at_least, messages)
     if options.by != "label" or not all(map(os.path.isdir, sides)):
         one = f"one {options.by} given; compare two, as in btq compare {sides[0]} A B"
         raise Refused(one if os.path.isdir(sides[0]) else NO_STORE)
-    with _judged(sides) as of_logs:
-        return _compared(options, of_logs, sides, at_least)
+    with _store_of_folders(sides, messages) as store_of_folders:
+        return _compare(options, store_of_folders, sides, at_least, messages)
 
 
-def _compared(options: Namespace, store: str, sides: tuple[str, str], at_least: float) -> int:
+def _compare(
+    options: CompareOptions, store: str, sides: tuple[str, str], at_least: float, messages: CommandOutput
+) -> int:
     from btq_lang.evidence.compare.comparison import UnknownSide, compare
     from btq_lang.evidence.store.engine import NoEngine, asked
 
     try:
         comparisons = compare(asked(store, options.label), options.by, sides, at_least)
     except (NoEngine, UnknownSide) as error:
-        of = f" with the label {options.label}" if options.label is not None and isinstance(error, UnknownSide) else ""
-        raise Refused(f"{error}{of}") from error
-    form = form_of(options, FORMATS)
-    write_output(options.output, write(comparisons, options.by, sides, form), form)
-    return int(any(each.is_worse for each in comparisons))
+        is_of_label = options.label is not None and isinstance(error, UnknownSide)
+        raise Refused(f"{error} with the label {options.label}" if is_of_label else error) from error
+    form = form_of(options.format, options.output, FORMATS)
+    write_output(messages, options.output, write(comparisons, options.by, sides, form), form)
+    return int(any(comparison.is_worse for comparison in comparisons))
 
 
 @contextmanager
-def _judged(folders: tuple[str, str]) -> Iterator[str]:
-    """A store for the time being, of the logs in two folders, which are the labels."""
-    from contextlib import redirect_stderr
-    from io import StringIO
+def _store_of_folders(folders: tuple[str, str], messages: CommandOutput) -> Iterator[str]:
+    """A temporary store of the logs in two folders, which are the labels."""
     from tempfile import TemporaryDirectory
 
-    from btq_lang.commands.arguments import build_parser
     from btq_lang.commands.verify import run as verify
+    from btq_lang.commands.verify_options import VerifyOptions
 
     with TemporaryDirectory(prefix="btq-") as temporary:
         store, verdicts = (os.path.join(temporary, name) for name in ("store", "verdicts.json"))
-        notes = StringIO()
+        notes = CommandOutput()
         for folder in folders:
-            kept = ("--store", store, "--label", folder, "--exit-zero", "-o", verdicts)
-            with redirect_stderr(notes):
-                verify(build_parser().parse_args(["verify", folder, *kept]))
-        for note in dict.fromkeys(notes.getvalue().splitlines()):  # those of both folders once
-            print(note.replace("btq verify:", "btq compare:", 1), file=sys.stderr)
+            verify(VerifyOptions((folder,), store=store, label=folder, output=verdicts, exit_zero=True), notes)
+        for note in dict.fromkeys(notes.text().splitlines()):  # those of both folders once
+            messages.remark(note.replace("btq verify:", "btq compare:", 1))
         yield store
 
 
-def _problem(options: Namespace, sides: tuple[str, str]) -> str | None:
+def _problem(options: CompareOptions, sides: tuple[str, str]) -> str | None:
     if options.label is not None and options.by != "robot":
         return "--label goes with --by robot"
     return f"both sides are {sides[0]}" if sides[0] == sides[1] else None
 
 
-def _named(options: Namespace) -> tuple[str | None, tuple[str, str]]:
+def _store_and_sides(options: CompareOptions) -> tuple[str | None, tuple[str, str]]:
     """The store and the two sides; argparse has two names alone as `store` and `before`."""
     if options.after is None:
         return store_of_project(), (options.store, options.before)
     return options.store, (options.before, options.after)
 
 
-def _share(text: str) -> float:
+def _fraction(text: str) -> float:
     """A percentage, such as `5 %`, as a fraction of one."""
     number = re.fullmatch(r"\s*(\d+\.?\d*|\.\d+)\s*%?\s*", text, re.ASCII)
     if number is None:

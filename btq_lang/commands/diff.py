@@ -5,8 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import sys
-from argparse import Namespace
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 
 from btq_lang.btcpp.as_built import as_built
 from btq_lang.btcpp.manual_edits import ADVICE
@@ -18,36 +17,53 @@ from btq_lang.diff import DiskPlace, as_json, as_markdown, as_text
 from btq_lang.diff.comparison import NOWHERE, MissionComparison, Side, UnmergedEdit, compared, without_made_models
 from btq_lang.projects.files import STDIN, FileGroup, Files
 from btq_lang.projects.git import Commit, revisions
+from btq_lang.projects.messages import CommandOutput
 from btq_lang.projects.opening import Disk
 from btq_lang.projects.options import Refused, refuse
 from btq_lang.render.colour import painter
-from btq_lang.util.record import replace
+from btq_lang.util.record import Record, replace
 from btq_lang.workspace.file import SUFFIXES, File, is_of_package
 from btq_lang.workspace.loader import LoadProblem, absolute, collect, find_project, read, shown
 
 
-def run(options: Namespace) -> int:
-    """Compare and print; returns 0: the same, 1: different, 2: the comparison failed."""
+class DiffOptions(Record):
+    """The options of `btq diff`.
+
+    Attributes:
+        git: the revisions to compare, as in `HEAD` or `main...HEAD`; None: the paths are the two missions.
+    """
+
+    paths: Sequence[str]
+    stdin_filename: str | None
+    git: str | None
+    format: str
+    color: str
+
+
+def run(options: DiffOptions, messages: CommandOutput) -> int:
+    """Compare; the exit code is 0: the same, 1: different, 2: the comparison failed."""
     comparisons = tuple(
-        _of_revisions(options) if options.git is not None else _of_paths(options.paths, options.stdin_filename)
+        _of_revisions(options.paths, options.git)
+        if options.git is not None
+        else _of_paths(options.paths, options.stdin_filename)
     )
     for comparison in comparisons:
         for side in (comparison.old, comparison.new):
-            _warn(side)
-    write_output(None, "".join(f"{line}\n" for line in _rendered(comparisons, options)), options.format)
+            _warn(side, messages)
+    write_output(messages, None, "".join(f"{line}\n" for line in _rendered(comparisons, options)), options.format)
     return int(any(comparison.changes for comparison in comparisons))
 
 
-def _rendered(comparisons: tuple[MissionComparison, ...], options: Namespace) -> Iterator[str]:
+def _rendered(comparisons: tuple[MissionComparison, ...], options: DiffOptions) -> Iterator[str]:
     if options.format == "json":
         return as_json.render(comparisons)
     if options.format == "markdown":
         return as_markdown.render(comparisons)
-    colour = is_coloured(options, sys.stdout.isatty())
+    colour = is_coloured(options.color, sys.stdout.isatty())
     return as_text.render(comparisons, painter(colour))
 
 
-def _warn(side: Side) -> None:
+def _warn(side: Side, messages: CommandOutput) -> None:
     """Warn about a mission that is compared only in part."""
     for path in side.paths:
         file = side.workspace.files[path]
@@ -56,16 +72,17 @@ def _warn(side: Side) -> None:
                 continue
             if side.workspace.included_by(path, include) is None:
                 message = f"includes `{include.path.text}`, which does not exist: its content is not compared"
-                print(f"btq: {side.shown(path)}: {message}", file=sys.stderr)
+                messages.remark(f"btq: {side.shown(path)}: {message}")
         if file.is_foreign and DESCRIPTION_MARK in file.source:
             message = "its requirements are missing: `btq build` wrote them to the .qreq.json that was beside it"
-            print(f"btq: {side.shown(path)}: {message}", file=sys.stderr)
+            messages.remark(f"btq: {side.shown(path)}: {message}")
         if error := _first_error(file):
-            print(f"btq: {side.shown(path)}:{error}; btq compares the rest", file=sys.stderr)
+            messages.remark(f"btq: {side.shown(path)}:{error}; btq compares the rest")
 
 
 def _first_error(file: File) -> str | None:
-    for diagnostic in file.source_diagnostics:
+    diagnostics = file.source_diagnostics
+    for diagnostic in diagnostics:
         if diagnostic.effective_severity is Severity.ERROR:
             line, column = file.source_lines.position(diagnostic.span.start)
             return f"{line + 1}:{column + 1}: {diagnostic.message}"
@@ -75,7 +92,7 @@ def _first_error(file: File) -> str | None:
 # ---- two files, two folders ----
 
 
-def _of_paths(paths: list[str], stdin_filename: str | None) -> Iterator[MissionComparison]:
+def _of_paths(paths: Sequence[str], stdin_filename: str | None) -> Iterator[MissionComparison]:
     if len(paths) != 2:
         raise Refused(
             f"expected two missions, found {len(paths)}; to compare revisions of one: btq diff --git HEAD FILE"
@@ -91,12 +108,12 @@ def _of_paths(paths: list[str], stdin_filename: str | None) -> Iterator[MissionC
         # As in `diff`: a file and a folder compare with the file of that name in the folder.
         old = f"{old}/{os.path.basename(new)}" if os.path.isdir(old) else old
         new = f"{new}/{os.path.basename(old)}" if os.path.isdir(new) else new
-    sides = [{} if path is None else _sides(path) for path in (old, new)]
-    for before, after in _pairs(*sides):
+    sides = [{} if path is None else _sides_by_name(path) for path in (old, new)]
+    for before, after in _paired_paths(*sides):
         yield without_made_models(compared(sides[0].get(before, NOWHERE), sides[1].get(after, NOWHERE)))
 
 
-def _with_stdin(paths: list[str], stdin_filename: str | None) -> MissionComparison:
+def _with_stdin(paths: Sequence[str], stdin_filename: str | None) -> MissionComparison:
     """Compare a file with standard input."""
     other = next((path for path in paths if path != STDIN), None)
     if other is None:
@@ -116,31 +133,33 @@ def _with_stdin(paths: list[str], stdin_filename: str | None) -> MissionComparis
     return without_made_models(compared(*map(side, paths)))
 
 
-def _pairs(old: Collection[str], new: Collection[str]) -> list[tuple[str, str]]:
+def _paired_paths(old: Collection[str], new: Collection[str]) -> list[tuple[str, str]]:
     """Pairs of files with equal names, or of an XML file and the .btq file that builds it."""
     came = set(new) - set(old)
     pairs = []
     for name in old:
         stem, ending = os.path.splitext(name)
-        other = (f"{stem}{each}" for each in (SUFFIXES if ending == ".xml" else (".xml",)))
+        other = (f"{stem}{suffix}" for suffix in (SUFFIXES if ending == ".xml" else (".xml",)))
         pairs.append((name, name if name in new else next(filter(came.__contains__, other), name)))
         came.discard(pairs[-1][1])
     return sorted([*pairs, *zip(came, came, strict=True)])
 
 
-def _sides(path: str) -> dict[str, Side]:
+def _sides_by_name(path: str) -> dict[str, Side]:
     """The mission of a file, with all its includes; or the missions of a folder, each without includes, by their names
     in it.
     """
     if not os.path.isdir(path):
         return {"": _side_in(Disk(), path)}
-    found: dict[str, Side] = {}
+    sides: dict[str, Side] = {}
     for group in _groups([path, *_xml_below(path)]):
-        for each in group.given:
-            built = _built_in(Disk(), each)
-            side = Side(shown(each), group.workspace, (each,), shown)
-            found[each.removeprefix(f"{path}/")] = _by_itself(built, os.path.isfile) if built is not None else side
-    return found
+        for path_below in group.given:
+            built = _built_in(Disk(), path_below)
+            side = Side(shown(path_below), group.workspace, (path_below,), shown)
+            sides[path_below.removeprefix(f"{path}/")] = (
+                _by_itself(built, os.path.isfile) if built is not None else side
+            )
+    return sides
 
 
 def _side_in(files: Disk | Commit, path: str, with_includes: bool = True) -> Side:
@@ -167,14 +186,14 @@ def _built_in(files: Disk | Commit, path: str) -> Side | None:
     if built is None:
         return None
     manual_edits = tuple(
-        UnmergedEdit(each.guard, each.sum, f"{each.happened}; {ADVICE}", DiskPlace(xml, each.span))
-        for xml, each in built.manual_edits
+        UnmergedEdit(edit.guard, edit.sum, f"{edit.happened}; {ADVICE}", DiskPlace(xml, edit.span))
+        for xml, edit in built.manual_edits
     )
     return Side(files.shown(path), built.workspace, built.workspace.closure(built.path), built.shown, manual_edits)
 
 
 def _xml_below(folder: str) -> tuple[str, ...]:
-    """The XML files below a folder to compare: without those built from a .btq file that is there."""
+    """The XML files below a folder to compare, without those built from an existing .btq file."""
     project = find_project(folder).project
     paths, problems = collect([folder], project, (".xml", *SUFFIXES))
     refuse(*problems)
@@ -183,7 +202,7 @@ def _xml_below(folder: str) -> tuple[str, ...]:
     return tuple(path for path, xml in texts.items() if is_mission(xml) and not is_built_of(xml, sources))
 
 
-def _groups(paths: list[str], stdin_filename: str | None = None) -> tuple[FileGroup, ...]:
+def _groups(paths: Sequence[str], stdin_filename: str | None = None) -> tuple[FileGroup, ...]:
     groups, problems = Files().groups(paths, stdin_filename)
     refuse(*problems)
     return groups
@@ -192,23 +211,23 @@ def _groups(paths: list[str], stdin_filename: str | None = None) -> tuple[FileGr
 # ---- revisions ----
 
 
-def _of_revisions(options: Namespace) -> Iterator[MissionComparison]:
-    if STDIN in options.paths:
+def _of_revisions(paths: Sequence[str], revision: str) -> Iterator[MissionComparison]:
+    if STDIN in paths:
         raise Refused("standard input has no revisions: git show REV:FILE | btq diff - FILE")
-    for path in map(absolute, options.paths or ["."]):
-        known = revisions(options.git, path)
-        if not os.path.isdir(path) and not known.had_folder(path):
-            sides = _revised(known.old, path, True), _revised(known.new, path, True)
+    for path in map(absolute, paths or ["."]):
+        pair = revisions(revision, path)
+        if not os.path.isdir(path) and not pair.had_folder(path):
+            sides = _side_in_revision(pair.old, path, True), _side_in_revision(pair.new, path, True)
             if sides == (NOWHERE, NOWHERE):
-                where = known.new.name if known.new is not None else "here"
-                raise Refused(f"{shown(path)}: no such file in {known.old.name} or {where}")
+                where = pair.new.name if pair.new is not None else "here"
+                raise Refused(f"{shown(path)}: no such file in {pair.old.name} or {where}")
             yield without_made_models(compared(*sides))
             continue
-        for before, after in known.changed(path):
-            yield compared(_revised(known.old, before, False), _revised(known.new, after, False))
+        for before, after in pair.changed(path):
+            yield compared(_side_in_revision(pair.old, before, False), _side_in_revision(pair.new, after, False))
 
 
-def _revised(commit: Commit | None, path: str | None, with_includes: bool) -> Side:
+def _side_in_revision(commit: Commit | None, path: str | None, with_includes: bool) -> Side:
     """A file in a commit; None: in the working tree."""
     if path is None or (commit is None and not os.path.exists(path)):
         return NOWHERE

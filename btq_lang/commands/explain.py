@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import sys
-from argparse import Namespace
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from textwrap import wrap
 from typing import Final
 
@@ -20,14 +19,23 @@ from btq_lang.commands.explain_nav2 import nav2_nodes, nav2_page
 from btq_lang.commands.output import is_coloured
 from btq_lang.diagnostics.rules import RULES, by_subject, page
 from btq_lang.ide.describe import in_si, si_symbol
+from btq_lang.projects.messages import CommandOutput
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tree import is_name, quote
 from btq_lang.util.grouping import grouped
+from btq_lang.util.record import Record
 from btq_lang.util.spelling import near
 
 
-def run(options: Namespace) -> int:
-    """Print everything with the given names; without a name, list the rules."""
+class ExplainOptions(Record):
+    """The options of `btq explain`."""
+
+    subject: Sequence[str]
+    color: str
+
+
+def run(options: ExplainOptions, messages: CommandOutput) -> int:
+    """Explain everything with the given names; without a name, list the rules."""
     names = [name for word in options.subject if (name := word.strip())]
     pages = list(_pages(" ".join(names)))  # a name of several words: `time behaviour`
     unknown = []
@@ -35,22 +43,22 @@ def run(options: Namespace) -> int:
         pages = [_overview()]
     elif not pages:
         by_name = {name: list(_pages(name)) or list(_pages(name.split()[0])) for name in names}  # `takes at most`
-        pages = [text for found in by_name.values() for text in found]
-        unknown = [name for name, found in by_name.items() if not found]
+        pages = [text for texts in by_name.values() for text in texts]
+        unknown = [name for name, texts in by_name.items() if not texts]
     for name in unknown:
         likely = _likely(name)
         meant = f"; did you mean {', '.join(likely)}?" if likely else "; `btq explain` says what there is"
-        print(f"btq explain: unknown name `{name}`{meant}", file=sys.stderr)
-    bold = is_coloured(options, sys.stdout.isatty())
+        messages.remark(f"btq explain: unknown name `{name}`{meant}")
+    is_bold = is_coloured(options.color, sys.stdout.isatty())
     for number, text in enumerate(pages):
-        print("\n" * (number > 0) + (_with_bold_headings(text) if bold else text))
+        messages.result("\n" * (number > 0) + (_with_bold_headings(text) if is_bold else text))
     return 2 if unknown else 0
 
 
 def _pages(name: str) -> Iterator[str]:
     foreign = foreign_name(name)
-    own = [*_own_pages(name)]
-    yield from own if own or foreign is None else _foreign(name, foreign)
+    own_pages = [*_own_pages(name)]
+    yield from own_pages if own_pages or foreign is None else _foreign(name, foreign)
 
 
 def _own_pages(name: str) -> Iterator[str]:
@@ -137,9 +145,9 @@ def _attribute(kind: AttributeKind) -> str:
 
 def _ports(name: str) -> Iterator[str]:
     """The pages of ports with this name, of nodes of the engine."""
-    found = [(kind, port) for kind in BUILTINS.values() for port in kind.ports if port.name == name]
-    if found and name not in RESERVED_ATTRIBUTES:
-        lines = [f"{f'{kind.tag}:':<24} {port.type:<13} {port.doc}" for kind, port in found]
+    ports = [(kind, port) for kind in BUILTINS.values() for port in kind.ports if port.name == name]
+    if ports and name not in RESERVED_ATTRIBUTES:
+        lines = [f"{f'{kind.tag}:':<24} {port.type:<13} {port.doc}" for kind, port in ports]
         yield "\n".join((f"# {name} (port)", "", *lines))
 
 
@@ -175,7 +183,9 @@ def _unit(name: str) -> Iterator[str]:
         one = in_si(f"1 {name}")
         same = "" if unit.symbol == name or si_symbol(unit) == name else f", the same as {unit.symbol}"
         value = "" if one in (f"1 {name}", "1") else f" 1 {name} is {one}{same}."
-        others = [each.symbol for each in symbols() if each.dimension == unit.dimension and each.symbol != unit.symbol]
+        others = [
+            other.symbol for other in symbols() if other.dimension == unit.dimension and other.symbol != unit.symbol
+        ]
         beside = f"\n\ncompares with: {', '.join(others)}" if others else ""
         yield f"# {name} (unit)\n\nMeasures {dimension_name(unit)}.{value}{beside}"
 
@@ -192,12 +202,14 @@ def _verdicts() -> Iterator[str]:
 def _likely(name: str) -> tuple[str, ...]:
     """Names similar to a name, or else names that contain it, of the kind that it has the form of."""
     kind = _nodes if name[:1].isupper() else _rules if "-" in name else _names
-    parts = [each for each in kind() if len(name) > 2 and name.casefold() in each.casefold()]
+    parts = [known_name for known_name in kind() if len(name) > 2 and name.casefold() in known_name.casefold()]
     close = ELSEWHERE.get(name) or near(name, kind()) or near(name, _names())
-    return close or tuple(sorted(parts, key=lambda each: (len(each), each))[:5]) or _units(name)
+    return (
+        close or tuple(sorted(parts, key=lambda known_name: (len(known_name), known_name))[:5]) or _likely_units(name)
+    )
 
 
-def _units(name: str) -> tuple[str, ...]:
+def _likely_units(name: str) -> tuple[str, ...]:
     """The units that a name begins with; without more in common, a unit is a wild guess."""
     return tuple(unit for unit in nearest_units(name) if name.casefold().startswith(unit.casefold()))
 
@@ -224,7 +236,7 @@ def _lists() -> dict[str, Callable[[], Iterable[str]]]:
         "qualities": lambda: (f"{quality.id:<58} {quality.name}" for quality in qualities()),
         "words": lambda: (f"{one.words:<20} {one.part:<22} {one.brief}" for one in PHRASES),
         "signs": lambda: (f"{sign:<12} {form:<38} {meaning}" for sign, form, meaning in SIGNS),
-        "attributes": lambda: (f"{each.name:<20} {each.doc}" for each in RESERVED_ATTRIBUTES.values()),
+        "attributes": lambda: (f"{attribute.name:<20} {attribute.doc}" for attribute in RESERVED_ATTRIBUTES.values()),
         "verdicts": _verdicts,
         "units": lambda: (f"{measured:<22} {' '.join(units)}" for measured, units in by_dimension.items()),
     }

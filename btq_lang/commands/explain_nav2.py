@@ -1,4 +1,4 @@
-"""What `btq explain` says of a node of Nav2: its ports in all distributions side by side."""
+"""The page of `btq explain` about a node of Nav2: its ports in all distributions side by side."""
 
 from __future__ import annotations
 
@@ -15,34 +15,36 @@ from btq_lang.workspace.loader import read
 
 
 def nav2_nodes() -> list[str]:
-    """The names of all nodes of Nav2, in whatever distribution."""
-    return sorted({name for each in DISTRIBUTIONS for name in models_of(each)})
+    """The names of all nodes of Nav2 in any distribution."""
+    return sorted({name for distribution in DISTRIBUTIONS for name in models_of(distribution)})
 
 
 def nav2_page(name: str) -> Iterator[str]:
     """The page of a node, if it is one."""
-    found = {each: models_of(each)[name] for each in DISTRIBUTIONS if name in models_of(each)}
-    if not found:
+    models = {
+        distribution: models_of(distribution)[name] for distribution in DISTRIBUTIONS if name in models_of(distribution)
+    }
+    if not models:
         return
-    *_, newest = found.values()
+    *_, newest = models.values()
     lines = [f"# {name} ({newest.category.raw} of Nav2)", "", newest.text.text if newest.text is not None else "", ""]
     if name in NODES:
         lines += [fill(NODES[name].semantics, 100), ""]
-    lines.append(f"in: {', '.join(map(str.capitalize, found))}")
-    if rows := _rows(found):
+    lines.append(f"in: {', '.join(map(str.capitalize, models))}")
+    if rows := _rows(models):
         width = max(map(len, rows))
-        lines += ["", f"{'':{width}}  {'  '.join(each[0].upper() for each in found)}"]
+        lines += ["", f"{'':{width}}  {'  '.join(distribution[0].upper() for distribution in models)}"]
         for port, (has, text) in rows.items():
-            marks = "  ".join("x" if each in has else "-" for each in found)
+            marks = "  ".join("x" if distribution in has else "-" for distribution in models)
             lines.append(f"{port:{width}}  {marks}  {text}")
         lines += ["", "An input without a default is one without which the node fails or has nothing to do."]
     yield "\n".join(lines)
 
 
-def _rows(found: dict[str, Model]) -> dict[str, tuple[list[str], str]]:
+def _rows(models: dict[str, Model]) -> dict[str, tuple[list[str], str]]:
     """The ports as they are declared, those of one name together, each with its distributions and its meaning."""
     by_name: dict[str, dict[str, tuple[list[str], str]]] = {}
-    for distribution, model in found.items():
+    for distribution, model in models.items():
         for port in model.ports:
             text = port.text.text if port.text is not None else ""
             declared = by_name.setdefault(port.id.text if port.id is not None else "", {})

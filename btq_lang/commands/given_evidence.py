@@ -1,4 +1,4 @@
-"""The verdicts beside the requirements of an overview or a drawing: those of a file or a store, or judged by logs."""
+"""The verdicts that an overview or a drawing shows with requirements: those of a file or a store, or by logs."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 from btq_lang.commands.candidates import candidate, name_of, side_of
 from btq_lang.commands.progress import Progress
 from btq_lang.commands.stored import store_of
+from btq_lang.evidence.json_document import NotVerdicts, read_verdicts
 from btq_lang.evidence.judging import Means
 from btq_lang.evidence.readers.side import side_files_beside
 from btq_lang.evidence.signal_sources import signal_sources
 from btq_lang.evidence.store.sets import ABOUT
 from btq_lang.evidence.verifying import judged, logs_below
-from btq_lang.evidence.written_verdicts import NotVerdicts, read_verdicts
 from btq_lang.projects.files import logs_of
 from btq_lang.util.text import counted
 from btq_lang.workspace.loader import absolute, find_project, read, shown
@@ -27,47 +27,49 @@ if TYPE_CHECKING:
     from btq_lang.workspace.config import Project
 
 
-def verdicts_for(given: Sequence[str], groups: Sequence[FileGroup], problems: list[str]) -> VerdictsOf | None:
+def verdicts_for(evidence: Sequence[str], groups: Sequence[FileGroup], problems: list[str]) -> VerdictsOf | None:
     """A function from the path of a mission to the verdicts on it; None: there is no evidence.
 
     Args:
-        given: files that `btq verify --format json` wrote, stores, and logs; none: the logs of the project, if there
+        evidence: files that `btq verify --format json` wrote, stores, and logs; none: the logs of the project, if there
             are any, else its store.
         problems: errors are appended.
     """
-    given = evidence_paths(given, groups)
-    if not given:
+    evidence = evidence_paths(evidence, groups)
+    if not evidence:
         return None
-    documents = [path for path in given if path.endswith(".json")]
-    logs = [path for path in given if path not in documents]
+    documents = [path for path in evidence if path.endswith(".json")]
+    logs = [path for path in evidence if path not in documents]
     stores = [path for path in logs if is_store(path)]
     logs = [path for path in logs if path not in stores]
     by_mission: dict[str, list[RequirementVerdict]] = {}
     missions = {key for group in groups for path in group.given for key in (path, name_of(path))}
     for path in documents:
-        _read(path, missions, by_mission, problems)
+        _add_document(path, missions, by_mission, problems)
     for store in stores:
-        for name, verdicts in _stored(store, problems):
+        for name, verdicts in _verdicts_in_store(store, problems):
             by_mission.setdefault(name, []).extend(verdicts)
     if logs:
-        for file, verdicts in _judged(logs, groups, problems):
+        for file, verdicts in _verdicts_by_logs(logs, groups, problems):
             by_mission.setdefault(file, []).extend(verdicts)
     if problems and not by_mission:
         return None
     return lambda mission: by_mission.get(mission) or by_mission.get(name_of(mission), [])
 
 
-def evidence_paths(given: Sequence[str], groups: Sequence[FileGroup]) -> Sequence[str]:
-    """The paths of the evidence that counts; `given`: as of `verdicts_for`."""
-    if given:
-        return given
+def evidence_paths(evidence: Sequence[str], groups: Sequence[FileGroup]) -> Sequence[str]:
+    """The paths of the evidence that counts; `evidence`: as of `verdicts_for`."""
+    if evidence:
+        return evidence
     project = _project(groups)
     logs = [path for path in logs_of(project) if os.path.exists(path)]
     store = store_of(project)
     return logs or ([store] if store is not None and is_store(store) else [])
 
 
-def _read(path: str, missions: set[str], by_mission: dict[str, list[RequirementVerdict]], problems: list[str]) -> None:
+def _add_document(
+    path: str, missions: set[str], by_mission: dict[str, list[RequirementVerdict]], problems: list[str]
+) -> None:
     """Add the verdicts of a file, by the path of the mission and, for a file written elsewhere, by its name."""
     text, problem = read(absolute(path))
     if text is None or problem is not None:
@@ -98,7 +100,7 @@ def is_store(path: str) -> bool:
     return "://" in path or bool(glob(os.path.join(escape(path), "*", ABOUT)))
 
 
-def _stored(store: str, problems: list[str]) -> Sequence[tuple[str, Sequence[RequirementVerdict]]]:
+def _verdicts_in_store(store: str, problems: list[str]) -> Sequence[tuple[str, Sequence[RequirementVerdict]]]:
     """The verdicts of the runs in a store, by the name of the mission."""
     from btq_lang.evidence.store.engine import NoEngine, asked  # which needs DuckDB
     from btq_lang.evidence.store.summary import summary
@@ -111,11 +113,11 @@ def _stored(store: str, problems: list[str]) -> Sequence[tuple[str, Sequence[Req
     return [(mission.name, mission.requirements) for mission in report.missions]
 
 
-def _judged(
-    given: Sequence[str], groups: Sequence[FileGroup], problems: list[str]
+def _verdicts_by_logs(
+    log_paths: Sequence[str], groups: Sequence[FileGroup], problems: list[str]
 ) -> Iterator[tuple[str, Sequence[RequirementVerdict]]]:
     project = _project(groups)
-    logs, wrong = logs_below(given, project)
+    logs, log_problems = logs_below(log_paths, project)
     sides = {side.mission: side for side in side_files_beside(logs)}
     missions = [
         candidate(group.workspace, path, side_of(path, sides))
@@ -123,9 +125,9 @@ def _judged(
         for path in group.given
         if path not in group.workspace.included_files
     ]
-    declared = signal_sources(missions, wrong)
-    problems += wrong
-    if wrong:
+    declared = signal_sources(missions, log_problems)
+    problems += log_problems
+    if log_problems:
         return
     with Progress(len(logs), "read") as progress:
         verification = judged(

@@ -30,21 +30,21 @@ Added: TypeAlias = tuple[Edit, list[Diagnostic]]  # a comment, and what it silen
 def add_ignores(
     groups: Iterable[FileGroup], findings: Sequence[Finding], reason: str
 ) -> tuple[int, tuple[LoadProblem, ...]]:
-    """Write comments for the findings into their files; returns how many, and what could not be written."""
+    """Write comments for the findings into their files; returns their number, and problems of writing."""
     of_file = grouped((finding.path, finding.diagnostic) for finding in findings)
     count = 0
     trouble: list[LoadProblem] = []
-    done: set[str] = set()
+    seen: set[str] = set()
     for group in groups:
         for path in group.given:
-            found = of_file.get(path, ())
-            if path in done or not found or path in group.damaged:
+            diagnostics = of_file.get(path, ())
+            if path in seen or not diagnostics or path in group.damaged:
                 continue
-            done.add(path)
+            seen.add(path)
             file = group.workspace.files[path]
-            added = _added(file, found, reason)
+            added = _comments_for(file, diagnostics, reason)
             if not _is_silent(group.workspace, file, added):
-                added = [each for each in added if _is_silent(group.workspace, file, [each])]
+                added = [comment for comment in added if _is_silent(group.workspace, file, [comment])]
                 if not _is_silent(group.workspace, file, added):
                     continue
             text = apply_edits(file.source, (edit for edit, _ in added))
@@ -66,30 +66,30 @@ def ignore_problem(options: CheckOptions) -> str | None:
     return f"--add-ignore cannot be used together with {some[0]}" if some else None
 
 
-def _added(file: File, found: Iterable[Diagnostic], reason: str) -> list[Added]:
+def _comments_for(file: File, diagnostics: Iterable[Diagnostic], reason: str) -> list[Added]:
     of_line: dict[int, list[Diagnostic]] = {}
     added: list[Added] = []
-    for each in found:
-        if (line := line_to_silence(file, each)) is not None:
-            of_line.setdefault(line, []).append(each)
-        elif (edit := before_tag(file, each, reason)) is not None:
+    for diagnostic in diagnostics:
+        if (line := line_to_silence(file, diagnostic)) is not None:
+            of_line.setdefault(line, []).append(diagnostic)
+        elif (edit := before_tag(file, diagnostic, reason)) is not None:
             same = [silenced for other, silenced in added if other == edit]
-            added += [] if same else [(edit, [each])]
+            added += [] if same else [(edit, [diagnostic])]
             for silenced in same:
-                silenced.append(each)
-    places = (before_element,) if file.is_foreign else (at_line_end, above_line)
-    for line, here in of_line.items():
-        rules = tuple(dict.fromkeys(each.rule for each in here))
-        made = (edit for place in places if (edit := place(file, line, rules, reason)) is not None)
-        added += [(edit, here) for edit in islice(made, 1)]
+                silenced.append(diagnostic)
+    places = (at_line_end, above_line) if not file.is_foreign else (before_element,)
+    for line, silenced_here in of_line.items():
+        rules = tuple(dict.fromkeys(diagnostic.rule for diagnostic in silenced_here))
+        edits = (edit for place in places if (edit := place(file, line, rules, reason)) is not None)
+        added += [(edit, silenced_here) for edit in islice(edits, 1)]
     return added
 
 
 def _is_silent(workspace: Workspace, file: File, added: Sequence[Added]) -> bool:
-    """Whether a check of a file with comments finds what it has found, but for what they silence."""
+    """Whether a check of a file with comments has the same findings, except those that the comments silence."""
     if not added or is_generated(file.source):
         return False
     text = apply_edits(file.source, (edit for edit, _ in added))
-    before = Counter(each.rule for each in check(workspace, file.path))
-    after = Counter(each.rule for each in check(with_source(workspace, file.path, text), file.path))
-    return after == before - Counter(each.rule for _, silenced in added for each in silenced)
+    before = Counter(diagnostic.rule for diagnostic in check(workspace, file.path))
+    after = Counter(diagnostic.rule for diagnostic in check(with_source(workspace, file.path, text), file.path))
+    return after == before - Counter(diagnostic.rule for _, silenced in added for diagnostic in silenced)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import json
 import os
 import shlex
-from argparse import Namespace
 
 from btq_lang.catalog.versions import VERSIONS
+from btq_lang.projects.messages import CommandOutput
 from btq_lang.projects.options import Refused
+from btq_lang.util.record import Record
 from btq_lang.workspace.loader import write_whole
 
 _PROJECT = f"""\
@@ -70,23 +71,36 @@ BehaviorTree Mission
 FILES = {"btq.toml": _PROJECT, "skills.btq": _SKILLS, "mission.btq": _MISSION}
 
 
-def run(options: Namespace) -> int:
+class InitOptions(Record):
+    """The options of `btq init`.
+
+    Attributes:
+        from_xml: write only a project file, for existing XML.
+        convert: write .btq files beside the XML, too.
+    """
+
+    folder: str
+    from_xml: bool
+    convert: bool
+
+
+def run(options: InitOptions, messages: CommandOutput) -> int:
     """Write the files, or none if one already exists."""
     if options.from_xml:
-        from btq_lang.commands.init_from_xml import run as run_from_xml  # it needs much more
+        from btq_lang.commands.init_from_xml import init_from_xml  # it needs much more
 
-        return run_from_xml(options)
+        return init_from_xml(options.folder, options.convert, messages)
     if options.convert:
         raise Refused("--convert goes with --from-xml")
     folder = options.folder
-    there = [name for name in FILES if os.path.lexists(os.path.join(folder, name))]
-    if there:
-        raise Refused(f"{folder} already contains {', '.join(there)}; nothing was written")
+    existing = [name for name in FILES if os.path.lexists(os.path.join(folder, name))]
+    if existing:
+        raise Refused(f"{folder} already contains {', '.join(existing)}; nothing was written")
     try:
         os.makedirs(folder, exist_ok=True)
         for name, text in FILES.items():
             write_whole(os.path.join(folder, name), text)
     except OSError as error:
         raise Refused(f"{error.filename or folder}: {error.strerror}") from error
-    print(f"Wrote {', '.join(FILES)}. Next: btq check {shlex.quote(folder)}")
+    messages.result(f"Wrote {', '.join(FILES)}. Next: btq check {shlex.quote(folder)}")
     return 0

@@ -1,4 +1,4 @@
-"""`btq init --from-xml`: a project file that says which of the XML files that are there are registered together.
+"""`btq init --from-xml`: a project file with the existing XML files that are registered together.
 
 One invariant: only the project file is written, and with `--convert` the .btq files that an import makes.
 """
@@ -9,8 +9,6 @@ import json
 import os
 import posixpath
 import shlex
-import sys
-from argparse import Namespace
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from functools import cache
@@ -20,11 +18,10 @@ from btq_lang.catalog.nav2 import ENGINES, PACKAGED
 from btq_lang.catalog.versions import VERSION_3, VERSIONS, is_before_4
 from btq_lang.checks import check_each
 from btq_lang.checks.engines import declared_engines
-from btq_lang.commands.init_navigators import free_name, navigator_tables
-from btq_lang.commands.init_nodes import OF_NAV2, NodesLines, nodes_for, nodes_lines
-from btq_lang.commands.output import show
+from btq_lang.commands.init_lines import OF_NAV2, NodesLines, free_name, navigator_tables, nodes_for, nodes_lines
 from btq_lang.commands.packages import Packages, packages_of
 from btq_lang.projects.files import Files
+from btq_lang.projects.messages import CommandOutput
 from btq_lang.projects.options import Refused
 from btq_lang.projects.xml_below import XmlBelow
 from btq_lang.syntax.tree import Tree
@@ -42,38 +39,36 @@ exclude = {}  # converted; delete the line when `btq build` writes these files
 """
 
 
-def run(options: Namespace) -> int:
-    """Write the project file, unless there is one."""
-    folder = absolute(options.folder)
+def init_from_xml(top: str, converts: bool, messages: CommandOutput) -> int:
+    """Write the project file of a folder, unless there is one; returns the exit code.
+
+    Args:
+        top: the folder as the command line names it.
+        converts: write .btq files beside the XML, too.
+
+    Raises:
+        Refused: there is a project file, or no XML; the file cannot be written.
+    """
+    folder = absolute(top)
     target = f"{folder}/btq.toml"
     if os.path.lexists(target):
         raise Refused(f"{shown(target)} is there already; nothing was written")
     workspace = _xml_below(folder)
     if not workspace.files:
-        raise Refused(f"no BehaviorTree.CPP XML below {options.folder}; nothing was written")
-    factories = [*_factories(workspace, folder)]
+        raise Refused(f"no BehaviorTree.CPP XML below {top}; nothing was written")
+    factories = [*_factories(workspace, folder, messages)]
     packages = packages_of(folder)
-    excluded: list[str] = []
-    if options.convert:
-        from btq_lang.projects.import_files import ImportOptions, import_files
-
-        files = [shown(path) for path in workspace.files if not path.endswith(GROOT_SUFFIX)]
-        overlay = {target: f"engine = {json.dumps(packages.engines)}\n"} if packages.engines else {}
-        imported = import_files(ImportOptions(files), overlay)
-        show(imported.messages)
-        if imported.code:
-            return imported.code
-        trees, models = _by_kind(workspace)
-        excluded = [f"/{each}.xml" for each in patterns(folder, trees, models)]
-    engine = _engine_line(workspace, packages) if not options.convert else _ENGINES
-    ending = ".btq" if options.convert else ".xml"
-    rest = _EXCLUDED.format(json.dumps(excluded, ensure_ascii=False)) if excluded else ""
-    rest += "".join(f"\n{each.written(ending)}" for each in factories)
+    if converts and (code := _convert(workspace, target, packages, messages)):
+        return code
+    engine = _engine_line(workspace, packages) if not converts else _ENGINES
+    ending = ".btq" if converts else ".xml"
+    rest = _excluded_line(workspace, folder) if converts else ""
+    rest += "".join(f"\n{factory.written(ending)}" for factory in factories)
 
     def trouble(project: str, before: str) -> str:
-        """What is unknown with one project file and not with another."""
-        known = _unknown_in(folder, before)
-        return next((what for place, what in _unknown_in(folder, project).items() if place not in known), "")
+        """The first problem that one project file has and another has not."""
+        known_problems = _unknown_in(folder, before)
+        return next((what for place, what in _unknown_in(folder, project).items() if place not in known_problems), "")
 
     def with_engine(nodes: str) -> str:
         """A distribution of Nav2 has a version of its own."""
@@ -84,19 +79,38 @@ def run(options: Namespace) -> int:
     text = with_engine(nodes) + rest
     navigators = navigator_tables(
         packages,
-        [each.name for each in factories],
-        [f"{each}{ending}" for each in _named_by_programs(workspace, packages, folder)],
+        [factory.name for factory in factories],
+        [f"{pattern}{ending}" for pattern in _named_by_programs(workspace, packages, folder)],
         lambda distribution: _names_distribution(nodes) or _fits(distribution, named, packages.engines),
         lambda tables: trouble(text + tables, text),
     )
+    text += navigators
     try:
-        write_whole(target, f"{_HEAD}{text}{navigators}")
+        write_whole(target, f"{_HEAD}{text}")
     except OSError as error:
         raise Refused(f"{shown(target)}: {error.strerror}") from error
-    count = f"{text}{navigators}".count("\n[[factory]]")
+    count = text.count("\n[[factory]]")
     how_many = f"{count or 'no'} factor{'y' if count == 1 else 'ies'}"
-    print(f"Wrote {shown(target)} with {how_many}. Next: btq check {shlex.quote(options.folder)}")
+    messages.result(f"Wrote {shown(target)} with {how_many}. Next: btq check {shlex.quote(top)}")
     return 0
+
+
+def _convert(workspace: Workspace, target: str, packages: Packages, messages: CommandOutput) -> int:
+    """Write .btq files beside the XML; returns the exit code."""
+    from btq_lang.projects.import_files import ImportOptions, import_files
+
+    files = [shown(path) for path in workspace.files if not path.endswith(GROOT_SUFFIX)]
+    overlay = {target: f"engine = {json.dumps(packages.engines)}\n"} if packages.engines else {}
+    result = import_files(ImportOptions(files), overlay)
+    messages.extend(result.messages)
+    return result.code
+
+
+def _excluded_line(workspace: Workspace, folder: str) -> str:
+    """The line that leaves out converted XML."""
+    trees, models = _by_kind(workspace)
+    excluded = [f"/{pattern}.xml" for pattern in patterns(folder, trees, models)]
+    return _EXCLUDED.format(json.dumps(excluded, ensure_ascii=False)) if excluded else ""
 
 
 def _names_distribution(nodes: str) -> bool:
@@ -106,7 +120,7 @@ def _names_distribution(nodes: str) -> bool:
 
 def _fits(distribution: str | None, named: tuple[NodesLines, ...], engines: tuple[str, ...]) -> bool:
     """Whether a distribution is that of the engine, and no trees use nodes of another one."""
-    if distribution is None or any(OF_NAV2 in each.patterns for each in named):
+    if distribution is None or any(OF_NAV2 in lines.patterns for lines in named):
         return False
     return not engines or is_before_4(ENGINES[distribution]) == is_before_4(engines[-1])
 
@@ -143,7 +157,7 @@ def _line(key: str, value: Sequence[str]) -> str:
 
 
 def _xml_below(folder: str) -> Workspace:
-    """The XML files of the engine below a folder, each of which has all as its pool."""
+    """The XML files of the engine below a folder, each with all of them as its pool."""
     groups, _ = Files().groups([folder], with_xml=True)
     files = {
         path: group.workspace.files[path]
@@ -155,12 +169,12 @@ def _xml_below(folder: str) -> Workspace:
     return Workspace(files, replace(project, pools=(folder,)))
 
 
-def _factories(workspace: Workspace, folder: str) -> Iterator[_Together]:
-    """What belongs together; files of which two define one tree do not, whatever refers to them."""
+def _factories(workspace: Workspace, folder: str, messages: CommandOutput) -> Iterator[_Together]:
+    """The files that belong together; if two files define the same tree, they do not."""
     trees_in, models = _by_kind(workspace)
     of_groot = (posixpath.relpath(path, folder) for path in models if path.endswith(GROOT_SUFFIX))
     xml = [path for path in models if not path.endswith(GROOT_SUFFIX)]
-    nodes = (*(f"{each}.xml" for each in patterns(folder, xml, trees_in)), *of_groot)
+    nodes = (*(f"{pattern}.xml" for pattern in patterns(folder, xml, trees_in)), *of_groot)
     names: set[str] = set()
     groups = _connected(workspace)
     grouped = {path for paths in groups for path in paths}
@@ -169,7 +183,7 @@ def _factories(workspace: Workspace, folder: str) -> Iterator[_Together]:
         if len(set(trees)) < len(trees):
             twice = next(name for name in sorted(trees) if trees.count(name) > 1)
             files = ", ".join(shown(path) for path in paths)
-            print(f"not a factory, because several define the tree `{twice}`: {files}", file=sys.stderr)
+            messages.remark(f"not a factory, because several define the tree `{twice}`: {files}")
             continue
         paths += _beside(workspace, paths, [path for path in trees_in if path not in grouped])
         trees = [name for path in paths for name in workspace.files[path].names_of(Kind.TREE)]
@@ -178,7 +192,7 @@ def _factories(workspace: Workspace, folder: str) -> Iterator[_Together]:
         names.add(name)
         items = [facts for path in paths for facts in workspace.files[path].facts.values()]
         called = {other for facts in items if isinstance(facts.item, Tree) for other in facts.runs}
-        main = tuple(sorted(each for each in trees if each not in called))
+        main = tuple(sorted(tree for tree in trees if tree not in called))
         others = [path for path in trees_in if path not in paths]
         yield _Together(name, tuple(patterns(folder, paths, others)), main, nodes)
 
@@ -187,14 +201,14 @@ def _beside(workspace: Workspace, paths: list[str], lone: list[str]) -> list[str
     """Files that need no other, in a folder with many more of a factory: its program loads the whole folder."""
     members, others = (Counter(map(posixpath.dirname, each)) for each in (paths, lone))
     names = {name for path in paths for name in workspace.files[path].names_of(Kind.TREE)}
-    found: list[str] = []
+    beside: list[str] = []
     for path in lone:
         own = workspace.files[path].names_of(Kind.TREE)
         folder = posixpath.dirname(path)
         if others[folder] * _MANY_MORE <= members[folder] and names.isdisjoint(own):
             names.update(own)
-            found.append(path)
-    return found
+            beside.append(path)
+    return beside
 
 
 def _engine_line(workspace: Workspace, packages: Packages) -> str:
@@ -216,16 +230,16 @@ def _named_by_programs(workspace: Workspace, packages: Packages, folder: str) ->
 
 
 def _unknown_in(folder: str, project: str) -> dict[tuple[str, int], str]:
-    """What nodes and ports a check does not know, or what it cannot read, if this is the project file, by place."""
+    """The unknown nodes and ports, and the files that cannot be read, if this is the project file; by place."""
     files = Files()
     files.overlay[f"{folder}/btq.toml"] = project
     groups, problems = files.groups([folder], with_xml=True, for_checks=True)
     return {
-        (path, each.span.start): f"with it btq finds in {shown(path)}: {each.message}"
+        (path, diagnostic.span.start): f"with it btq finds in {shown(path)}: {diagnostic.message}"
         for group in groups
-        for path, found in zip(group.given, check_each(group.workspace, group.given), strict=True)
-        for each in found
-        if each.rule in ("unknown-node", "unknown-port")
+        for path, diagnostics in zip(group.given, check_each(group.workspace, group.given), strict=True)
+        for diagnostic in diagnostics
+        if diagnostic.rule in ("unknown-node", "unknown-port")
     } | {(problem.message, 0): problem.message for problem in problems}
 
 
@@ -251,14 +265,14 @@ def _connected(workspace: Workspace) -> list[list[str]]:
             join(path, included)
         scope = workspace.scope(path)
         for name in file.names_used(Kind.TREE):
-            found = () if scope.defines(Kind.TREE, name) else workspace.pooled(path, Kind.TREE, name)
-            if len(found) == 1:
-                join(path, found[0].path)
+            definitions = () if scope.defines(Kind.TREE, name) else workspace.pooled(path, Kind.TREE, name)
+            if len(definitions) == 1:
+                join(path, definitions[0].path)
                 needing.add(path)
-    groups = {id(each): each for each in group.values()}
-    needed = [sorted(each) for each in groups.values() if not needing.isdisjoint(each)]
-    with_trees = [[path for path in each if workspace.files[path].of_type(Tree)] for each in needed]
-    return [each for each in with_trees if len(each) > 1]
+    groups = {id(members): members for members in group.values()}
+    needed = [sorted(members) for members in groups.values() if not needing.isdisjoint(members)]
+    with_trees = [[path for path in members if workspace.files[path].of_type(Tree)] for members in needed]
+    return [members for members in with_trees if len(members) > 1]
 
 
 def patterns(folder: str, paths: Collection[str], others: Collection[str]) -> Iterator[str]:
@@ -267,27 +281,27 @@ def patterns(folder: str, paths: Collection[str], others: Collection[str]) -> It
     A folder that has several of the files, and no other XML of the engine, is one pattern; with the folders below it,
     if that is true of them too.
     """
-    known = XmlBelow()
+    xml = XmlBelow()
     taken: set[str] = set()
 
     @cache
     def matches_no_other(pattern: str) -> bool:
-        found = {*matching(folder, f"{pattern}.xml")}.difference(paths)
-        return found.isdisjoint(others) and not any(map(known.is_mission, found))
+        unasked = {*matching(folder, f"{pattern}.xml")}.difference(paths)
+        return unasked.isdisjoint(others) and not any(map(xml.is_mission, unasked))
 
     for path in paths:
         if path in taken:
             continue
         for place in _folders(path, folder):
             start = "" if place == folder else f"{posixpath.relpath(place, folder)}/"
-            below = {each for each in paths if each.startswith(f"{place}/")}
-            here = {each for each in below if posixpath.dirname(each) == place}
-            if start and here and len(here) < len(below) and matches_no_other(f"{start}**/*"):
+            below = {path_below for path_below in paths if path_below.startswith(f"{place}/")}
+            directly_in = {path_below for path_below in below if posixpath.dirname(path_below) == place}
+            if start and directly_in and len(directly_in) < len(below) and matches_no_other(f"{start}**/*"):
                 taken |= below
                 yield f"{start}**/*"
                 break
-            if path in here and len(here) > 1 and matches_no_other(f"{start}*"):
-                taken |= here
+            if path in directly_in and len(directly_in) > 1 and matches_no_other(f"{start}*"):
+                taken |= directly_in
                 yield f"{start}*"
                 break
         else:

@@ -1,15 +1,19 @@
-"""The verdicts of a running robot on a screen that is drawn again in place, and the last news below them."""
+"""The news of a running robot: on a terminal its verdicts, drawn again in place, with the last news below them;
+elsewhere a line for each.
+"""
 
 from __future__ import annotations
 
 import os
 from collections import deque
 from collections.abc import Sequence
+from datetime import datetime, timezone
 from time import monotonic, process_time
 from typing import TYPE_CHECKING, Final, TextIO
 
-from btq_lang.commands.live_lines import line
 from btq_lang.evidence.table import LEAST, requirement_rows
+from btq_lang.evidence.verdicts import NEVER
+from btq_lang.evidence.wording import moment
 from btq_lang.render.cells import printable
 from btq_lang.render.colour import painter
 
@@ -24,7 +28,7 @@ def is_screen(stream: TextIO) -> bool:
 
 
 class Screen:
-    """The alternate screen of a terminal, so that what was on the terminal is there again at the end."""
+    """The alternate screen of a terminal, which shows its earlier contents again at the end."""
 
     def __init__(self, stream: TextIO, colour: bool) -> None:
         self._stream: Final = stream
@@ -41,10 +45,10 @@ class Screen:
 
     def show(self, news: News) -> None:
         """Add news to what is drawn next."""
-        self._news.append(line(news))
+        self._news.append(_line(news))
 
     def refresh(self, watched: Watched) -> None:
-        """Draw, if the last time is long enough ago; drawing takes a small part of the time, however long it takes."""
+        """Draw, if the last drawing is long enough ago, so that drawing takes a small part of the time."""
         if monotonic() < self._next:
             return
         begin = process_time()
@@ -58,8 +62,37 @@ class Screen:
         self._stream.flush()
 
 
+class Lines:
+    """Writes a line for each news."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream: Final = stream
+
+    def __enter__(self) -> Lines:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+    def show(self, news: News) -> None:
+        """Write a line."""
+        self._stream.write(f"{_line(news)}\n")
+        self._stream.flush()
+
+    def refresh(self, watched: Watched) -> None:
+        """Do nothing: written lines stay."""
+
+
+def _line(news: News) -> str:
+    """News with their time, in UTC."""
+    time = moment(news.time) if news.time is not None else datetime.now(timezone.utc)
+    clock = f"{time:%H:%M:%S}.{time.microsecond // 1000:03}" if time is not None else " " * len("00:00:00.000")
+    word = f"{news.verdict:{len(NEVER)}}  " if news.verdict is not None else ""
+    return printable(f"{clock}  {word}{news.text}")
+
+
 def drawn(watched: Watched, news: Sequence[str], columns: int, height: int, paint: Paint) -> Sequence[str]:
-    """The lines of the screen: what is watched, the verdicts, the last news, and how it ends."""
+    """The lines of the screen: the address and the mission, the verdicts, the last news, and how to end."""
     runs = ", ".join(f"{number} {outcome}" for outcome, number in watched.outcomes.items())
     head = [each for each in (watched.address, watched.mission, f"runs: {runs}" if runs else "") if each]
     top = [paint("message", printable(each)) for each in head]

@@ -5,45 +5,40 @@ from __future__ import annotations
 import errno
 import os
 import sys
-from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Final
+from collections.abc import Sequence
+from typing import Final
 
 from btq_lang.projects.files import write_stdout
+from btq_lang.projects.messages import CommandOutput, Kind
 from btq_lang.projects.options import Refused
 from btq_lang.render.colour import wants_colour
 from btq_lang.workspace.file import SUFFIXES
 from btq_lang.workspace.loader import LoadProblem, absolute, write_whole
 
-if TYPE_CHECKING:
-    from argparse import Namespace
-
-    from btq_lang.projects.messages import CommandOutput
-    from btq_lang.projects.options import CheckOptions
-
 FOR_PEOPLE: Final = ("full", "concise", "table", "text")
 
 
-def form_of(options: Namespace, forms: Sequence[str]) -> str:
+def form_of(form: str | None, path: str | None, forms: Sequence[str]) -> str:
     """The format to write: the requested one, else the one that the file's suffix names, else the first."""
-    named = _ENDINGS.get(_ending(options), "")
-    return options.format or (named if named in forms else forms[0])
+    named = _ENDINGS.get(_ending(path), "")
+    return form or (named if named in forms else forms[0])
 
 
-def form_problem(options: Namespace, forms: Sequence[str]) -> str | None:
+def form_problem(form: str | None, path: str | None, forms: Sequence[str]) -> str | None:
     """The error in the output file's name: it is a mission's, or, without a requested format, has the suffix of one
     that is not written.
     """
-    ending = _ending(options)
-    if problem := mission_problem("-o", options.output, options.format):
+    ending = _ending(path)
+    if problem := mission_problem("-o", path, form):
         return problem
-    if options.format or (ending not in _OTHERS and _ENDINGS.get(ending, forms[0]) in forms):
+    if form or (ending not in _OTHERS and _ENDINGS.get(ending, forms[0]) in forms):
         return None
     return f"cannot write {ending}; choose one of {', '.join(forms)} with --format, or another file name"
 
 
 def page_problem(path: str | None) -> str | None:
     """The error in the name of a file that is to be a page."""
-    ending = os.path.splitext(path or "")[1].lower()
+    ending = _ending(path)
     if path in (None, "-") or _ENDINGS.get(ending) == "html":
         return None
     return f"{path} is not the name of a page; choose one that ends in .html"
@@ -51,14 +46,14 @@ def page_problem(path: str | None) -> str | None:
 
 def mission_problem(option: str, path: str | None, form: str | None) -> str | None:
     """The error of an output file whose name is a mission's."""
-    ending = os.path.splitext(path or "")[1].lower()
+    ending = _ending(path)
     if ending in SUFFIXES or (ending == ".xml" and form != "junit"):
         return f"{option} {path} may overwrite a mission; choose another file name"
     return None
 
 
-def write_output(path: str | None, text: str, form: str | None = None) -> None:
-    """Write a text to a file, or (None, `-`) to standard output.
+def write_output(messages: CommandOutput, path: str | None, text: str, form: str | None = None) -> None:
+    """Write a text to a file, or (None, `-`) add it to what is printed.
 
     Files are UTF-8, and so is what programs read. A text for people, which `form` says, is in the encoding of standard
     output, with what can be read instead of characters that it lacks.
@@ -68,10 +63,8 @@ def write_output(path: str | None, text: str, form: str | None = None) -> None:
     """
     if path is not None and path != "-":
         write_file(path, text)
-    elif form in FOR_PEOPLE:
-        sys.stdout.write(text)
     else:
-        write_stdout(text)
+        messages.add(text, "result" if form in FOR_PEOPLE else "document")
 
 
 def write_file(path: str, content: str | bytes) -> None:
@@ -90,21 +83,25 @@ def write_file(path: str, content: str | bytes) -> None:
         raise Refused(LoadProblem(target, f"cannot be written: {error.strerror}")) from error
 
 
-def show(messages: CommandOutput) -> None:
-    """Print a command's messages."""
-    for line, is_remark in messages.lines:
-        print(line, file=sys.stderr if is_remark else sys.stdout)
+class Terminal(CommandOutput):
+    """Prints each text as it comes."""
+
+    def add(self, text: str, kind: Kind) -> None:
+        """Print a text on the stream of its kind."""
+        if kind == "document":
+            write_stdout(text)
+        else:
+            (sys.stderr if kind == "remark" else sys.stdout).write(text)
 
 
-def tell(problems: Iterable[LoadProblem]) -> None:
-    """Print on standard error what could not be read or written."""
-    for problem in problems:
-        print(f"btq: {problem}", file=sys.stderr)
+def is_coloured(color: str, is_terminal: bool) -> bool:
+    """Whether to use colours.
 
-
-def is_coloured(options: Namespace | CheckOptions, is_terminal: bool) -> bool:
-    """Whether to use colours; `is_terminal`: the text goes to a terminal."""
-    return options.color == "always" or (options.color == "auto" and wants_colour(is_terminal, os.environ))
+    Args:
+        color: the value of `--color`.
+        is_terminal: the text goes to a terminal.
+    """
+    return color == "always" or (color == "auto" and wants_colour(is_terminal, os.environ))
 
 
 def terminal_width() -> int:
@@ -115,8 +112,8 @@ def terminal_width() -> int:
         return 120
 
 
-def _ending(options: Namespace) -> str:
-    return os.path.splitext(options.output or "")[1].lower()
+def _ending(path: str | None) -> str:
+    return os.path.splitext(path or "")[1].lower()
 
 
 _ENDINGS = {

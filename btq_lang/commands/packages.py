@@ -1,7 +1,7 @@
-"""What the packages around trees say, for the project file that `btq init --from-xml` writes: the version of the
+"""The facts in the packages around trees for the project file that `btq init --from-xml` writes: the version of the
 engine that they depend on, C++ sources that register nodes, and parameter files of Nav2.
 
-One invariant: what several places say otherwise is not decided here.
+One invariant: if places contradict each other, nothing is decided.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from btq_lang.workspace.loader import collect, pool_of, read
 
 
 class Packages(Record):
-    """What packages say.
+    """Facts in packages.
 
     Attributes:
         engines: the versions of the engine that they depend on; empty if none or several do.
-        depends_on: the package of the engine that says so.
+        depends_on: the package of the engine on which they depend.
         sources: folders with C++ that registers nodes or declares their ports, as patterns.
         parameters: files with the parameters of a bt_navigator, each with the distribution of Nav2 that it is for, if
-            it tells.
+            that is clear.
         named: the names of XML files in Python and in launch files.
     """
 
@@ -42,11 +42,11 @@ class Packages(Record):
 
 
 def packages_of(folder: str) -> Packages:
-    """What the packages below a folder say, or if they name no engine, the package that it is in."""
-    texts = _texts(folder, (*_MANIFESTS, *CPP_SUFFIXES, *YAML_SUFFIXES, *_PROGRAMS))
+    """The facts in the packages below a folder; if they name no engine, that of the package around it."""
+    texts = _texts_below(folder, (*_MANIFESTS, *CPP_SUFFIXES, *YAML_SUFFIXES, *_PROGRAMS))
     depends_on = _engine_among(texts)
     if not depends_on and (above := pool_of(folder, folder)) != folder:
-        depends_on = _engine_among(_texts(above, _MANIFESTS))
+        depends_on = _engine_among(_texts_below(above, _MANIFESTS))
     below = {posixpath.relpath(path, folder): text for path, text in texts.items()}
     cpp = {path: text for path, text in below.items() if path.endswith(CPP_SUFFIXES) and not _is_of_tests(path)}
     sources = [path for path, text in cpp.items() if _REGISTERS(text) or _PORTS(text)]
@@ -59,14 +59,14 @@ def packages_of(folder: str) -> Packages:
 
 
 def _distribution(text: str) -> str | None:
-    """The distribution that the parameters of a bt_navigator are for; None if they do not tell, or cannot be read."""
+    """The distribution that the parameters of a bt_navigator are for; None: that is unclear, or they cannot be read."""
     try:
         return read_parameters(text).distribution
     except (YamlMissing, YamlProblem):
         return None
 
 
-def _texts(folder: str, suffixes: tuple[str, ...]) -> dict[str, str]:
+def _texts_below(folder: str, suffixes: tuple[str, ...]) -> dict[str, str]:
     """The files below a folder whose names end with one of the suffixes, with their texts."""
     paths, _ = collect((folder,), Project(), suffixes)
     return {path: read(path)[0] or "" for path in paths}
@@ -88,13 +88,13 @@ def _is_of_tests(path: str) -> bool:
 
 
 def _patterns(sources: Iterable[str]) -> Iterator[str]:
-    """A pattern for the sources of one suffix in a folder, or for several folders, in all below the one around them."""
+    """A pattern for the sources with one suffix in a folder; one for several folders below the folder around them."""
     folders: dict[tuple[str, str], set[str]] = {}
     for path in sources:
         top = path.rpartition("/")[0].partition("/")[0]
         folders.setdefault((top, os.path.splitext(path)[1]), set()).add(posixpath.dirname(path))
-    for (top, suffix), found in folders.items():
-        yield posixpath.join(top, f"**/*{suffix}") if len(found) > 1 else posixpath.join(*found, f"*{suffix}")
+    for (top, suffix), in_folders in folders.items():
+        yield posixpath.join(top, f"**/*{suffix}") if len(in_folders) > 1 else posixpath.join(*in_folders, f"*{suffix}")
 
 
 _OLD: Final = "behaviortree_cpp_v3"

@@ -36,6 +36,6 @@ def _begin(workspace: Workspace) -> None:
 
 def _check(path: str) -> tuple[Diagnostic, ...]:
     assert _store is not None, "every process begins with _begin"
-    found = findings(_store, path).diagnostics
+    diagnostics = findings(_store, path).diagnostics
     _store.sweep()
-    return found
+    return diagnostics

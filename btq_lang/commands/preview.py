@@ -8,7 +8,6 @@ import shlex
 import subprocess
 import sys
 import time
-from argparse import Namespace
 from collections.abc import Callable, Sequence
 from threading import Event, Lock, Thread
 from typing import TYPE_CHECKING
@@ -16,8 +15,10 @@ from typing import TYPE_CHECKING
 from btq_lang.graph.picture import picture, places
 from btq_lang.preview.server import Preview
 from btq_lang.projects.files import Files, usage_problem
+from btq_lang.projects.messages import CommandOutput
 from btq_lang.projects.options import Refused, refuse
 from btq_lang.requirements.resolve import requirements
+from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace.loader import absolute, shown, stamp
 from btq_lang.workspace.watcher import watch
@@ -28,7 +29,26 @@ if TYPE_CHECKING:
     from btq_lang.graph.missions import MeasuredBy
 
 
-def run(options: Namespace) -> int:
+class PreviewOptions(Record):
+    """The options of `btq preview`.
+
+    Attributes:
+        port: on this machine; 0: a free one.
+        open: show it in the browser.
+        evidence: the paths of logs, stores and files of verdicts; none: those of the project.
+        on_click: the command to run on a click on a node.
+        follow: read the messages of an editor from standard input.
+    """
+
+    file: str
+    port: int
+    open: bool
+    evidence: Sequence[str]
+    on_click: str | None
+    follow: bool
+
+
+def run(options: PreviewOptions, messages: CommandOutput) -> int:
     """Serve one file until Ctrl+C."""
     refuse(usage_problem([options.file]))
     if not os.path.isfile(options.file):
@@ -44,7 +64,7 @@ def run(options: Namespace) -> int:
     if options.follow:
         Thread(target=_follow, args=(mission, preview, ended), daemon=True).start()
     else:
-        print("Watching for changes; press Ctrl+C to stop", file=sys.stderr)
+        messages.remark("Watching for changes; press Ctrl+C to stop")
     if options.open:
         import webbrowser
 
@@ -60,7 +80,7 @@ def run(options: Namespace) -> int:
             mission.judge_again()
             preview.changed()
     except KeyboardInterrupt:
-        print(file=sys.stderr)
+        messages.remark("")
     except EOFError:  # the editor has gone
         pass
     preview.close()
@@ -128,7 +148,7 @@ class _Mission:
         values = {"file": self.path, "line": str(line), "column": str(column)}
         try:
             if self._on_click:
-                subprocess.Popen([_filled(word, values) for word in self._on_click], stdin=subprocess.DEVNULL)
+                subprocess.Popen([_with_values(word, values) for word in self._on_click], stdin=subprocess.DEVNULL)
         except OSError as error:
             return {"trouble": f"{self._on_click[0]}: {error.strerror}"}
         return {"said": place}
@@ -191,7 +211,7 @@ class _Mission:
         return "; ".join(map(str, problems))
 
 
-def _filled(word: str, values: dict[str, str]) -> str:
+def _with_values(word: str, values: dict[str, str]) -> str:
     """`+{line}` with the line filled in; all other braces stay, because editor commands may contain them."""
     for name, value in values.items():
         word = word.replace(f"{{{name}}}", value)

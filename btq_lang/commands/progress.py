@@ -31,9 +31,9 @@ class Progress:
         """Count one more step."""
         self.reached(self._done + 1)
 
-    def reached(self, done: int, more: str = "") -> None:
+    def reached(self, steps: int, more: str = "") -> None:
         """Set the number of steps done."""
-        self._done = done
+        self._done = steps
         if self._done < self._total and monotonic() >= self._next and sys.stderr.isatty():
             self._next = monotonic() + _PAUSE
             self._shown = True

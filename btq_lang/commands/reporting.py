@@ -9,6 +9,7 @@ from itertools import chain
 
 from btq_lang.commands.output import FOR_PEOPLE, is_coloured, mission_problem, terminal_width, write_output
 from btq_lang.projects.files import STDIN
+from btq_lang.projects.messages import CommandOutput
 from btq_lang.projects.options import CheckOptions
 from btq_lang.render import Report, render, with_paths
 from btq_lang.util.text import counted
@@ -44,7 +45,7 @@ def report_problem(options: CheckOptions) -> str | None:
     return None
 
 
-def write_report(report: Report, options: CheckOptions, mended: int) -> None:
+def write_report(report: Report, options: CheckOptions, mended: int, messages: CommandOutput) -> None:
     """Write the report where the options say, with the number of applied fixes.
 
     Raises:
@@ -54,14 +55,15 @@ def write_report(report: Report, options: CheckOptions, mended: int) -> None:
     # With --fix, standard output has the new text of standard input, so the report goes to standard error.
     stream = sys.stderr if options.fix and STDIN in options.paths else sys.stdout
     width = terminal_width() if stream.isatty() and not options.output_file else 120
-    colour = options.color == "always" if options.output_file else is_coloured(options, stream.isatty())
-    pieces = _pieces(_named(report, form), form, options.statistics, colour, width)
-    is_told = mended and form in FOR_PEOPLE and not options.quiet
-    last = f"Fixed {counted(mended, 'problem')}\n" if is_told else ""
+    colour = options.color == "always" if options.output_file else is_coloured(options.color, stream.isatty())
+    pieces = _pieces(_with_shown_paths(report, form), form, options.statistics, colour, width)
+    is_shown = mended and form in FOR_PEOPLE and not options.quiet
+    last = f"Fixed {counted(mended, 'problem')}\n" if is_shown else ""
     if options.output_file or (form not in FOR_PEOPLE and stream is sys.stdout):
-        write_output(options.output_file, "".join((*pieces, last)), form)
+        write_output(messages, options.output_file, "".join((*pieces, last)), form)
     else:
-        stream.writelines(chain(pieces, (last,)))
+        for piece in chain(pieces, (last,)):
+            messages.add(piece, "remark" if stream is sys.stderr else "result")
 
 
 def _pieces(report: Report, form: str, is_counted: bool, colour: bool, width: int) -> Iterator[str]:
@@ -72,7 +74,7 @@ def _pieces(report: Report, form: str, is_counted: bool, colour: bool, width: in
     return render(form, report, colour=colour, width=width)
 
 
-def _named(report: Report, form: str) -> Report:
+def _with_shown_paths(report: Report, form: str) -> Report:
     """The report with paths relative to the current folder, or, for GitLab, to its checkout."""
     checkout = os.environ.get("CI_PROJECT_DIR") if form == "gitlab" else None
     if not checkout:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import os
-from argparse import Namespace
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.commands.output import form_of, form_problem
-from btq_lang.commands.verdict_formats import FORMATS
 from btq_lang.commands.verdict_report import print_report
+from btq_lang.commands.verify_options import FORMATS, VerifyOptions, given_options
+from btq_lang.projects.messages import CommandOutput
 from btq_lang.projects.options import Refused
+from btq_lang.util.record import replace
 from btq_lang.workspace.loader import find_project, shown
 
 if TYPE_CHECKING:
@@ -29,44 +29,51 @@ def store_of(project: Project) -> str | None:
     return store if store is None or "://" in store else shown(os.path.join(project.root, store))
 
 
-def reads_store(options: Namespace) -> bool:
+def with_store(options: VerifyOptions) -> VerifyOptions:
+    """The options with the project's store, if the command line names none."""
+    if options.store is not None or options.no_store:
+        return options
+    return replace(options, store=store_of_project())
+
+
+def reads_store(options: VerifyOptions) -> bool:
     """Whether the verdicts of a store are printed, and no log is read.
 
-    Where the command line names no store, that of the project is filled in.
+    Args:
+        options: those of the command line, without the project's store.
     """
-    is_named = options.store is not None or any(_given(options, _OF_SUMMARY))
-    if options.store is None and not options.no_store:
-        options.store = store_of_project()
-    if options.logs or options.store is None:
+    if options.logs:
         return False
+    if options.store is not None or given_options(options, _OF_SUMMARY):
+        return with_store(options).store is not None
     evidence = find_project(".").project.evidence
-    return is_named or evidence is None or not evidence.logs
+    return evidence is not None and evidence.store is not None and not (options.no_store or evidence.logs)
 
 
-def store_problem(options: Namespace, is_summary: bool) -> str | None:
-    """What is wrong with a command line about a store.
+def store_problem(options: VerifyOptions, is_summary: bool) -> str | None:
+    """The usage error of a command line about a store.
 
     Args:
-        is_summary: as `reads_store` says.
+        is_summary: the result of `reads_store`.
     """
     if problem := name_problem(options):
         return problem
-    named = _given(options, (*_OF_LOGS, *_OF_KEEPING, *_OF_SUMMARY))
+    given_names = given_options(options, (*_OF_LOGS, *_OF_KEEPING, *_OF_SUMMARY))
     if options.store is None:
-        wrong = [each for each in named if each not in _OF_LOGS]
+        misplaced = [name for name in given_names if name not in _OF_LOGS]
         where = "a store; leave out --no-store" if options.no_store else "--store DIR"
-        return f"{wrong[0]} goes with {where}" if wrong else None
+        return f"{misplaced[0]} goes with {where}" if misplaced else None
     if not is_summary:
-        wrong = [each for each in named if each in _OF_SUMMARY]
-        return f"{wrong[0]} goes with --store DIR and no log" if wrong else None
-    if wrong := [each for each in named if each not in _OF_SUMMARY]:
-        return f"{wrong[0]} goes with logs; without any, --store DIR prints what is kept there"
-    if form_of(options, FORMATS) == "html":
+        misplaced = [name for name in given_names if name in _OF_SUMMARY]
+        return f"{misplaced[0]} goes with --store DIR and no log" if misplaced else None
+    if misplaced := [name for name in given_names if name not in _OF_SUMMARY]:
+        return f"{misplaced[0]} goes with logs; without any, --store DIR prints what is kept there"
+    if form_of(options.format, options.output, FORMATS) == "html":
         return "a page is made of logs; choose another format for a store"
-    return form_problem(options, FORMATS)
+    return form_problem(options.format, options.output, FORMATS)
 
 
-def name_problem(options: Namespace) -> str | None:
+def name_problem(options: VerifyOptions) -> str | None:
     """The error of a label or robot without a name, which a script with an unset variable gives."""
     for option, name in (("--label", options.label), ("--robot", options.robot)):
         if name is not None and not name.strip():
@@ -74,7 +81,7 @@ def name_problem(options: Namespace) -> str | None:
     return None
 
 
-def opened(options: Namespace, problems: list[str]) -> Keeping | None:
+def opened(options: VerifyOptions, problems: list[str]) -> Keeping | None:
     """The store to keep verdicts in, without what killed writers left; errors are appended to the problems."""
     if options.store is None or problems:
         return None
@@ -96,27 +103,22 @@ def opened(options: Namespace, problems: list[str]) -> Keeping | None:
     return Keeping(options.store, options.label, options.label_by, options.robot, options.robot_by)
 
 
-def summarise(options: Namespace) -> int:
+def summarise(options: VerifyOptions, store: str, messages: CommandOutput) -> int:
     """Print the verdicts of all runs in a store; returns the exit code."""
     from btq_lang.evidence.store.engine import NoEngine, asked
     from btq_lang.evidence.store.summary import summary
 
     try:
         if options.engine is None:
-            ask = asked(options.store)
+            ask = asked(store)
         else:
-            from btq_lang.evidence.store.fleet import asked_by
+            from btq_lang.evidence.store.engine import asked_by
 
-            ask = asked_by(options.engine, options.store)
-        report = summary(ask, options.store, tuple(dict.fromkeys(options.by)))
+            ask = asked_by(options.engine, store)
+        report = summary(ask, store, tuple(dict.fromkeys(options.by)))
     except NoEngine as error:
         raise Refused(error) from error
-    return print_report(options, report, ())
-
-
-def _given(options: Namespace, names: Sequence[str]) -> list[str]:
-    """Those of some options that the command line has."""
-    return [each for each in names if getattr(options, each.strip("-").replace("-", "_"))]
+    return print_report(options, report, (), messages)
 
 
 NO_STORE: Final = (

@@ -26,9 +26,9 @@ def moving(groups: Iterable[FileGroup], target: str) -> tuple[FileGroup, ...]:
 
 
 def is_comparable(groups: Iterable[FileGroup], target: str) -> bool:
-    """Whether it is known what some trees are for, if the target is a distribution."""
-    given = ((group.workspace.store, path) for group in groups for path in group.given)
-    return target not in PACKAGED or any(store.ask(distribution, path) is not None for store, path in given)
+    """Whether the distribution of some trees is known, if the target is a distribution."""
+    requested = ((group.workspace.store, path) for group in groups for path in group.given)
+    return target not in PACKAGED or any(store.ask(distribution, path) is not None for store, path in requested)
 
 
 def with_target(workspace: Workspace, target: str) -> Workspace:
@@ -44,32 +44,36 @@ def _models() -> dict[str, File]:
 
 
 def together(findings: Iterable[Finding]) -> list[Finding]:
-    """The findings, with one for all of a file that say the same of the target, at the first of their places: a project
-    of Groot repeats a value hundreds of times."""
+    """The findings, with equal ones about the target in a file as one at the first of their places: a project of Groot
+    repeats a value hundreds of times."""
     groups: dict[tuple[object, ...], list[Finding]] = {}
-    for number, each in enumerate(findings):
-        found = each.diagnostic
-        same = (found.message, found.notes, found.effective_severity) if found.rule in _OF_TARGET else (number,)
-        groups.setdefault((each.path, found.rule, *same), []).append(each)
-    return [_joined(group) if len(group) > 1 else group[0] for group in groups.values()]
+    for number, finding in enumerate(findings):
+        diagnostic = finding.diagnostic
+        same = (
+            (diagnostic.message, diagnostic.notes, diagnostic.effective_severity)
+            if diagnostic.rule in _OF_TARGET
+            else (number,)
+        )
+        groups.setdefault((finding.path, diagnostic.rule, *same), []).append(finding)
+    return [_merged_finding(group) if len(group) > 1 else group[0] for group in groups.values()]
 
 
-def _joined(group: list[Finding]) -> Finding:
-    first, *others = (each.diagnostic for each in group)
-    found = replace(
+def _merged_finding(group: list[Finding]) -> Finding:
+    first, *others = (finding.diagnostic for finding in group)
+    joined = replace(
         first,
         message=f"{first.message} (here and at {counted(len(others), 'other place')})",
-        related=(*first.related, *(Related(Place(each.span), "here too") for each in others[:_SHOWN])),
+        related=(*first.related, *(Related(Place(other.span), "here too") for other in others[:_SHOWN])),
         fixes=tuple(_fixes(first, others)),
     )
-    return replace(group[0], diagnostic=found)
+    return replace(group[0], diagnostic=joined)
 
 
 def _fixes(first: Diagnostic, others: list[Diagnostic]) -> Iterator[Fix]:
     """The fixes that all have, each for all places."""
     for fix in first.fixes:
         changes: list[tuple[FixEdit, ...]] = [fix.changes]
-        changes += [one.changes for each in others for one in each.fixes if one.title == fix.title]
+        changes += [one.changes for other in others for one in other.fixes if one.title == fix.title]
         if len(changes) == len(others) + 1:
             yield replace(fix, changes=tuple(change for of_one in changes for change in of_one))
 

@@ -3,39 +3,58 @@
 from __future__ import annotations
 
 import sys
-from argparse import Namespace
+from collections.abc import Sequence
 
-from btq_lang.commands.output import form_of, form_problem, is_coloured, tell, terminal_width, write_output
+from btq_lang.commands.output import form_of, form_problem, is_coloured, terminal_width, write_output
 from btq_lang.projects.files import Files, no_mission_below, usage_problem
+from btq_lang.projects.messages import CommandOutput
 from btq_lang.projects.options import refuse
 from btq_lang.trace import FORMATS
 from btq_lang.trace.missions import trace_tables
 from btq_lang.trace.wording import incomplete
+from btq_lang.util.record import Record
 
 
-def run(options: Namespace) -> int:
+class TraceOptions(Record):
+    """The options of `btq trace`.
+
+    Attributes:
+        evidence: the paths of logs, stores and files of verdicts; none: those of the project.
+        bundle: show what is enforced in builds with `--bundle`.
+    """
+
+    paths: Sequence[str]
+    stdin_filename: str | None
+    evidence: Sequence[str]
+    bundle: bool
+    format: str | None
+    output: str | None
+    color: str
+
+
+def run(options: TraceOptions, messages: CommandOutput) -> int:
     """Write the overview; for missions with errors, of all valid parts."""
-    refuse(usage_problem(options.paths) or form_problem(options, FORMATS))
+    refuse(usage_problem(options.paths) or form_problem(options.format, options.output, FORMATS))
     from btq_lang.commands.given_evidence import verdicts_for  # it imports the readers of logs
 
     groups, problems = Files().groups(options.paths, options.stdin_filename)
-    tell(problems)
+    messages.problems(problems)
     refuse(no_mission_below(options.paths, groups))
     if problems:
         return 2
-    wrong: list[str] = []
-    verdicts_of = verdicts_for(options.evidence, groups, wrong)
-    for each in wrong:
-        print(f"btq trace: {each}", file=sys.stderr)
+    evidence_problems: list[str] = []
+    verdicts_of = verdicts_for(options.evidence, groups, evidence_problems)
+    for problem in evidence_problems:
+        messages.remark(f"btq trace: {problem}")
     parts = [(group.workspace, group.given) for group in groups]
     table = trace_tables(parts, options.bundle, verdicts_of=verdicts_of)
     to_terminal = options.output is None and sys.stdout.isatty()
-    colour = is_coloured(options, to_terminal)
-    form = form_of(options, FORMATS)
+    colour = is_coloured(options.color, to_terminal)
+    form = form_of(options.format, options.output, FORMATS)
     text = table.write(form, colour=colour, width=terminal_width() if to_terminal else 120)
-    write_output(options.output, text, form)
-    if wrong:
+    write_output(messages, options.output, text, form)
+    if evidence_problems:
         return 2
     if why := incomplete(table.overview):
-        print(f"btq trace: {why}", file=sys.stderr)
+        messages.remark(f"btq trace: {why}")
     return int(table.errors > 0)

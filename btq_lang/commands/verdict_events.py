@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
-from argparse import Namespace
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Final
 
@@ -17,14 +15,15 @@ from btq_lang.workspace.loader import shown
 if TYPE_CHECKING:
     from btq_lang.evidence.readers.topics import Clock
     from btq_lang.evidence.verdicts import VerdictReport
+    from btq_lang.projects.messages import CommandOutput
 
 
-def events_problem(options: Namespace) -> str | None:
-    """What is wrong with a command line about the file of the violations."""
-    if options.events is None:
+def events_problem(path: str | None) -> str | None:
+    """The usage error in the path of the file of the violations."""
+    if path is None:
         return None
-    if os.path.splitext(options.events)[1] != _MCAP:
-        return f"--events {options.events}: expected the name of an MCAP file, which ends in {_MCAP}"
+    if os.path.splitext(path)[1] != _MCAP:
+        return f"--events {path}: expected the name of an MCAP file, which ends in {_MCAP}"
     try:
         import rosbags.rosbag2  # noqa: F401  # whether it is installed
     except ImportError:
@@ -33,7 +32,7 @@ def events_problem(options: Namespace) -> str | None:
 
 
 def overwrites(path: str, logs: Iterable[str]) -> str | None:
-    """Why the file of the violations cannot be there: it is one of the logs, or would be read as one."""
+    """The reason why violations cannot be written to a path: the file is one of the logs, or would be read as one."""
     file = os.path.realpath(path)
     for log in map(os.path.realpath, logs):
         if file == log or file.startswith(os.path.join(log, "")):
@@ -41,7 +40,7 @@ def overwrites(path: str, logs: Iterable[str]) -> str | None:
     return None
 
 
-def write_events(path: str, report: VerdictReport, logs: Sequence[str]) -> None:
+def write_events(path: str, report: VerdictReport, logs: Sequence[str], messages: CommandOutput) -> None:
     """Write the violations into a file.
 
     Args:
@@ -60,28 +59,28 @@ def write_events(path: str, report: VerdictReport, logs: Sequence[str]) -> None:
     write_file(path, events.data)
     if events.uncounted:
         number = counted(events.uncounted, "violation")
-        print(f"btq verify: {path}: {number} left out; it has the first thousand of each clause", file=sys.stderr)
+        messages.remark(f"btq verify: {path}: {number} left out; it has the first thousand of each clause")
     if events.untimed:
         number = counted(events.untimed, "violation")
-        print(f"btq verify: {path}: {number} left out; a ROS message cannot have their times", file=sys.stderr)
+        messages.remark(f"btq verify: {path}: {number} left out; a ROS message cannot have their times")
 
 
 def _clocks(report: VerdictReport, logs: Sequence[str]) -> dict[str, Clock]:
     """The clocks of the bags in which something is violated, by source."""
-    found: dict[str, Clock] = {}
-    broken = {
-        each.source
+    clock_of_source: dict[str, Clock] = {}
+    violated_sources = {
+        violation.source
         for mission in report.missions
         for requirement in mission.requirements
         for clause in requirement.clauses
-        for each in clause.violations
+        for violation in clause.violations
     }
     for log in logs:
         name = shown(log)
-        if any(source == name or source.startswith(f"{name} ") for source in broken):
+        if any(source == name or source.startswith(f"{name} ") for source in violated_sources):
             for topic, clock in clocks(log).items():
-                found[f"{name} {topic}"] = found[name] = clock  # the topic is named if there are several
-    return found
+                clock_of_source[f"{name} {topic}"] = clock_of_source[name] = clock  # several topics are named
+    return clock_of_source
 
 
 _MCAP: Final = ".mcap"

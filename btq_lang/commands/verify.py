@@ -2,26 +2,28 @@
 
 from __future__ import annotations
 
-from argparse import Namespace
+import json
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from btq_lang.commands.candidates import candidates, strict_problem
 from btq_lang.commands.output import form_of, form_problem
 from btq_lang.commands.progress import Progress
-from btq_lang.commands.stored import opened, reads_store, store_problem, summarise
+from btq_lang.commands.stored import opened, reads_store, store_problem, summarise, with_store
 from btq_lang.commands.verdict_events import events_problem, overwrites
-from btq_lang.commands.verdict_formats import FORMATS
-from btq_lang.commands.verdict_report import finish
-from btq_lang.commands.verdict_run import print_run
-from btq_lang.commands.verdict_summary import progress_to_editor
+from btq_lang.commands.verdict_report import finish, progress_to_editor
+from btq_lang.commands.verify_options import FORMATS, VerifyOptions
 from btq_lang.evidence.judging import Means
+from btq_lang.evidence.one_run import one_run
+from btq_lang.evidence.readers import NotALog
 from btq_lang.evidence.readers.samples import NoSamples
 from btq_lang.evidence.readers.samples import read as read_samples
 from btq_lang.evidence.signal_sources import signal_sources
 from btq_lang.evidence.verifying import judged, logs_below
 from btq_lang.projects.files import logs_of, usage_problem
-from btq_lang.projects.options import refuse
+from btq_lang.projects.messages import CommandOutput
+from btq_lang.projects.options import Refused, refuse
+from btq_lang.util.record import as_dict
 from btq_lang.util.text import counted
 from btq_lang.workspace.loader import IS_SPECIAL, find_project, is_special, shown
 
@@ -30,23 +32,24 @@ if TYPE_CHECKING:
     from btq_lang.evidence.model import SampleSeries
 
 
-def run(options: Namespace) -> int:
+def run(options: VerifyOptions, messages: CommandOutput) -> int:
     """Read the logs, or a store, or watch a robot, and print the verdicts."""
     if options.live is not None:
-        from btq_lang.commands.live import run as watch
+        from btq_lang.commands.live import verify_live
 
-        return watch(options)
-    named = [*options.logs, *options.mission]
+        return verify_live(options, options.live, messages)
     is_summary = reads_store(options)
-    refuse(usage_problem(named) or store_problem(options, is_summary) or events_problem(options))
-    if is_summary:
-        return summarise(options)
+    options = with_store(options)
+    paths = [*options.logs, *options.mission]
+    refuse(usage_problem(paths) or store_problem(options, is_summary) or events_problem(options.events))
+    if is_summary and options.store is not None:
+        return summarise(options, options.store, messages)
     problems: list[str] = []
-    logs, missions, samples = _given(options, problems)
+    logs, missions, samples = _inputs(options, problems)
     if options.events is not None and (problem := overwrites(options.events, [*options.logs, *logs])):
         problems.append(problem)
     if options.run is not None and not problems:
-        return print_run(logs, missions, options.run)
+        return _print_run(logs, missions, options.run, messages)
     declared = signal_sources(missions, problems)
     keeping = opened(options, problems)
     refuse(*problems)
@@ -56,20 +59,20 @@ def run(options: Namespace) -> int:
             missions,
             samples,
             declared,
-            with_timelines=form_of(options, FORMATS) == "html",
+            with_timelines=form_of(options.format, options.output, FORMATS) == "html",
             with_measures=options.summary is not None,
             keeping=keeping,
         )
         reached = to_editor or (lambda files, runs: progress.reached(files, f", {counted(runs, 'run')} judged"))
-        found = judged(logs, means, options.mission, options.signals or "", options.jobs, reached)
-    return finish(options, found, missions, logs)
+        verification = judged(logs, means, options.mission, options.signals or "", options.jobs, reached)
+    return finish(options, verification, missions, logs, messages)
 
 
-def _given(
-    options: Namespace, problems: list[str]
+def _inputs(
+    options: VerifyOptions, problems: list[str]
 ) -> tuple[Sequence[str], Sequence[Candidate], dict[str, SampleSeries]]:
-    """The logs, missions and samples of a command line; errors are appended to the problems."""
-    problem = form_problem(options, FORMATS)
+    """The logs, missions and samples of a command line; problems are appended."""
+    problem = form_problem(options.format, options.output, FORMATS)
     if options.jobs < 1:
         problem = problem or f"--jobs {options.jobs}: expected a number of processes"
     if problem:
@@ -79,11 +82,11 @@ def _given(
     project = home.project
     requested = options.logs or logs_of(project)
     if not requested:
-        untold = "no log given; name one, or set `logs` in [evidence] of btq.toml"
-        problems += map(str, home.problems) if home.problems else [untold]
+        no_log = "no log given; name one, or set `logs` in [evidence] of btq.toml"
+        problems += map(str, home.problems) if home.problems else [no_log]
         return (), (), {}
-    logs, wrong = logs_below(requested, project)
-    problems += wrong
+    logs, log_problems = logs_below(requested, project)
+    problems += log_problems
     samples: dict[str, SampleSeries] = {}
     if options.signals is not None and is_special(options.signals):
         problems.append(f"{shown(options.signals)}: {IS_SPECIAL}")
@@ -95,5 +98,20 @@ def _given(
         except OSError as error:
             problems.append(f"{options.signals}: cannot be read: {error.strerror or error}")
     missions = candidates(options.mission, logs, problems)
-    problems += strict_problem(options, missions)
+    problems += strict_problem(options.strict, missions)
     return logs, missions, samples
+
+
+def _print_run(logs: Sequence[str], missions: Sequence[Candidate], number: int, messages: CommandOutput) -> int:
+    """Print, as JSON for editors, the first mission's run with a number in the log; returns the exit code."""
+    if len(logs) != 1 or len(missions) != 1 or number < 1:
+        raise Refused("--run N goes with one log and one --mission")
+    (log,), (mission,) = logs, missions
+    try:
+        run = one_run(log, mission, number)
+    except (NotALog, OSError) as error:
+        raise Refused(f"{shown(log)}: {error}") from error
+    if run is None:
+        raise Refused(f"{shown(log)} has no run {number} of {mission.name}")
+    messages.add(json.dumps({**as_dict(run), "steps": [*map(as_dict, run.steps)]}) + "\n", "document")
+    return 0

@@ -13,28 +13,29 @@ One invariant: what a log does not show is unknown, with the reason; nothing is 
     verbs.py, run_verbs.py, use.py   a function a verb: the judgement of an activation or of a run; what is used up
     over_run.py    what a clause judged over a run reads: what its nodes did, and when events happened
     scopes.py      which activations count
-    outline.py   the clauses of a mission and where they are, so that a later text is known again
-    clause_findings.py   what was found of a clause, counted, and its verdict
+    outline.py     the clauses of a mission and their places, which identify them in a later text
+    clause_findings.py   the counts of a clause, also in a sliding window, and its verdict
     clause.py, evaluate.py   a clause, and all clauses of a mission, judged while a log is read
     edges.py, margins.py, rejudging.py   the counts for every bound, and a clause judged again with an edited one
-    tally.py, recent.py, odds.py   judgements counted, over all runs or the last ones, and confidence limits
+    tally.py, odds.py   judgements counted, and confidence limits
     explain.py, explain_run.py   what led to a violation
-    distribution.py, timeline.py, signal_lines.py   a histogram of values, and a run with its signals, for the page
-    coverage.py   which nodes ran, how long they took, and how long they blocked the tree
-    session_remarks.py   what times and samples look as if had gone wrong
-    store/         what was found in each log, kept and summarised
+    distribution.py, timeline.py   a histogram of values, and a run with its signals, for the page
+    coverage.py    which nodes ran, how long they took and blocked the tree, and which contexts held
+    store/         the findings of each log, kept and summarised
     compare/       two versions in a store compared
+    report/        the overview of a store as a page
     verdicts.py    the report, as data
-    sentences.py   a clause's result, and what to look at, in a sentence
-    judging.py, parallel.py   one log judged by itself, by one of several processes, and all of them added up
+    sentences.py, wording.py   a clause's result, and what to look at, in a sentence; measures and times in words
+    judging.py     one log judged by itself, or many in several processes, and all of them added up
     watching.py    a running robot: verdicts as they fall
-    copies.py, repeats.py   logs that are given under two names, and runs that several logs hold
-    own_trees.py, node_rows.py   logs of which no mission is known, and what each node did
-    folding.py     what is said of very many logs, in a few lines
+    repeats.py     logs that are given under two names, and runs that several logs hold
+    own_trees.py, node_rows.py   logs whose mission is unknown, and what each node did
+    folding.py     remarks on very many logs in a few lines
+    one_run.py     one run of a log, step by step
     verifying.py, notes.py, signal_sources.py   all of it in one call, and notes beside the verdicts
+    boxes.py       verdicts for the boxes of a drawing
     events.py      the violations as messages of a bag
-    table.py, json_document.py, csv_rows.py, junit.py, markdown.py   the writers
-    written_verdicts.py   reads what json_document.py has written; `trace/` draws the HTML page
+    table.py, json_document.py, csv_rows.py, junit.py, markdown.py   the writers; JSON is also read
 """
 
 from __future__ import annotations

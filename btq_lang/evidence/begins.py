@@ -1,6 +1,6 @@
 """When nodes began, as far as the rows of a log say.
 
-One invariant: a begin is called known only if nothing but the node's own `tick()` lies between it and the node's first
+One invariant: a begin counts as known only if nothing but the node's own `tick()` separates it from the node's first
 row.
 
 The engine does not log when it ticks a node. A node that completes at once leaves one row, its result; an asynchronous
@@ -49,7 +49,7 @@ class Begins:
         built_in = {uid for uid, node in tree.nodes.items() if node.kind in BUILTINS}
         self._writes_first: Final = (self._into | nav2 | built_in) - tree.leaves
         self._parallel: Final = {uid for uid, how in one_tick.items() if how == "unskipped"}
-        # Of each Parallel the last child that has written a row in the activation that this row showed.
+        # By Parallel: the row that showed its activation, and the last child that has written a row since.
         self._ticked: Final[dict[int, tuple[Moment, int]]] = {}
         self._before: tuple[Moment, int, bool] | None = None  # its node, and whether it is RUNNING
         self.others: Final[list[tuple[int, int, bool]]] = []
@@ -68,8 +68,8 @@ class Begins:
         self._before = None
         self.others.clear()
 
-    def of(self, uid: int, now: Moment, status: int, writes: int, begun: Mapping[int, Begin]) -> Begin:
-        """When a node began whose first row is this one, its own or one below it.
+    def begin_of(self, uid: int, now: Moment, status: int, writes: int, begun: Mapping[int, Begin]) -> Begin:
+        """When a node began, by its first row, which the node itself or one below it writes.
 
         Args:
             writes: the node that writes it.
@@ -83,9 +83,9 @@ class Begins:
         if before is not None and self._shows(uid, before, now, begun):
             return Begin(after, after, now)
         time, earliest = now[0], after[0]
-        for other, at, is_result in self.others:
+        for other, other_time, is_result in self.others:
             if other == uid or (is_result and self._waits_for(uid, other)):
-                earliest = max(earliest, at)
+                earliest = max(earliest, other_time)
         child = uid
         for above in self._tree.above(uid) if self._tree.delays else ():
             if begun[above].shown != now and (child == uid or begun[child].shown == now):  # what it waited for
@@ -144,8 +144,8 @@ class Begins:
 
     def _last_ticked(self, parallel: int, shown: Moment) -> int:
         """The last child that has written a row since the Parallel began, which this row shows; 0: none."""
-        of, child = self._ticked.get(parallel, (shown, 0))
-        return child if of == shown else 0
+        activation_shown, child = self._ticked.get(parallel, (shown, 0))
+        return child if activation_shown == shown else 0
 
 
 class Begin(NamedTuple):
@@ -158,8 +158,8 @@ class Begin(NamedTuple):
 
 def _one_tick(tree: LoggedTree, uid: int) -> str:
     kind = "SubTree" if tree.has_tree(uid) else tree.nodes[uid].kind
-    known = BUILTINS.get(kind) or NODES.get(kind)
-    return known.one_tick if known is not None else ""
+    node_kind = BUILTINS.get(kind) or NODES.get(kind)
+    return node_kind.one_tick if node_kind is not None else ""
 
 
 _CLOCKS: Final = 1000  # µs by which a timer and the times of rows may differ

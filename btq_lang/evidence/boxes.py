@@ -28,29 +28,28 @@ if TYPE_CHECKING:
     _Key: TypeAlias = tuple[str, str, int | str]
 
 
-def measured_by(found: Requirements, verdicts: Iterable[RequirementVerdict]) -> MeasuredBy:
-    """A function from a requirement at what it applies to, to what logs show of it there.
+def measured_by(requirements: Requirements, verdicts: Iterable[RequirementVerdict]) -> MeasuredBy:
+    """A function that gives what logs show of a requirement at what it applies to.
 
     Args:
-        found: of the present text of the mission that the verdicts are on.
+        requirements: of the present text of the mission that the verdicts are on.
     """
-    return measured_of(shown_now(found, verdicts))
+    return measured_of(shown_now(requirements, verdicts))
 
 
 def measured_of(shown: Iterable[Shown]) -> MeasuredBy:
     """The same, from clauses of the present text with their verdicts."""
-    judged = ((each.demand.applied, each.demand, each.verdict) for each in shown)
     by_key = grouped(
-        (_key(applied), (demand, verdict))
-        for applied, demand, verdict in judged
-        if applied is not None and verdict is not None
+        (_key(present.demand.applied), (present.demand, present.verdict))
+        for present in shown
+        if present.demand.applied is not None and present.verdict is not None
     )
 
-    def of(applied: Applied) -> tuple[MeasuredClause, ...]:
+    def measured_at(applied: Applied) -> tuple[MeasuredClause, ...]:
         clauses = by_key.get(_key(applied), [])
         return tuple(_measured(demand, clause, is_named=len(clauses) > 1) for demand, clause in clauses)
 
-    return of
+    return measured_at
 
 
 def _measured(demand: Demand, clause: ClauseVerdict, is_named: bool) -> MeasuredClause:
@@ -97,7 +96,7 @@ def _bounds(demand: Demand) -> tuple[Quantity, ...]:
 def _key(applied: Applied) -> _Key:
     """What is the same in all missions that have the node."""
     where = id(applied.node.node) if applied.node is not None else applied.requirement.claims[0].text
-    return applied.requirement.name, applied.given, where
+    return applied.requirement.name, applied.argument_list, where
 
 
 _HELD: Final = {SATISFIED: 1.0, VIOLATED: 0.0}

@@ -80,7 +80,7 @@ class JudgedClause:
     """A clause at a written node, and its judgements so far.
 
     Attributes:
-        found: what was found of it in the logs so far.
+        findings: what the logs so far show of it.
         judged: the claim as it is judged.
         broken: the open activations that break it already, by node, each with the path.
         explainer: of the current log.
@@ -93,9 +93,9 @@ class JudgedClause:
         self.demand: Final = demand
         self.requirement: Final = requirement
         self.claim: Final = claim
-        self.found: Final = ClauseFindings(requirement, limits)
-        self._tally: Final = self.found.tally
-        self._margins: Final = self.found.margins
+        self.findings: Final = ClauseFindings(requirement, limits)
+        self._tally: Final = self.findings.tally
+        self._margins: Final = self.findings.margins
         self._subject: Final = subject
         self._judge: Final = JUDGES.get(claim.verb) if not isinstance(subject, Interval | DurationSum) else None
         self._judge_run: Final = run_judge(claim, subject)
@@ -106,24 +106,24 @@ class JudgedClause:
         self._extremes: Final = self._edge.extremes if self._edge is not None else ()
         self._with_measures: Final = with_measures
         self._events: Final = _events(claim, subject)
-        subjects = (subject, *(each.subject for each in self._events))
+        subjects = (subject, *(event.subject for event in self._events))
         self._is_about_mission: Final = any(isinstance(each, MissionRun) for each in subjects)
         parts = (claim.condition, claim.limit, *self._events, *(scope.condition for scope in requirement.scopes))
-        self._running: Final = [each.target for each in parts_in(parts) if isinstance(each, Running)]
+        self._running: Final = [part.target for part in parts_in(parts) if isinstance(part, Running)]
         measures_time = VERBS[claim.verb].operand not in ("condition", "use")
         self._bounds_time: Final = VERBS[claim.verb].operand in _OF_TIME and not isinstance(subject, DurationSum)
         self._reads: Final = None if measures_time else [*signals_in((parts, claim.signal))]
         is_whole = any(scope.word == "while" for scope in requirement.scopes) and claim.verb not in _AT_ANY_TIME
-        is_of_all = any(isinstance(each, Aggregate) for each in parts_in(parts))
+        is_of_all = any(isinstance(part, Aggregate) for part in parts_in(parts))
         self._is_final: Final = claim.verb in _FINAL and not (self._running or is_whole or is_of_all)
-        self.found.missing = self._why_not()
-        self._is_judged: Final = not self.found.missing
+        self.findings.missing = self._why_not()
+        self._is_judged: Final = not self.findings.missing
         self._nodes: Final[list[int]] = []  # of the current log, as are these:
         self._places: Final[list[_Place]] = []
         self._signals: Signals
         self._history: History
         self._nearby: Callable[[int], Nearby]
-        # Until it is known what else ran meanwhile.
+        # Activations that wait until the end of the run shows what else ran meanwhile.
         self._waiting: Final[list[tuple[Activation, Observed, str, Guard | None]]] = []
         self._refused: Final[list[RefusedStart]] = []  # in the open run, of the clause's nodes
         self._around: Final[list[int]] = []  # a guard of a span is around the parent of its nodes
@@ -142,7 +142,7 @@ class JudgedClause:
         self._records.append(record)
 
     def join(self, joined: Joined, signals: Signals, history: History, nearby: Callable[[int], Nearby]) -> list[int]:
-        """Begin another log; returns the nodes of it that the clause holds for.
+        """Begin another log; returns those of its nodes that the clause holds for.
 
         Args:
             nearby: resolves the other nodes that a clause names, relative to its node.
@@ -154,14 +154,15 @@ class JudgedClause:
         self._notes.clear()
         for uids in self._own(joined) if self._is_judged else ():
             others = nearby(uids[0])
-            needed = [target_of(each) for each in self._events if each.condition is None]
+            needed = [target_of(event) for event in self._events if event.condition is None]
             if isinstance(self.claim.per, NodeTarget):
                 needed.append(self.claim.per)
-            lost = [each for each in [others.find(target) for target in needed] if isinstance(each, UnknownValue)]
+            instances = [others.find(target) for target in needed]
+            lost = [uids_of_target for uids_of_target in instances if isinstance(uids_of_target, UnknownValue)]
             for target in self._running:
                 others.find(target)
             if lost:
-                self.found.missing = self.found.missing or lost[0].why
+                self.findings.missing = self.findings.missing or lost[0].why
                 continue
             self._nodes.extend(uids)
             if self._judge_run is not None:
@@ -169,8 +170,9 @@ class JudgedClause:
                 self._places.append(_Place(joined.tree.nodes[uids[0]].path, uids, others))
         if isinstance(self._subject, Interval):
             guards = joined.enforcing()
-            above = [next((each for each in joined.tree.above(uid) if each not in guards), 0) for uid in self._nodes]
-            self._around.extend(each for each in dict.fromkeys(above) if each)
+            tree = joined.tree
+            parents = [next((above for above in tree.above(uid) if above not in guards), 0) for uid in self._nodes]
+            self._around.extend(parent for parent in dict.fromkeys(parents) if parent)
         return [*self._nodes, *self._around]
 
     def judge(self, activation: Activation, guard: Guard | None, observed: Observed, path: str) -> None:
@@ -179,7 +181,7 @@ class JudgedClause:
             if guard is not None and guard.requirement == self.requirement.name and self.claim.verb in guard.verbs:
                 self._stopped.append(activation)
             return
-        self.found.has_run = self._has_started = True
+        self.findings.has_run = self._has_started = True
         if activation.timing in BEGUN_BEFORE:
             return
         self._waits = self._waits or activation.shown != activation.ended
@@ -226,7 +228,7 @@ class JudgedClause:
         is_own = self._is_own(refusal.guard)
         if self._is_result or (not is_own and VERBS[self.claim.verb].limits != "success"):
             return
-        self.found.has_run = True
+        self.findings.has_run = True
         self._margins.is_exact = False
         if is_own and VERBS[self.claim.verb].operand == "count":
             self._refused.append(refusal)
@@ -261,14 +263,14 @@ class JudgedClause:
             self._judge_over(root)
         if root.timing in CUT_BY_GAP and self._nodes:
             lost = Judgement(None, root.end, ROWS_LOST)
-            self._add(lost, next(iter(self.found.paths)), root.end, root.end, ())
+            self._add(lost, next(iter(self.findings.paths)), root.end, root.end, ())
             self._margins.add(margins.UNKNOWN, margins.UNKNOWN, ())
         self._refused.clear()
         self._stopped.clear()
         self._tally.end_run(run)
         self._margins.end_run(run.number)
         if not self._has_started and self._judge is not None and self._is_judged:
-            self.found.left_out["idle"] += 1
+            self.findings.left_out["idle"] += 1
         self._has_started = False
         self._written = None
         self.broken.clear()
@@ -276,10 +278,10 @@ class JudgedClause:
 
     def _judge_result(self, root: Activation) -> None:
         """Judge a run by the result of its root, from the begin of the written root to its end, if that ran."""
-        of, guard = self._written or (root, None)
-        run = Activation(self._nodes[0], of.started, of.ended, root.outcome, root.timing, of.begun(True), of.shown)
+        top, guard = self._written or (root, None)
+        run = Activation(self._nodes[0], top.started, top.ended, root.outcome, root.timing, top.begun(True), top.shown)
         observed = Observed(self._signals, self._nearby(run.uid), run.started, run.ended, run.timing != "latest")
-        self._judge_in(run, guard, observed, next(iter(self.found.paths)))
+        self._judge_in(run, guard, observed, next(iter(self.findings.paths)))
 
     def _judge_over(self, root: Activation) -> None:
         """Count what is judged over the run, in order of time for all uses of a subtree together: a window may keep
@@ -290,16 +292,16 @@ class JudgedClause:
         for place in self._places:
             over = self._over(place, root)
             overs = [over]
-            known = root.is_begin_known and place.others.are_begins_known()
-            if not known or not all(each.is_begin_known for each in over.own):
+            are_begins_known = root.is_begin_known and place.others.are_begins_known()
+            if not are_begins_known or not all(activation.is_begin_known for activation in over.own):
                 early = root.from_earliest()
                 overs.append(replace(over, root=early, observed=over.observed.earlier(early.started)))
-            judged += [(each, place, over) for each in self._judged_over(self.judged, overs)]
-            self.found.missed += len(over.missed)
+            judged += [(judgement, place, over) for judgement in self._judged_over(self.judged, overs)]
+            self.findings.missed += len(over.missed)
             if self._extremes:
-                self._measure([self._judged_over(each, overs) for each in self._extremes], root)
+                self._measure([self._judged_over(claim, overs) for claim in self._extremes], root)
         if len(judged) > 1:
-            judged.sort(key=lambda each: each[0].at if each[0] is not None else 0)
+            judged.sort(key=lambda entry: entry[0].at if entry[0] is not None else 0)
         for judgement, place, over in judged:
             if judgement is not None and judgement.holds is False:
                 chain = self.explainer.over_run.chain(self.judged, judgement, over, place.others)
@@ -310,8 +312,8 @@ class JudgedClause:
 
     def _over(self, place: _Place, root: Activation) -> OverRun:
         observed = Observed(self._signals, place.others, root.started, root.ended)
-        own = self._history.of(place.uids)
-        refused = [each for each in self._refused if each.uid in place.uids]
+        own = self._history.activations_of(place.uids)
+        refused = [refusal for refusal in self._refused if refusal.uid in place.uids]
         return OverRun(self.claim.verb, self.requirement.scopes, root, own, observed, refused, self._stopped, [])
 
     def _judged_over(self, claim: ResolvedClaim, overs: Sequence[OverRun]) -> Sequence[Judgement | None]:
@@ -321,10 +323,10 @@ class JudgedClause:
         root = overs[0].root
         for early in others:
             if len(early) != len(late):
-                is_any = any(each is not OUT for each in (*early, *late))
+                is_any = any(judgement is not OUT for judgement in (*early, *late))
                 return [Judgement(None, root.end, UNKNOWN_BEGIN)] if is_any else []
-            late = [agreed(one, other, root) for one, other in zip(late, early, strict=True)]
-        return [_clocked(each, root) for each in late if each is not OUT]
+            late = [agreed(*pair, root) for pair in zip(late, early, strict=True)]
+        return [_clocked(judgement, root) for judgement in late if judgement is not OUT]
 
     def _judge_one(
         self,
@@ -354,7 +356,7 @@ class JudgedClause:
             self._margins.is_exact = False
         self._count(_clocked(judgement, root), activation, path)
         if self._extremes:
-            self._measure([[_clocked(self._judged_by(each, ways), root)] for each in self._extremes], activation)
+            self._measure([[_clocked(self._judged_by(extreme, ways), root)] for extreme in self._extremes], activation)
 
     def _depends_on_begin(self, activation: Activation) -> bool:
         """Whether its judgement may differ between the earliest and the latest begin of an activation."""
@@ -373,7 +375,7 @@ class JudgedClause:
     def _judged_as(
         self, claim: ResolvedClaim, activation: Activation, observed: Observed, counts: bool | UnknownValue
     ) -> Judgement | None:
-        """The same, of one that began when it says, and is in scope or not."""
+        """The judgement of an activation with this begin; `counts`: whether it is in scope."""
         if counts is False:
             return None
         assert self._judge is not None, "the clause is judged by its activations"
@@ -386,37 +388,37 @@ class JudgedClause:
             judgement = Judgement(None, judgement.at, counts.why, judgement.measure)
         return judgement
 
-    def _measure(self, extremes: Sequence[Sequence[Judgement | None]], of: Activation) -> None:
-        """Note with which bounds the judgements of an activation, or of a run, are what.
+    def _measure(self, extremes: Sequence[Sequence[Judgement | None]], activation: Activation) -> None:
+        """Add to the margins with which bounds an activation, or a run, is kept, violated or unknown.
 
         Args:
-            extremes: those with a bound that every measure keeps, and with one that none does.
+            extremes: the judgements with a bound that every measure keeps, and with one that none keeps.
         """
         assert self._edge is not None, "its bound may be moved"
         within, beyond = extremes
         is_first_decisive = self.claim.verb in WHILE_IT_RUNS
-        if len(within) != len(beyond) or (is_first_decisive and of.timing != "exact"):
+        if len(within) != len(beyond) or (is_first_decisive and activation.timing != "exact"):
             self._margins.is_exact = False
             return
         for kept, broken in zip(within, beyond, strict=True):
-            judgements = [each for each in (kept, broken) if each is not None and each.measure is not None]
+            judgements = [one for one in (kept, broken) if one is not None and one.measure is not None]
             if is_first_decisive and (kept is None or kept.measure is None):
                 judgements.clear()
             limits = [judgements[0].measure, judgements[0].most] if judgements else []
             values = [self._edge.across(measure.si) for measure in limits if measure is not None]
-            self._margins.add(_kind(kept, of), _kind(broken, of), values)
+            self._margins.add(_kind(kept, activation), _kind(broken, activation), values)
 
-    def _count(self, judgement: Judgement | None, of: Activation, path: str) -> None:
+    def _count(self, judgement: Judgement | None, activation: Activation, path: str) -> None:
         if judgement is None:
-            self._tally.cut_off += of.outcome == "O"
-            if self.claim.verb == "leaves" and of.outcome in _WITHOUT_SUCCESS:
-                self.found.left_out[_WITHOUT_SUCCESS[of.outcome]] += 1
+            self._tally.cut_off += activation.outcome == "O"
+            if self.claim.verb == "leaves" and activation.outcome in _WITHOUT_SUCCESS:
+                self.findings.left_out[_WITHOUT_SUCCESS[activation.outcome]] += 1
         else:
             if judgement.note:
                 self._notes[judgement.note] += 1
             chain = self.explainer.chain(self.claim, judgement, path) if judgement.holds is False else ()
-            since = judgement.since if judgement.since is not None else of.begin
-            self._add(judgement, path, since, of.end, chain)
+            since = judgement.since if judgement.since is not None else activation.begin
+            self._add(judgement, path, since, activation.end, chain)
 
     def _add(self, judgement: Judgement, path: str, begin: int, end: int, chain: tuple[CauseLink, ...]) -> None:
         measure = judgement.measure
@@ -427,33 +429,33 @@ class JudgedClause:
             record(judgement, begin, end, path)
 
     def _own(self, joined: Joined) -> list[tuple[int, ...]]:
-        """The nodes of a log that it holds for, grouped: the nodes of a group are judged as one."""
+        """The nodes of a log that the clause holds for, in groups that are judged as one node."""
         subject = self._subject
         if self._is_about_mission and not joined.build.is_main:  # which did not run as a whole
             return []
         if isinstance(subject, Interval):
-            firsts = self._instances(joined, _known(subject.first.subject))
+            firsts = self._instances(joined, _node_of(subject.first.subject))
             groups: dict[tuple[int, ...], tuple[int, ...]] = {}
-            lasts = self._instances(joined, _known(subject.last.subject))
+            lasts = self._instances(joined, _node_of(subject.last.subject))
             for uid in firsts if subject.first.subject is not None else [ROOT]:
                 together = near(uid, lasts, joined.tree)
                 groups[together] = (*groups.get(together, ()), uid)
-            return [*groups.values()] if not self.found.missing else []
+            return [*groups.values()] if not self.findings.missing else []
         if isinstance(subject, DurationSum):
             uids = [uid for target in subject.targets for uid in self._instances(joined, target)]
-            return [tuple(uids)] if uids and not self.found.missing else []
-        return [(uid,) for uid in self._instances(joined, _known(subject))]
+            return [tuple(uids)] if uids and not self.findings.missing else []
+        return [(uid,) for uid in self._instances(joined, _node_of(subject))]
 
     def _instances(self, joined: Joined, target: NodeTarget | None) -> list[int]:
         """The uids of a node's instances; notes those missing from the log."""
-        found: list[int] = []
+        uids: list[int] = []
         for path, uid in joined.instances(target) if target is not None else ():
-            self.found.paths[path] = None
+            self.findings.paths[path] = None
             if uid is not None:
-                found.append(uid)
+                uids.append(uid)
             else:
-                self.found.missing = self.found.missing or joined.lost(path)
-        return found
+                self.findings.missing = self.findings.missing or joined.lost(path)
+        return uids
 
     def _is_own(self, guard: Guard) -> bool:
         """Whether a guard enforces this clause; spans and sums have no guards."""
@@ -466,14 +468,12 @@ class JudgedClause:
         subject = self._subject
         if subject is None:
             return "the clause applies to no node"
-        if any(
-            isinstance(each, MissionRun) and each.node is None
-            for each in (subject, *(each.subject for each in self._events))
-        ):
+        subjects = (subject, *(event.subject for event in self._events))
+        if any(isinstance(each, MissionRun) and each.node is None for each in subjects):
             return "the mission has no known main tree"
         if self._judge is None and self._judge_run is None:
-            of = "the time from one event to another" if isinstance(subject, Interval) else "a sum of durations"
-            return f"`{self.claim.verb}` cannot be judged of {of}"
+            measured = "the time from one event to another" if isinstance(subject, Interval) else "a sum of durations"
+            return f"`{self.claim.verb}` cannot be judged of {measured}"
         return ""
 
     def remarks(self, tree: LoggedTree, keeping: Collection[int]) -> Iterator[str]:
@@ -495,17 +495,17 @@ class JudgedClause:
 
     def verdict(self, open_run: Run | None = None) -> ClauseVerdict:
         """The verdict on all judgements so far, with those of the open run if that is given."""
-        found = self.found
+        findings = self.findings
         tally = self._tally.result() if open_run is None else self._tally.so_far(open_run, self.broken.values())
-        verdict, why = verdict_of(tally, found.missing, found.has_run)
-        if verdict == NEVER and found.missed and self.claim.event is not None:
+        verdict, why = verdict_of(tally, findings.missing, findings.has_run)
+        if verdict == NEVER and findings.missed and self.claim.event is not None:
             event = self.claim.text.partition(" after ")[2].removeprefix("when ")
-            why = f"it was not running when {event} ({counted(found.missed, 'time')})"
+            why = f"it was not running when {event} ({counted(findings.missed, 'time')})"
         is_of_run = VERBS[self.claim.verb].operand == "count" and self.claim.per is None
-        is_once_a_run = isinstance(self._subject, DurationSum) or (is_of_run and len(found.paths) == 1)
+        is_once_a_run = isinstance(self._subject, DurationSum) or (is_of_run and len(findings.paths) == 1)
         return ClauseVerdict(
             text=self.text,
-            path=", ".join(found.paths),
+            path=", ".join(findings.paths),
             of=self.claim.text.partition(f" {self.claim.verb} ")[0]
             if isinstance(self._subject, Interval | DurationSum)
             else "",
@@ -514,19 +514,19 @@ class JudgedClause:
             unit="runs" if tally.counts_runs or is_once_a_run else "activations",
             confidence=self.requirement.confidence,
             histogram=tally.distribution.histogram(self.marks()),
-            timeline=found.timeline if verdict == VIOLATED else None,
+            timeline=findings.timeline if verdict == VIOLATED else None,
             measures=self._measures() if self._with_measures else None,
-            failed=found.left_out["failed"],
-            halted=found.left_out["halted"],
-            idle=found.left_out["idle"],
+            failed=findings.left_out["failed"],
+            halted=findings.left_out["halted"],
+            idle=findings.left_out["idle"],
             **tally.fields(),
         )
 
     def marks(self) -> dict[str, Quantity]:
-        """What measured values are compared with, as of `Histogram`, as far as it does not vary."""
+        """What measured values are compared with, as in `Histogram`, as far as it does not vary."""
         limit, goal = self.claim.limit, self.requirement.goal
         marks = {"lower bound": limit.value, "upper bound": limit.upper} if limit is not None and limit.upper else {}
-        return {kind: each for kind, each in {**marks, "goal": goal}.items() if isinstance(each, Quantity)}
+        return {kind: value for kind, value in {**marks, "goal": goal}.items() if isinstance(value, Quantity)}
 
     def _measures(self) -> Measures:
         edge, odds = self._edge, self.requirement.odds
@@ -536,8 +536,8 @@ class JudgedClause:
             place=self.demand.place,
             bound=edge.value.si if edge is not None else None,
             odds=(odds.relation, odds.probability) if odds is not None else None,
-            missing=self.found.missing,
-            has_run=self.found.has_run,
+            missing=self.findings.missing,
+            has_run=self.findings.has_run,
             margins=self._margins if is_exact else None,
         )
 
@@ -547,10 +547,10 @@ class JudgedClause:
         return self.demand.text
 
 
-def _kind(judgement: Judgement | None, of: Activation) -> int:
+def _kind(judgement: Judgement | None, activation: Activation) -> int:
     """What a judgement is for margins."""
     if judgement is None:
-        return margins.CUT_OFF if of.outcome == "O" else margins.NOTHING
+        return margins.CUT_OFF if activation.outcome == "O" else margins.NOTHING
     return margins.UNKNOWN if judgement.holds is None else margins.KEPT if judgement.holds else margins.VIOLATED
 
 
@@ -561,7 +561,7 @@ def _events(claim: ResolvedClaim, subject: Subject | None) -> tuple[ResolvedEven
     return (claim.event,) if claim.event is not None else ()
 
 
-def _known(subject: Subject | None) -> NodeTarget | None:
+def _node_of(subject: Subject | None) -> NodeTarget | None:
     """The node of a subject, if the subject is a node."""
     if isinstance(subject, MissionRun) and subject.node is not None:
         return NodeTarget(subject.node)

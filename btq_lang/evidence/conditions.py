@@ -88,15 +88,15 @@ def truth(condition: Condition, observed: Observed, moment: Moment) -> Truth:
         decides = isinstance(condition, Any)
         unknown: Truth = not decides
         for part in condition.conditions:
-            found = truth(part, observed, moment)
-            if found is decides:
+            holds = truth(part, observed, moment)
+            if holds is decides:
                 return decides
-            if isinstance(found, UnknownValue) and not isinstance(unknown, UnknownValue):
-                unknown = found
+            if isinstance(holds, UnknownValue) and not isinstance(unknown, UnknownValue):
+                unknown = holds
         return unknown
     if isinstance(condition, Negation):
-        found = truth(condition.condition, observed, moment)
-        return found if isinstance(found, UnknownValue) else not found
+        holds = truth(condition.condition, observed, moment)
+        return holds if isinstance(holds, UnknownValue) else not holds
     if isinstance(condition, InContext):
         return observed.holds(condition, moment, lambda: truth(condition.condition, observed, moment))
     if isinstance(condition, ResolvedScope):
@@ -186,7 +186,7 @@ def _compared_with_bound(condition: Compare, observed: Observed, moment: Moment,
 
 
 def _compared(condition: Compare, observed: Observed, moment: Moment) -> Truth:
-    values = [_number(each, observed, moment) for each in condition.operands]
+    values = [_number(operand, observed, moment) for operand in condition.operands]
     result: Truth = True
     for sign, left, right in zip(condition.operators, values, values[1:], strict=False):
         if isinstance(left, UnknownValue) or isinstance(right, UnknownValue):

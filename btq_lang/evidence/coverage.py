@@ -1,18 +1,29 @@
-"""Which nodes ran, in how many runs, how long and with which results; retries, and where failures began."""
+"""What the logs of a mission cover: which nodes ran, in how many runs, how long and with which results.
+
+Also retries, where failures began, and in how many runs each context held: a requirement in a context that never
+occurred was not tested.
+"""
 
 from __future__ import annotations
 
 from array import array
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.nav2.nodes import NODES
 from btq_lang.catalog.nodes import tags_of
-from btq_lang.evidence.model import BEGUN_BEFORE, Activation, LoggedTree, Outcome
+from btq_lang.evidence.conditions import truth
+from btq_lang.evidence.history import History, Nearby
+from btq_lang.evidence.model import BEGUN_BEFORE, ROOT, Activation, LoggedTree, Outcome
+from btq_lang.evidence.observed import Observed
+from btq_lang.evidence.signals import Signals, UnknownValue
 from btq_lang.evidence.verdicts import NodeSummary, Repeats
+from btq_lang.evidence.wording import duration
+from btq_lang.requirements.model import Condition, InContext, Running, parts_in
 
 if TYPE_CHECKING:
+    from btq_lang.evidence.identity import Joined
     from btq_lang.workspace.resolved import ResolvedNode
 
 
@@ -75,9 +86,13 @@ class Coverage:
         for repeated in (self.retries, self.recoveries):
             repeated.end_run(run)
 
-    def durations(self) -> dict[str, Sequence[int]]:
-        """The known durations of each node of the current log, by its path, in µs."""
-        return {node.path: node.times for node in self._now.values()}
+    def clock_remarks(self) -> Iterator[str]:
+        """A remark on each node of the current log with a duration that is much longer than its others."""
+        for node in self._now.values():
+            longest = max(node.times, default=0)
+            if longest > _HOUR and longest > _FACTOR * (median := sorted(node.times)[len(node.times) // 2]):
+                took = f"{node.path} took {duration(longest / 1e6)} once"
+                yield f"{took}, and half of the times at most {duration(median / 1e6)}: was the clock set forward?"
 
     def add_all(self, other: Coverage, runs: int) -> None:
         """Add the statistics of later logs; `runs`: how many runs were before them."""
@@ -90,7 +105,7 @@ class Coverage:
 
     def summary(self, written: Sequence[ResolvedNode]) -> tuple[NodeSummary, ...]:
         """The statistics of all nodes, in the order of their uids; `written`: the nodes of the mission."""
-        return tuple(node.summary(written) for _, node in sorted(self._nodes.items(), key=lambda each: each[0]))
+        return tuple(self._nodes[key].summary(written) for key in sorted(self._nodes))
 
 
 class _Node:
@@ -174,5 +189,45 @@ def _percentile(ordered: list[int], percent: int) -> float | None:
     return ordered[-(-len(ordered) * percent // 100) - 1] / 1e6 if ordered else None
 
 
+class Contexts:
+    """Counts the runs of a mission's contexts while its logs are read.
+
+    Attributes:
+        counts: in how many runs each context held, and in how many others that is unknown.
+    """
+
+    def __init__(self, contexts: Mapping[str, Condition | None]) -> None:
+        """Count nothing yet; a context that could not be resolved is None."""
+        self._contexts: Final = [
+            InContext(name, condition) for name, condition in contexts.items() if condition is not None
+        ]
+        self.counts: Final = Counter(dict.fromkeys(contexts, 0)), Counter(dict.fromkeys(contexts, 0))
+
+    def join(self, joined: Joined, signals: Signals, history: History) -> None:
+        """Begin another log."""
+        self._signals, self._nodes = signals, Nearby(ROOT, joined, history)
+        for context in self._contexts:
+            for part in parts_in(context):
+                if isinstance(part, Running):
+                    self._nodes.find(part.target)
+
+    def end_run(self, root: Activation) -> None:
+        """Count the open run, which has ended; `root`: the activation of its root."""
+        observed = Observed(self._signals, self._nodes, root.started, root.ended, root.timing != "latest").in_scope
+        held, unknown = self.counts
+        for context in self._contexts:
+            is_unknown = False
+            for moment in observed.moments(context):
+                holds = truth(context, observed, moment)
+                if holds is True:
+                    held[context.name] += 1
+                    break
+                is_unknown = is_unknown or isinstance(holds, UnknownValue)
+            else:
+                unknown[context.name] += is_unknown
+
+
+_HOUR: Final = 3_600_000_000  # µs
+_FACTOR: Final = 1000
 _RECOVERING: Final = frozenset([kind.tag for kind in NODES.values() if kind.flow == "recover"])
 _RETRYING: Final = tags_of("retry") | _RECOVERING

@@ -33,9 +33,9 @@ class Distribution:
             self._origin = measure.bound.si
             self._step = abs(measure.bound.si) / _FINEST or 1.0 / _FINEST
         self._last = measure
-        at = floor((measure.si - self._origin) / self._step)
-        self._counts[at] += 1
-        if self._counts[at] == 1:
+        step = floor((measure.si - self._origin) / self._step)
+        self._counts[step] += 1
+        if self._counts[step] == 1:
             self._fit()
 
     def add_all(self, other: Distribution) -> None:
@@ -45,8 +45,8 @@ class Distribution:
         self._last = other._last or self._last
         while self._step < other._step:
             self._double()
-        for at, number in other._counts.items():
-            middle = other._origin + (at + 0.5) * other._step
+        for step, number in other._counts.items():
+            middle = other._origin + (step + 0.5) * other._step
             into = floor((middle - self._origin) / self._step)
             self._counts[into] += number
         self._fit()
@@ -57,8 +57,8 @@ class Distribution:
 
     def _double(self) -> None:
         doubled: Counter[int] = Counter()
-        for at, number in self._counts.items():
-            doubled[at // 2] += number
+        for step, number in self._counts.items():
+            doubled[step // 2] += number
         self._counts = doubled
         self._step *= 2
 
@@ -75,7 +75,7 @@ class Distribution:
         return Histogram(
             low=self._origin + low * self._step,
             step=self._step,
-            counts=tuple(self._counts[at] for at in range(low, high + 1)),
+            counts=tuple(self._counts[step] for step in range(low, high + 1)),
             marks={**bound, **marks},
             unit=self._last.unit,
         )

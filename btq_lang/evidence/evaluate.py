@@ -12,22 +12,18 @@ from typing import TYPE_CHECKING, Final, Protocol
 
 from btq_lang.evidence.clause import JudgedClause
 from btq_lang.evidence.clause_findings import ClauseFindings
-from btq_lang.evidence.contexts import Contexts
-from btq_lang.evidence.coverage import Coverage
-from btq_lang.evidence.explain import Explainer
+from btq_lang.evidence.coverage import Contexts, Coverage
+from btq_lang.evidence.explain import Explainer, FailureOrigin
 from btq_lang.evidence.guards import Guards
 from btq_lang.evidence.history import History, Nearby
-from btq_lang.evidence.model import ROOT, Activation, LogSession, Outcome, SampleSeries
+from btq_lang.evidence.model import ROOT, Activation, LoggedTree, LogSession, Outcome, SampleSeries
 from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.odds import Limits
-from btq_lang.evidence.open_verdicts import open_clauses, unread_clauses
-from btq_lang.evidence.outline import demands, outline
+from btq_lang.evidence.outline import demands, open_clauses, outline, unread_clauses
 from btq_lang.evidence.runs import activations
-from btq_lang.evidence.session_remarks import clock_remarks, sample_remarks
-from btq_lang.evidence.signal_lines import read_signals
 from btq_lang.evidence.signals import Signals
 from btq_lang.evidence.tally import Run
-from btq_lang.evidence.timeline import OpenRun
+from btq_lang.evidence.timeline import OpenRun, read_signals
 from btq_lang.evidence.verdicts import (
     OUTCOMES,
     ClauseVerdict,
@@ -45,12 +41,12 @@ if TYPE_CHECKING:
 
 
 class LogFindings:
-    """What was found in some logs of a mission; it refers to no text, so it may go to another process.
+    """The findings in some logs of a mission; they refer to no text, so they may go to another process.
 
     Attributes:
         clauses: in the order in which a `MissionEvaluation` has them.
         contexts: in how many runs each context held, and in how many others that is unknown.
-        ended_by: how many failed runs were ended by the guard of which requirement.
+        ended_by: how many failed runs the guard of each requirement ended.
     """
 
     def __init__(self, clauses: Sequence[ClauseFindings], contexts: tuple[Counter[str], Counter[str]]) -> None:
@@ -62,9 +58,11 @@ class LogFindings:
         self.coverage: Final = Coverage()
 
     def add(self, other: LogFindings, runs: int) -> None:
-        """Add what was found in later logs, whose runs are numbered by themselves, after so many runs."""
-        for clause, found in zip(self.clauses, other.clauses, strict=True):
-            clause.add(found, runs)
+        """Add the findings of later logs, whose runs have numbers of their own; `runs`: how many runs were before
+        them.
+        """
+        for clause, findings in zip(self.clauses, other.clauses, strict=True):
+            clause.add(findings, runs)
         for own, theirs in zip(self.contexts, other.contexts, strict=True):
             own.update(theirs)
         self.outcomes.update(other.outcomes)
@@ -74,7 +72,7 @@ class LogFindings:
         self.coverage.add_all(other.coverage, runs)
 
     def leave_out(self, runs: Sequence[int]) -> None:
-        """Name runs of the last file, by their numbers there, that another one has too."""
+        """Note which runs of the last file, by their numbers there, are left out because another file has them."""
         self.sources[-1] = replace(self.sources[-1], left_out=(*self.sources[-1].left_out, *runs))
 
     def add_source(self, source: EvidenceFile) -> None:
@@ -94,7 +92,7 @@ class LogFindings:
 
 
 class EvaluationListener(Protocol):
-    """Something that is given all that is found while it is found."""
+    """Receives what an evaluation finds, as soon as it is found."""
 
     def join(self, joined: Joined, clauses: Sequence[JudgedClause]) -> None:
         """A session begins."""
@@ -110,10 +108,10 @@ class EvaluationListener(Protocol):
 
 
 class MissionEvaluation:
-    """Judges a mission's requirements while its logs are read; gives listeners all that is found.
+    """Judges a mission's requirements while its logs are read, and tells listeners what it finds.
 
     Attributes:
-        found: what the verdicts need of the logs so far.
+        findings: what the verdicts need of the logs so far.
     """
 
     def __init__(
@@ -129,25 +127,25 @@ class MissionEvaluation:
 
         Args:
             ran: called with the number of each run after it is judged.
-            with_timelines, limits, with_measures: as of `judging.Means`.
+            with_timelines, limits, with_measures: as in `judging.Means`.
         """
         self._ran: Final = ran
         self.listeners: Final = [*listeners]
         self.mission: Final = mission
-        found = mission.requirements
-        clauses = [JudgedClause(each, limits, with_measures) for each in demands(found)]
+        requirements = mission.requirements
+        clauses = [JudgedClause(demand, limits, with_measures) for demand in demands(requirements)]
         self._with_measures: Final = with_measures
-        self._signals: Final = found.signals
+        self._signals: Final = requirements.signals
         self._clauses: Final = clauses
-        self._contexts: Final = Contexts(found.contexts)
-        self.found: Final = LogFindings([each.found for each in clauses], self._contexts.counts)
+        self._contexts: Final = Contexts(requirements.contexts)
+        self.findings: Final = LogFindings([clause.findings for clause in clauses], self._contexts.counts)
         self._open_run: Final = OpenRun(read_signals(_reading(mission, clauses))) if with_timelines else None
 
     def read(
         self,
         session: LogSession,
         joined: Joined,
-        given: Mapping[str, SampleSeries],
+        samples: Mapping[str, SampleSeries],
         first_run: int,
         source: str,
         run_ended: Callable[[Activation], None] = lambda root: None,
@@ -155,30 +153,19 @@ class MissionEvaluation:
         """Judge the runs of a session; returns how many there are.
 
         Args:
-            given: samples by signal, which override the log's own.
+            samples: by signal; they override the log's own.
             first_run: the number of the first run.
             source: the file, as people read it.
             run_ended: called with the root's activation at the end of each run.
         """
-        tree = session.tree
-        signals = Signals(given, session.samples)
-        history = History()
-        nearby = cache(lambda uid: Nearby(uid, joined, history))
-        at = grouped((uid, each) for each in self._clauses for uid in each.join(joined, signals, history, nearby))
-        judged = {uid: (clauses, tree.nodes[uid].path, nearby(uid)) for uid, clauses in at.items()}
-        enforcing = joined.enforcing()
-        guards = Guards(tree, enforcing, at, joined.unjoined())
-        over_runs = any(clause.is_over_run for clause in self._clauses)
-        explainer = Explainer(tree, at, signals, has_clauses_over_runs=over_runs)
-        for clause in self._clauses:
-            clause.explainer = explainer
+        opened = _OpenSession(self._clauses, session.tree, joined, Signals(samples, session.samples))
+        explainer, history, concerned = opened.explainer, opened.history, opened.guards.concerned
         for listener in self.listeners:
             listener.join(joined, self._clauses)
-        self._contexts.join(joined, signals, history)
-        coverage = self.found.coverage
-        coverage.expect(tree, joined.written())
-        begin: int | None = None
-        end = 0
+        self._contexts.join(joined, opened.signals, history)
+        coverage = self.findings.coverage
+        coverage.expect(session.tree, joined.written())
+        times: tuple[int, int] | None = None  # when the first run began, and when the last one ended
         runs = 0
         for activation in activations(session):
             coverage.count(activation)
@@ -188,62 +175,59 @@ class MissionEvaluation:
                 self._open_run.see(activation)
             for listener in self.listeners:
                 listener.see(activation)
-            if activation.uid in guards.concerned:  # few nodes are
-                settled, refusal = guards.see(activation)
-                if refusal is not None:
-                    clauses, path, _ = judged[refusal.uid]
-                    for clause in clauses:
-                        clause.refuse(refusal, path)
-                for ended, guard in settled:
-                    clauses, path, others = judged[ended.uid]
-                    observed = Observed(signals, others, ended.started, ended.ended, ended.timing != "latest")
-                    for clause in clauses:
-                        clause.judge(ended, guard, observed, path)
+            if activation.uid in concerned:  # few nodes are
+                opened.judge(activation)
             if activation.uid == ROOT:
                 run = Run(first_run + runs, source, activation.begin, activation.end)
                 runs += 1
-                begin = activation.begin if begin is None else begin
-                end = activation.end
-                self.found.outcomes[activation.outcome] += 1
-                began = origin.uid if origin is not None else None
-                if began in enforcing:
-                    self.found.ended_by[guards.last or enforcing[began]] += 1
-                guards.end_run()
-                repeats = coverage.retries.now, coverage.recoveries.now
-                coverage.end_run(run.number, began)
-                for clause in self._clauses:
-                    clause.end_run(run, activation)
-                for listener in self.listeners:
-                    listener.end_run(activation, *repeats, began)
-                self._contexts.end_run(activation)
-                history.clear()
-                explainer.end_run()
-                if self._open_run is not None:
-                    self._open_run.end(run, tree, self.found.clauses, signals)
-                signals.forget_before(end)
-                self._ran(run.number)
+                times = times[0] if times is not None else run.begin, run.end
+                self._end_run(run, activation, origin, opened)
                 run_ended(activation)
-        session.remarks.extend(remark for each in self._clauses for remark in each.remarks(tree, session.keeping))
-        session.remarks.extend(clock_remarks(coverage.durations()))
-        read = (
-            (name, each.fresh, signals.sampled_times(each, begin or 0, end)) for name, each in self._signals.items()
+        begin, end = times or (0, 0)
+        session.remarks.extend(
+            remark for clause in self._clauses for remark in clause.remarks(session.tree, session.keeping)
         )
-        session.remarks.extend(sample_remarks(read, end))
-        self.found.add_source(
+        session.remarks.extend(coverage.clock_remarks())
+        session.remarks.extend(opened.signals.remarks(self._signals, begin, end))
+        self.findings.add_source(
             EvidenceFile(
                 file=source,
                 runs=runs,
                 first_run=first_run,
-                begin=begin,
+                begin=begin if runs else None,
                 end=end if runs else None,
                 identity=joined.how,
                 joined=joined.number,
-                nodes=len(tree.nodes),
+                nodes=len(session.tree.nodes),
                 remarks=tuple(session.remarks),
                 unjoined=tuple(joined.differences()),
             )
         )
         return runs
+
+    def _end_run(self, run: Run, root: Activation, origin: FailureOrigin | None, opened: _OpenSession) -> None:
+        """Judge the open run, which has ended.
+
+        Args:
+            root: the activation of its root.
+            origin: where its failure began, if it failed.
+        """
+        began = origin.uid if origin is not None else None
+        self.findings.outcomes[root.outcome] += 1
+        if began in opened.enforcing:
+            self.findings.ended_by[opened.guards.last or opened.enforcing[began]] += 1
+        coverage = self.findings.coverage
+        repeats = coverage.retries.now, coverage.recoveries.now
+        coverage.end_run(run.number, began)
+        for clause in self._clauses:
+            clause.end_run(run, root)
+        for listener in self.listeners:
+            listener.end_run(root, *repeats, began)
+        self._contexts.end_run(root)
+        if self._open_run is not None:
+            self._open_run.end(run, opened.tree, self.findings.clauses, opened.signals)
+        opened.end_run(run.end)
+        self._ran(run.number)
 
     def end(self) -> None:
         """Tell the listeners that the log has been read."""
@@ -252,44 +236,89 @@ class MissionEvaluation:
 
     def verdicts(self, open_run: Run | None = None) -> tuple[RequirementVerdict, ...]:
         """The verdict on each requirement so far, with the open run if that is given."""
-        found = self.mission.requirements
-        by_requirement: dict[str, list[ClauseVerdict]] = {name: [] for name in found.all}
+        requirements = self.mission.requirements
+        by_requirement: dict[str, list[ClauseVerdict]] = {name: [] for name in requirements.all}
         for clause in self._clauses:
             by_requirement[clause.requirement.name].append(clause.verdict(open_run))
         for name, clauses in by_requirement.items():
-            clauses.extend(unread_clauses(found.all[name]))
-            clauses.extend(() if clauses else open_clauses(found.all[name]))
+            clauses.extend(unread_clauses(requirements.all[name]))
+            clauses.extend(() if clauses else open_clauses(requirements.all[name]))
         return tuple(
             RequirementVerdict(
                 name,
-                " ".join((found.all[name].title or "").split()),
-                worst_of(each.verdict for each in clauses),
+                " ".join((requirements.all[name].title or "").split()),
+                worst_of(clause_verdict.verdict for clause_verdict in clauses),
                 tuple(clauses),
             )
             for name, clauses in by_requirement.items()
         )
 
     def result(self) -> MissionVerdicts:
-        """All that was found so far."""
-        requirements, found = self.mission.requirements, self.found
-        held, unknown = found.contexts
+        """The verdicts and statistics so far."""
+        requirements, findings = self.mission.requirements, self.findings
+        held, unknown = findings.contexts
         return MissionVerdicts(
             name=self.mission.name,
             file=self.mission.path,
-            sources=tuple(found.sources),
+            sources=tuple(findings.sources),
             requirements=self.verdicts(),
-            outcomes=tuple((OUTCOMES[outcome], number) for outcome, number in found.outcomes.items() if number),
-            ended_by=tuple(found.ended_by.items()),
-            nodes=found.coverage.summary(requirements.nodes.all),
+            outcomes=tuple((OUTCOMES[outcome], number) for outcome, number in findings.outcomes.items() if number),
+            ended_by=tuple(findings.ended_by.items()),
+            nodes=findings.coverage.summary(requirements.nodes.all),
             contexts=tuple(ContextSummary(name, runs, unknown[name]) for name, runs in held.items()),
-            retries=found.coverage.retries.summary(),
-            recoveries=found.coverage.recoveries.summary(),
+            retries=findings.coverage.retries.summary(),
+            recoveries=findings.coverage.recoveries.summary(),
             outline=outline(requirements) if self._with_measures else "",
         )
 
 
+class _OpenSession:
+    """A session while it is judged.
+
+    Attributes:
+        enforcing: the guards among its nodes, each with its requirement.
+    """
+
+    def __init__(self, clauses: Sequence[JudgedClause], tree: LoggedTree, joined: Joined, signals: Signals) -> None:
+        """Join the clauses with the nodes of the session."""
+        self.tree: Final = tree
+        self.signals: Final = signals
+        self.history: Final = History()
+        nearby = cache(lambda uid: Nearby(uid, joined, self.history))
+        clauses_of = grouped(
+            (uid, clause) for clause in clauses for uid in clause.join(joined, signals, self.history, nearby)
+        )
+        self._judged: Final = {uid: (own, tree.nodes[uid].path, nearby(uid)) for uid, own in clauses_of.items()}
+        self.enforcing: Final = joined.enforcing()
+        self.guards: Final = Guards(tree, self.enforcing, clauses_of, joined.unjoined())
+        over_runs = any(clause.is_over_run for clause in clauses)
+        self.explainer: Final = Explainer(tree, clauses_of, signals, has_clauses_over_runs=over_runs)
+        for clause in clauses:
+            clause.explainer = self.explainer
+
+    def judge(self, activation: Activation) -> None:
+        """Judge by their clauses the activations that this one settles; it is of a node that guards concern."""
+        settled, refusal = self.guards.see(activation)
+        if refusal is not None:
+            clauses, path, _ = self._judged[refusal.uid]
+            for clause in clauses:
+                clause.refuse(refusal, path)
+        for ended, guard in settled:
+            clauses, path, others = self._judged[ended.uid]
+            observed = Observed(self.signals, others, ended.started, ended.ended, ended.timing != "latest")
+            for clause in clauses:
+                clause.judge(ended, guard, observed, path)
+
+    def end_run(self, end: int) -> None:
+        """Forget the open run, which has ended at this time."""
+        self.guards.end_run()
+        self.history.clear()
+        self.explainer.end_run()
+        self.signals.forget_before(end)
+
+
 def _reading(mission: Candidate, clauses: Sequence[JudgedClause]) -> Iterator[tuple[str, object]]:
     """The parts of the model that read signals, each with the name of its requirement or context."""
-    for each in clauses:
-        yield each.requirement.name, (each.claim, each.requirement.scopes)
-    yield from ((name, each) for name, each in mission.requirements.contexts.items() if each is not None)
+    for clause in clauses:
+        yield clause.requirement.name, (clause.claim, clause.requirement.scopes)
+    yield from ((name, context) for name, context in mission.requirements.contexts.items() if context is not None)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.readers.topics import Clock
     from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, RequirementVerdict, VerdictReport, Violation
 
-    _Found: TypeAlias = tuple[int, MissionVerdicts, RequirementVerdict, ClauseVerdict, Violation]  # the time first
+    _Timed: TypeAlias = tuple[int, MissionVerdicts, RequirementVerdict, ClauseVerdict, Violation]  # the time first
 
 
 class Events(Record):
@@ -51,8 +51,8 @@ def render(report: VerdictReport, name: str, clocks: Mapping[str, Clock]) -> Eve
     from rosbags.rosbag2 import StoragePlugin, Writer
     from rosbags.typesys import Stores, get_typestore
 
-    found, counted = _found(report)
-    placed = _placed(found, clocks)
+    violations, counted = _timed(report)
+    placed = _placed(violations, clocks)
     store = get_typestore(Stores.LATEST)
     log, stamp = store.types[_LOG], store.types["builtin_interfaces/msg/Time"]
     with TemporaryDirectory() as folder:
@@ -71,29 +71,31 @@ def render(report: VerdictReport, name: str, clocks: Mapping[str, Clock]) -> Eve
                 )
                 bag.write(topics[0], received * 1000, store.serialize_cdr(message, _LOG))
         data = Path(folder, name, f"{name}.mcap").read_bytes()
-    return Events(data, len(found) - len(placed), counted - len(found))
+    return Events(data, len(violations) - len(placed), counted - len(violations))
 
 
-def _found(report: VerdictReport) -> tuple[Sequence[_Found], int]:
+def _timed(report: VerdictReport) -> tuple[Sequence[_Timed], int]:
     """The violations that a report has, with their times in µs since the epoch, and how many it counts."""
-    found: list[_Found] = []
+    violations: list[_Timed] = []
     counted = 0
     for mission in report.missions:
         for requirement in mission.requirements:
             for clause in requirement.clauses:
                 counted += clause.violated
-                for each in clause.violations:
-                    found.append((each.start + round(each.at * _SECOND), mission, requirement, clause, each))
-    return found, counted
+                for violation in clause.violations:
+                    time = violation.start + round(violation.at * _SECOND)
+                    violations.append((time, mission, requirement, clause, violation))
+    return violations, counted
 
 
-def _placed(found: Sequence[_Found], clocks: Mapping[str, Clock]) -> Sequence[tuple[int, _Found]]:
+def _placed(violations: Sequence[_Timed], clocks: Mapping[str, Clock]) -> Sequence[tuple[int, _Timed]]:
     """The violations whose times a message can have, in the order of the times at which the bag receives them."""
-    placed: list[tuple[int, _Found]] = []
-    for source, those in grouped((each[-1].source, each) for each in found if 0 <= each[0] < _END).items():
-        times = [time for time, *_ in those]
-        placed += zip(clocks[source].to_reception(times) if source in clocks else times, those, strict=True)
-    return sorted((each for each in placed if 0 <= each[0] < _END), key=itemgetter(0))
+    placed: list[tuple[int, _Timed]] = []
+    possible = (violation for violation in violations if 0 <= violation[0] < _END)
+    for source, of_source in grouped((violation[-1].source, violation) for violation in possible).items():
+        times = [time for time, *_ in of_source]
+        placed += zip(clocks[source].to_reception(times) if source in clocks else times, of_source, strict=True)
+    return sorted((violation for violation in placed if 0 <= violation[0] < _END), key=itemgetter(0))
 
 
 def _text(

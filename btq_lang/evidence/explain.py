@@ -51,7 +51,7 @@ class Explainer:
         self._tree: Final = tree
         self._signals: Final = signals
         self._below: Final[dict[int, Sums]] = {uid: {} for uid in judged}  # since the last end of each judged node
-        self._above: Final = {uid: [each for each in tree.above(uid) if each in judged] for uid in tree.nodes}
+        self._above: Final = {uid: [above for above in tree.above(uid) if above in judged] for uid in tree.nodes}
         self._going_on: Final = {uid for uid, node in tree.nodes.items() if node.kind in _GOES_ON}
         # Of open nodes: the child that ended last, or the first that failed of a node that then goes on.
         self._last: Final[dict[int, tuple[int, Outcome, FailureOrigin | None]]] = {}
@@ -152,7 +152,7 @@ class Explainer:
     def _levels(self, signal: ResolvedSignal, unit: Unit | None, activation: Activation) -> CauseLink:
         """The level of a signal at the start and at the end of an activation that used some of it."""
         levels = [self._signals.reading(signal, time) for time in (activation.begin, activation.end)]
-        first, last = [quantity(float(each), unit) for each in levels if not isinstance(each, UnknownValue)]
+        first, last = [quantity(float(level), unit) for level in levels if not isinstance(level, UnknownValue)]
         time = took(activation)
         text = f"`{signal.name}` went from {first} to {last} {f'in {time}' if time else 'at once'}"
         return CauseLink("sample", self._tree.nodes[activation.uid].path, text, activation.seconds, 1, 0)
@@ -173,10 +173,10 @@ class Explainer:
                 continue
             age = time - sampled
             text = f"{f'`{signal.name}` was ' if is_named else ''}sampled {ago(age)}"
-            ran = [each for each in self._leaves.values() if each.begin <= sampled <= each.end > each.begin]
+            running = [leaf for leaf in self._leaves.values() if leaf.begin <= sampled <= leaf.end > leaf.begin]
             path = ""
-            if ran:
-                path = self._tree.nodes[min(ran, key=lambda each: each.end).uid].path
+            if running:
+                path = self._tree.nodes[min(running, key=lambda leaf: leaf.end).uid].path
                 text += f", while {path} ran"
             yield CauseLink("sample", path, text, age / 1e6, 1, 0)
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from operator import attrgetter
+from operator import attrgetter, itemgetter
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.over_run import OverRun, target_of
@@ -61,20 +61,22 @@ class RunExplainer:
 
     def _meanwhile(self, begin: int, end: int, leaves: Iterable[int]) -> Iterator[CauseLink]:
         """The leaves that ran for at least a twentieth of a period, the longest first."""
-        found: list[tuple[int, int, list[Activation]]] = []
+        long_leaves: list[tuple[int, int, list[Activation]]] = []
         for uid in leaves:
             kept = self._leaves.get(uid, [])
             first = max(bisect_right(kept, begin, key=_BEGIN) - 1, 0)
-            inside = [each for each in kept[first : bisect_left(kept, end, key=_BEGIN)] if each.end > begin]
-            time = sum(min(each.end, end) - max(each.begin, begin) for each in inside)
+            inside = [
+                activation for activation in kept[first : bisect_left(kept, end, key=_BEGIN)] if activation.end > begin
+            ]
+            time = sum(min(activation.end, end) - max(activation.begin, begin) for activation in inside)
             if time > 0 and time * 20 >= end - begin:
-                found.append((-time, uid, inside))
-        for time, uid, inside in sorted(found, key=lambda each: each[:2]):
+                long_leaves.append((-time, uid, inside))
+        for time, uid, inside in sorted(long_leaves, key=itemgetter(0, 1)):
             yield part(self._tree.nodes[uid].path, -time, len(inside), _failed(inside))
 
     def _going_on(self, begin: int, end: int, own: Sequence[Activation]) -> Iterator[CauseLink]:
         """What ran below a node that did not end; for a leaf, how long it ran."""
-        late = next(each for each in own if each.begin <= begin <= each.end >= end)
+        late = next(activation for activation in own if activation.begin <= begin <= activation.end >= end)
         if late.uid in self._tree.leaves:
             yield CauseLink("self", self._path(late), ran(late), late.seconds, 1, _failed([late]))
         else:
@@ -82,22 +84,26 @@ class RunExplainer:
 
     def _shares(self, starts: Sequence[Activation]) -> Iterator[CauseLink]:
         """How long each node of a sum ran, the longest first."""
-        by_node = grouped((each.uid, each) for each in starts)
-        times = {uid: sum(each.end - each.begin for each in own) for uid, own in by_node.items()}
+        by_node = grouped((start.uid, start) for start in starts)
+        times = {uid: sum(start.end - start.begin for start in own) for uid, own in by_node.items()}
         for uid in sorted(by_node, key=lambda uid: (-times[uid], uid)):
             yield part(self._tree.nodes[uid].path, times[uid], len(by_node[uid]), _failed(by_node[uid]))
 
     def _inside(self, starts: Sequence[Activation]) -> Iterator[CauseLink]:
         """The leaves that failed during activations of a node, the most frequent first."""
-        found: list[CauseLink] = []
+        links: list[CauseLink] = []
         for uid in range(starts[0].uid + 1, self._tree.last[starts[0].uid] + 1):
             kept = self._leaves.get(uid, [])
-            inside = [each for each in kept if starts[0].begin <= each.begin and each.end <= starts[-1].end]
+            inside = [
+                activation
+                for activation in kept
+                if starts[0].begin <= activation.begin and activation.end <= starts[-1].end
+            ]
             if failed := _failed(inside):
-                time = sum(each.end - each.begin for each in inside)
+                time = sum(activation.end - activation.begin for activation in inside)
                 text = f"{self._path(inside[0])} failed in {failed} of its {counted(len(inside), 'start')}"
-                found.append(CauseLink("failure", self._path(inside[0]), text, time / 1e6, len(inside), failed))
-        return iter(sorted(found, key=lambda each: -each.failed))
+                links.append(CauseLink("failure", self._path(inside[0]), text, time / 1e6, len(inside), failed))
+        return iter(sorted(links, key=lambda link: -link.failed))
 
     def _last(self, event: ResolvedEvent, time: int, others: Nearby) -> Iterator[CauseLink]:
         """What the node of an event last did instead."""
@@ -106,7 +112,7 @@ class RunExplainer:
             return
         target = target_of(event)
         uids = others.find(target)
-        before = [each for each in others.activations(target) if each.begin <= time]
+        before = [activation for activation in others.activations(target) if activation.begin <= time]
         if before:
             last = before[-1]
             text = f"{self._path(last)} had started {ago(time - last.begin)}"
@@ -140,14 +146,14 @@ def ran(activation: Activation) -> str:
 
 def _ends(path: str, starts: Sequence[Activation]) -> CauseLink:
     """How activations of a node ended."""
-    numbers = {outcome: sum(each.outcome == outcome for each in starts) for outcome in _ENDED}
+    numbers = {outcome: sum(start.outcome == outcome for start in starts) for outcome in _ENDED}
     came = [f"{number} {_ENDED[outcome]}" for outcome, number in numbers.items() if number]
-    time = sum(each.end - each.begin for each in starts)
+    time = sum(start.end - start.begin for start in starts)
     return CauseLink("starts", path, ", ".join(came), time / 1e6, len(starts), _failed(starts))
 
 
 def _failed(activations: Iterable[Activation]) -> int:
-    return sum(each.outcome == "F" for each in activations)
+    return sum(activation.outcome == "F" for activation in activations)
 
 
 def ago(time: int) -> str:

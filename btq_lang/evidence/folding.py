@@ -1,4 +1,4 @@
-"""What is said of very many logs, in a few lines for people; documents for programs have all of it."""
+"""Remarks on very many logs, in a few lines for people; documents for programs have all of them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from btq_lang.util.text import counted
 
 
 def folded(lines: Iterable[str]) -> Iterator[str]:
-    """Lines of which many that differ only in names and numbers are one, with how many more there are."""
+    """The lines; many that differ only in names and numbers are one, with how many more there are."""
     for alike in grouped((_VARYING.sub("#", line), line) for line in lines).values():
         if len(alike) <= _MOST:
             yield from alike
@@ -22,11 +22,11 @@ def folded(lines: Iterable[str]) -> Iterator[str]:
 
 
 def folded_sources(sources: Sequence[EvidenceFile]) -> Sequence[EvidenceFile]:
-    """Logs of which many whose nodes were found in the same way are one."""
+    """The logs; many whose nodes were found in the same way are one."""
     if len(sources) <= _MOST:
         return sources
-    alike = grouped(((each.identity, each.joined, each.nodes), each) for each in sources).values()
-    return [one for group in alike for one in (group if len(group) <= _MOST else [_joint(group)])]
+    alike = grouped(((source.identity, source.joined, source.nodes), source) for source in sources).values()
+    return [alike_source for group in alike for alike_source in (group if len(group) <= _MOST else [_joint(group)])]
 
 
 def _joint(sources: Sequence[EvidenceFile]) -> EvidenceFile:
@@ -35,9 +35,9 @@ def _joint(sources: Sequence[EvidenceFile]) -> EvidenceFile:
     return replace(
         first,
         file=f"{counted(len(sources), 'log')}, {first.file} to {last.file}",
-        runs=sum(each.runs for each in sources),
-        begin=min((each.begin for each in sources if each.begin is not None), default=None),
-        end=max((each.end for each in sources if each.end is not None), default=None),
+        runs=sum(source.runs for source in sources),
+        begin=min((source.begin for source in sources if source.begin is not None), default=None),
+        end=max((source.end for source in sources if source.end is not None), default=None),
         remarks=tuple(folded(remarks)),
     )
 

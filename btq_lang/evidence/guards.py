@@ -1,7 +1,7 @@
 """What the guards, nodes that a build adds around others, did: which nodes they stopped, whose start they refused, and
 whose success they did not accept.
 
-One invariant: an activation is passed on only when it is known what the guards around it did: a halted one when its
+One invariant: an activation is passed on only when what the guards around it did is certain: a halted one when its
 nearest ancestor has ended that was not halted itself, one that succeeded when its success has been checked.  A guard
 has failed when its check has, also where the log is cut off before the guard's own row.
 """
@@ -12,7 +12,7 @@ from collections.abc import Collection, Mapping, Set
 from itertools import takewhile
 from typing import Final
 
-from btq_lang.btcpp.around import EVALUATING, LIMITING, WATCHING
+from btq_lang.btcpp.wrappers import EVALUATING, LIMITING, WATCHING
 from btq_lang.catalog.verbs import VERBS, words
 from btq_lang.evidence.model import ROOT, Activation, LoggedTree, Moment
 from btq_lang.util.record import Record
@@ -83,9 +83,9 @@ class Guards:
             self._failed[self._holders[uid]] = activation.ended
         settled: list[tuple[Activation, Guard | None]] = []
         refusal = self._refusal(activation)
-        for failed, at in [*self._failed.items()] if uid == ROOT else ():
+        for failed, failed_at in [*self._failed.items()] if uid == ROOT else ():
             if failed != ROOT:  # it has no row
-                stopped, refused = self.see(Activation(failed, (0, 0), at, "F"))
+                stopped, refused = self.see(Activation(failed, (0, 0), failed_at, "F"))
                 settled += stopped
                 refusal = refusal or refused
         around = self._around.get(uid)
@@ -118,14 +118,14 @@ class Guards:
 
     def _refusal(self, activation: Activation) -> RefusedStart | None:
         uid = activation.uid
-        at = self._failed.get(uid)
+        failed_at = self._failed.get(uid)
         inside = self._inside.get(uid)
-        if at is None or inside is None or not self._guards[uid].verbs:
+        if failed_at is None or inside is None or not self._guards[uid].verbs:
             return None
         if uid in self._shown and self._shown[uid] >= activation.shown:
             return None
         self.last = self._guards[uid].requirement
-        return RefusedStart(inside, at, self._guards[uid])
+        return RefusedStart(inside, failed_at, self._guards[uid])
 
     def end_run(self) -> None:
         """Begin another run."""
@@ -142,18 +142,18 @@ class Guards:
 
 def _guard(tree: LoggedTree, uid: int, condition: int, requirement: str) -> Guard:
     kind = tree.nodes[uid].kind
-    what = tree.nodes[uid].path.rpartition("_")[2]  # a build names it
+    purpose = tree.nodes[uid].path.rpartition("_")[2]  # a build names it
     path = tree.nodes[condition].path
     if not requirement:
         return Guard(path, "", frozenset())
     if kind == LIMITING:
         return Guard(path, requirement, words(enforced="limit"))
     if kind == WATCHING:
-        return Guard(path, requirement, words(limits=("success",)) | {what} if what in VERBS else frozenset())
-    checked = _CHECKED.get(what)
+        return Guard(path, requirement, words(limits=("success",)) | {purpose} if purpose in VERBS else frozenset())
+    checked = _CHECKED.get(purpose)
     if checked is not None:
         return Guard(path, requirement, frozenset([checked]), checks=True, halts=False)
-    return Guard(path, requirement, words(enforced="refusal") & {what}, halts=False)
+    return Guard(path, requirement, words(enforced="refusal") & {purpose}, halts=False)
 
 
 # The ends of the names of Sequences that check a success, and the verbs of their clauses.

@@ -36,10 +36,10 @@ class History:
         if kept is not None:
             kept.append(activation)
 
-    def of(self, uids: Sequence[int]) -> list[Activation]:
+    def activations_of(self, uids: Sequence[int]) -> list[Activation]:
         """The activations of nodes, in the order of their starts."""
-        found = [activation for uid in uids for activation in self._by_node[uid]]
-        return sorted(found, key=_SHOWN) if len(uids) > 1 else found
+        activations = [activation for uid in uids for activation in self._by_node[uid]]
+        return sorted(activations, key=_SHOWN) if len(uids) > 1 else activations
 
     def runs(self, uid: int, moment: Moment, is_early: bool) -> bool | UnknownValue:
         """Whether a node is active at a moment, from its start to the row of its end.
@@ -68,38 +68,38 @@ class Nearby:
         self._uid: Final = uid
         self._joined: Final = joined
         self._history: Final = history
-        self._found: Final[dict[NodeTarget, tuple[int, ...] | UnknownValue]] = {}
+        self._uids: Final[dict[NodeTarget, tuple[int, ...] | UnknownValue]] = {}
 
     def find(self, target: NodeTarget) -> tuple[int, ...] | UnknownValue:
         """The instances of a node, whose activations are kept from now on."""
         instances = self._joined.instances(target)
         lost = next((path for path, uid in instances if uid is None), None)
-        found: tuple[int, ...] | UnknownValue
+        uids: tuple[int, ...] | UnknownValue
         if lost is not None:
-            found = UnknownValue(self._joined.lost(lost))
+            uids = UnknownValue(self._joined.lost(lost))
         else:
-            found = near(self._uid, [uid for _, uid in instances if uid is not None], self._joined.tree)
-            self._history.watch(found)
-        self._found[target] = found
-        return found
+            uids = near(self._uid, [uid for _, uid in instances if uid is not None], self._joined.tree)
+            self._history.watch(uids)
+        self._uids[target] = uids
+        return uids
 
     def activations(self, target: NodeTarget) -> list[Activation]:
         """The activations of a node in the run, in the order of their starts."""
-        found = self._found[target]
-        return [] if isinstance(found, UnknownValue) else self._history.of(found)
+        uids = self._uids[target]
+        return [] if isinstance(uids, UnknownValue) else self._history.activations_of(uids)
 
     def are_begins_known(self) -> bool:
         """Whether the log says when all of these nodes began in the run."""
-        found = (each for each in self._found.values() if not isinstance(each, UnknownValue))
-        return all(each.is_begin_known for uids in found for each in self._history.of(uids))
+        known = (uids for uids in self._uids.values() if not isinstance(uids, UnknownValue))
+        return all(activation.is_begin_known for uids in known for activation in self._history.activations_of(uids))
 
     def runs(self, target: NodeTarget, moment: Moment, is_early: bool) -> bool | UnknownValue:
-        """Whether a node runs; `is_early`: as of `History.runs`."""
-        found = self._found[target]
-        if isinstance(found, UnknownValue):
-            return found
-        running = [self._history.runs(uid, moment, is_early) for uid in found]
-        return True in running or next((each for each in running if isinstance(each, UnknownValue)), False)
+        """Whether a node runs; `is_early`: as in `History.runs`."""
+        uids = self._uids[target]
+        if isinstance(uids, UnknownValue):
+            return uids
+        running = [self._history.runs(uid, moment, is_early) for uid in uids]
+        return True in running or next((state for state in running if isinstance(state, UnknownValue)), False)
 
 
 def near(uid: int, others: Sequence[int], tree: LoggedTree) -> tuple[int, ...]:

@@ -45,12 +45,12 @@ class Candidate:
         self.name: Final = name
         self.side: Final = side
         self.requirements: Final[Requirements] = requirements(workspace, path)
-        self._made: Final[list[_Made]] = []
-        self._unmade: Final = _made(self)
+        self._built: Final[list[_BuiltMission]] = []
+        self._unbuilt: Final = _builds_of(self)
         self._builds: Final[dict[tuple[int, str], Build]] = {}
 
     def __reduce__(self) -> tuple[object, ...]:
-        """What makes it again in a process that does not share the memory of this one."""
+        """How a process that does not share memory with this one makes the mission again."""
         return Candidate, (self.workspace, self.path, self.name, self.side)
 
     @cached_property
@@ -59,30 +59,30 @@ class Candidate:
         return {id(node): index for index, node in enumerate(self.requirements.nodes.all)}
 
     def builds(self, tree: str = "") -> Iterator[Build]:
-        """What `btq build` makes of it, without options first, and a program runs.
+        """The builds of the mission that a program may run, the one without options first.
 
         Args:
             tree: the one that the program creates; empty: the main tree.  None is made where there is no such tree.
         """
-        for number, made in enumerate(self._all_made()):
-            name = tree or made.main
-            if name in made.trees:
+        for number, built_mission in enumerate(self._all_built()):
+            name = tree or built_mission.main
+            if name in built_mission.trees:
                 if (number, name) not in self._builds:
-                    running = RunningTree(made.built, self.requirements.nodes, name)
-                    how = made.how if name == made.main else f"tree {name}, {made.how}"
-                    self._builds[number, name] = Build(how, running, name, name == made.main)
+                    running = RunningTree(built_mission.built, self.requirements.nodes, name)
+                    how = built_mission.how if name == built_mission.main else f"tree {name}, {built_mission.how}"
+                    self._builds[number, name] = Build(how, running, name, name == built_mission.main)
                 yield self._builds[number, name]
 
     def trees(self) -> Sequence[str]:
         """The names of the trees that a program may create instead of the main tree."""
-        made = next(self._all_made(), None)
-        return [name for name in made.trees if name != made.main] if made is not None else []
+        first = next(self._all_built(), None)
+        return [name for name in first.trees if name != first.main] if first is not None else []
 
-    def _all_made(self) -> Iterator[_Made]:
-        yield from self._made
-        for made in self._unmade:
-            self._made.append(made)
-            yield made
+    def _all_built(self) -> Iterator[_BuiltMission]:
+        yield from self._built
+        for built_mission in self._unbuilt:
+            self._built.append(built_mission)
+            yield built_mission
 
 
 class Joined(Record):
@@ -114,16 +114,17 @@ class Joined(Record):
 
     def differences(self) -> Iterator[str]:
         """The nodes of the log, then those of the mission, that were not found, each in words."""
-        made = {_number(each): each.path for each, _ in self.build.running.all if each.element.get(MARK) is None}
+        instances = (instance for instance, _ in self.build.running.all if instance.element.get(MARK) is None)
+        paths = {_number(instance): instance.path for instance in instances}
         uids = self.unjoined() if self.has_uids else frozenset()
         for uid in sorted(uids):
-            known = made.get(uid, "") if uid not in self.uids else ""
-            yield unlike(uid, without_number(self.tree.nodes[uid].path), without_number(known))
-        yield from (self.lost(path) for number, path in made.items() if number not in self.uids and number not in uids)
+            written_path = paths.get(uid, "") if uid not in self.uids else ""
+            yield unlike(uid, without_number(self.tree.nodes[uid].path), without_number(written_path))
+        yield from (self.lost(path) for number, path in paths.items() if number not in self.uids and number not in uids)
 
     def lost(self, path: str) -> str:
         """Why a node of the mission was not found, given its path."""
-        number = next((_number(each) for each, _ in self.build.running.all if each.path == path), 0)
+        number = next((_number(instance) for instance, _ in self.build.running.all if instance.path == path), 0)
         if self.has_uids and number in self.unjoined():
             logged = without_number(self.tree.nodes[number].path)
             return f"`{path}` {self.lacking}: {unlike(number, logged, without_number(path))}"
@@ -131,8 +132,8 @@ class Joined(Record):
 
     def instances(self, target: NodeTarget) -> list[tuple[str, int | None]]:
         """The paths of the instances of a written node, each with its uid in the log; None if it is not there."""
-        uids = [(each, self.uids.get(_number(each))) for each in self.build.running.instances(target)]
-        return [(self.tree.nodes[uid].path if uid is not None else each.path, uid) for each, uid in uids]
+        uids = [(instance, self.uids.get(_number(instance))) for instance in self.build.running.instances(target)]
+        return [(self.tree.nodes[uid].path if uid is not None else instance.path, uid) for instance, uid in uids]
 
     def written(self) -> dict[int, int]:
         """By uid, the index of the written node of each of the log's nodes among those of the mission."""
@@ -142,12 +143,13 @@ class Joined(Record):
 
     def enforcing(self) -> dict[int, str]:
         """The guards among the log's nodes, each with its requirement."""
-        marks = ((self.uids.get(_number(each)), each.element.get(MARK)) for each, _ in self.build.running.all)
+        instances = (instance for instance, _ in self.build.running.all)
+        marks = ((self.uids.get(_number(instance)), instance.element.get(MARK)) for instance in instances)
         return {uid: mark for uid, mark in marks if uid is not None and mark is not None}
 
 
-class _Made(Record):
-    """What a build makes of a mission.
+class _BuiltMission(Record):
+    """A mission as it was built.
 
     Attributes:
         how: with which options.
@@ -162,7 +164,7 @@ class _Made(Record):
 
 
 class Build(Record):
-    """What runs of a build; `how` names its options, and the tree if it is not the main one."""
+    """A tree of a build as it runs; `how`: the options of the build, and the tree unless it is the main one."""
 
     how: str
     running: RunningTree
@@ -173,14 +175,14 @@ class Build(Record):
         """The tree as a log would hold it, as far as its nodes have numbers."""
         return LoggedTree(
             [
-                (each.uid, kind_of(each.element), each.path, each.parent or 0)
-                for each, _ in self.running.all
-                if each.uid is not None
+                (instance.uid, kind_of(instance.element), instance.path, instance.parent or 0)
+                for instance, _ in self.running.all
+                if instance.uid is not None
             ],
             delays={
-                each.uid: delay
-                for each, _ in self.running.all
-                if each.uid is not None and (delay := delay_of(each.element)) is not None
+                instance.uid: delay
+                for instance, _ in self.running.all
+                if instance.uid is not None and (delay := delay_of(instance.element)) is not None
             },
         )
 
@@ -191,7 +193,7 @@ def join(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:
     None: no mission has half of its nodes, or, with those that are alike, two thirds.
     """
     nodes = [(node.uid, node.path) for node in tree.nodes.values()]
-    in_order = sorted(missions, key=lambda each: each.side != nodes)  # building a mission takes time
+    in_order = sorted(missions, key=lambda mission: mission.side != nodes)  # building a mission takes time
     for name in dict.fromkeys(("", tree.name)):
         for mission in in_order:
             for build in mission.builds(name):
@@ -204,17 +206,18 @@ def join(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:
     return best if is_same else None
 
 
-def unlike(uid: int, logged: str, made: str) -> str:
-    """That a node has different names in the log and in the mission; empty: it is not there."""
-    return f"node {uid} is `{logged}` in the log and " + (f"`{made}` in the mission" if made else "not in the mission")
+def unlike(uid: int, logged: str, written: str) -> str:
+    """How a node is named in the log and in the mission, in words; `written`: empty if the mission lacks it."""
+    in_mission = f"`{written}` in the mission" if written else "not in the mission"
+    return f"node {uid} is `{logged}` in the log and {in_mission}"
 
 
 def _others(joined: Joined, missions: Sequence[Candidate]) -> tuple[str, ...]:
     """The paths of other missions that the log belongs to as well, by the same build of theirs."""
-    others = {each.path: each for each in missions if each.path != joined.mission.path}
+    others = {other.path: other for other in missions if other.path != joined.mission.path}
     build = joined.build
     name = "" if build.is_main else build.name
-    builds = {path: next((b for b in each.builds(name) if b.how == build.how), None) for path, each in others.items()}
+    builds = {path: next((b for b in other.builds(name) if b.how == build.how), None) for path, other in others.items()}
     return tuple(path for path, build in builds.items() if build and join_build(others[path], build, joined.tree))
 
 
@@ -232,16 +235,16 @@ def difference(missions: Sequence[Candidate], tree: LoggedTree) -> str:
 
 
 def _nearest(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:
-    name = tree.name if any(tree.name in each.trees() for each in missions) else ""
+    name = tree.name if any(tree.name in mission.trees() for mission in missions) else ""
     joined = (_by_path(mission, build, tree) for mission in missions for build in mission.builds(name))
-    return max(joined, key=lambda each: (each.number, _alike(each.build, tree)), default=None)
+    return max(joined, key=lambda match: (match.number, _alike(match.build, tree)), default=None)
 
 
 def join_build(mission: Candidate, build: Build, tree: LoggedTree) -> Joined | None:
     """All nodes, if the trees of a log and of a build are equal; else None."""
     wanted = [(node.uid, node.kind, node.path) for node in tree.nodes.values()]
-    made = [(_number(each), kind_of(each.element), each.path) for each, _ in build.running.all]
-    if made != wanted:
+    nodes = [(_number(instance), kind_of(instance.element), instance.path) for instance, _ in build.running.all]
+    if nodes != wanted:
         return None
     is_side = mission.side == [(uid, path) for uid, _, path in wanted]
     how = mission.origin if is_side else build.how
@@ -250,16 +253,16 @@ def join_build(mission: Candidate, build: Build, tree: LoggedTree) -> Joined | N
 
 def _by_path(mission: Candidate, build: Build, tree: LoggedTree) -> Joined:
     """The nodes whose paths are equal and unique on both sides."""
-    logged, made = _unique(_logged_paths(tree)), _unique(_made_paths(build))
-    uids = {number: logged[key] for key, number in made.items() if key in logged}
+    logged, written = _unique(_logged_paths(tree)), _unique(_built_paths(build))
+    uids = {number: logged[key] for key, number in written.items() if key in logged}
     how = "built from another version"
     return Joined(mission, tree, how if build.is_main else f"tree {build.name}, {how}", uids, len(uids), build)
 
 
 def _alike(build: Build, tree: LoggedTree) -> int:
     """How many nodes have the same paths in both trees, also where several are alike."""
-    logged, made = (Counter(path for path, _ in pairs) for pairs in (_logged_paths(tree), _made_paths(build)))
-    return (logged & made).total()
+    logged, written = (Counter(path for path, _ in pairs) for pairs in (_logged_paths(tree), _built_paths(build)))
+    return (logged & written).total()
 
 
 def _logged_paths(tree: LoggedTree) -> list[tuple[tuple[str, str], int]]:
@@ -267,15 +270,16 @@ def _logged_paths(tree: LoggedTree) -> list[tuple[tuple[str, str], int]]:
     return [((node.kind, without_number(node.path)), node.uid) for node in tree.nodes.values()]
 
 
-def _made_paths(build: Build) -> list[tuple[tuple[str, str], int]]:
+def _built_paths(build: Build) -> list[tuple[tuple[str, str], int]]:
     """The same of a build, with the numbers there."""
-    return [((kind_of(each.element), without_number(each.path)), _number(each)) for each, _ in build.running.all]
+    instances = (instance for instance, _ in build.running.all)
+    return [((kind_of(each.element), without_number(each.path)), _number(each)) for each in instances]
 
 
-def _made(mission: Candidate) -> Iterator[_Made]:
+def _builds_of(mission: Candidate) -> Iterator[_BuiltMission]:
     """Builds with different options, without those that fail."""
     workspace = mission.workspace
-    targets = [workspace.project.target, *(each for each in VERSIONS if each != workspace.project.target)]
+    targets = [workspace.project.target, *(version for version in VERSIONS if version != workspace.project.target)]
     for target in targets:
         project = replace(workspace.project, engines=(target,))
         for is_enforced in (True, False):
@@ -283,22 +287,22 @@ def _made(mission: Candidate) -> Iterator[_Made]:
             if built is not None:
                 how = "as built now" if target == targets[0] else f"as built for {target}"
                 main = built.documents[-1].root.get("main_tree_to_execute") or ""
-                tops = (each for document in built.documents for each in document.root.elements)
-                trees = [each.get("ID") or "" for each in tops if each.tag == "BehaviorTree"]
-                yield _Made(how if is_enforced else f"{how} with --no-enforce", built, main, tuple(trees))
+                tops = (element for document in built.documents for element in document.root.elements)
+                trees = [element.get("ID") or "" for element in tops if element.tag == "BehaviorTree"]
+                yield _BuiltMission(how if is_enforced else f"{how} with --no-enforce", built, main, tuple(trees))
 
 
 def _built(mission: Candidate, workspace: Workspace, is_enforced: bool) -> BuiltFile | None:
     """What `btq build` writes; None if the mission cannot be built."""
     path = mission.path
     exports = [
-        as_xml(workspace, each, enforce=is_enforced and is_mission(workspace, each)).export
-        for each in workspace.registered_with(path)
+        as_xml(workspace, registered, enforce=is_enforced and is_mission(workspace, registered)).export
+        for registered in workspace.registered_with(path)
     ]
-    if any(each.problems for each in exports):
+    if any(export.problems for export in exports):
         return None
-    elements = {key: element for each in exports for key, element in each.elements.items()}
-    return BuiltFile(path, path, "", tuple(each.document for each in exports), elements)
+    elements = {key: element for export in exports for key, element in export.elements.items()}
+    return BuiltFile(path, path, "", tuple(export.document for export in exports), elements)
 
 
 def _number(instance: Instance) -> int:

@@ -1,28 +1,31 @@
-"""Verdicts for programs: a document that `verdicts.schema.json` describes."""
+"""Verdicts for programs: writes and reads a document that `verdicts.schema.json` describes."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Container
-from typing import TYPE_CHECKING, Final, TypeAlias
+from collections.abc import Container, Iterable, Iterator
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
-from btq_lang.evidence.wording import timestamp
-from btq_lang.util.record import as_dict
+from btq_lang.evidence.margins import Margins
+from btq_lang.evidence.verdicts import (
+    Bounded,
+    CauseLink,
+    ClauseVerdict,
+    Measures,
+    RequirementVerdict,
+    RunValue,
+    Violation,
+    Worst,
+)
+from btq_lang.evidence.wording import time_of, timestamp
+from btq_lang.util.record import Record, as_dict
 from btq_lang.workspace.loader import shown
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.verdicts import (
-        ClauseVerdict,
-        EvidenceFile,
-        Foreign,
-        Measures,
-        MissionVerdicts,
-        RequirementVerdict,
-        RunValue,
-        VerdictReport,
-    )
+    from btq_lang.evidence.verdicts import EvidenceFile, Foreign, MissionVerdicts, VerdictReport
 
     Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
+
 
 FORMAT: Final = "btq-verdicts"
 VERSION: Final = 2
@@ -32,8 +35,8 @@ def render(report: VerdictReport) -> str:
     """Write the report as JSON."""
     sources = [_source(source, mission) for mission in report.missions for source in mission.sources]
     sources += [
-        {"file": each.file, "mission": None, "runs": each.runs, **_unjoined(each), "remarks": []}
-        for each in report.foreign
+        {"file": foreign.file, "mission": None, "runs": foreign.runs, **_unjoined(foreign), "remarks": []}
+        for foreign in report.foreign
     ]
     document: Json = {
         "format": FORMAT,
@@ -103,13 +106,13 @@ def _clause(clause: ClauseVerdict) -> Json:
         "limits": clause.limits if clause.interval is not None else None,
         "violations": [
             {
-                **_fields(each, but=("passed",)),
-                "start": timestamp(each.start),
-                "measured": each.measured or None,
-                "bound": each.bound or None,
-                "chain": [_fields(link) for link in each.chain],
+                **_fields(violation, but=("passed",)),
+                "start": timestamp(violation.start),
+                "measured": violation.measured or None,
+                "bound": violation.bound or None,
+                "chain": [_fields(link) for link in violation.chain],
             }
-            for each in clause.violations
+            for violation in clause.violations
         ],
         **({"by_run": [*map(_run_value, clause.by_run)]} if clause.by_run else {}),
         **({"measures": _measures(clause.measures)} if clause.measures is not None else {}),
@@ -128,3 +131,115 @@ def _measures(measures: Measures) -> Json:
 def _fields(record: object, but: Container[str] = ()) -> dict[str, Json]:
     """The fields of a record by name; the schema has them."""
     return {name: value for name, value in as_dict(record).items() if name not in but}
+
+
+class NotVerdicts(ValueError):
+    """A text that is not such a document."""
+
+
+class WrittenSource(Record):
+    """A log: its runs, the number of the first, when the last one ended, empty without any, whether all nodes were
+    found in the mission, and the numbers there of runs that are counted in another log.
+    """
+
+    file: str
+    runs: int
+    first_run: int
+    end: str
+    is_whole: bool
+    left_out: tuple[int, ...]
+
+
+class WrittenMission(Record):
+    """The verdicts of a mission.
+
+    Attributes:
+        file: of the mission, as the document names it; empty in documents of older versions.
+        outline: as in `MissionVerdicts`.
+        sources: the logs, in the order of their runs.
+    """
+
+    name: str
+    file: str
+    runs: int
+    outline: str
+    sources: tuple[WrittenSource, ...]
+    requirements: tuple[RequirementVerdict, ...]
+
+
+def read_verdicts(text: str) -> tuple[WrittenMission, ...]:
+    """The missions of a document.
+
+    Raises:
+        NotVerdicts: the text is something else.
+    """
+    try:
+        document = json.loads(text)
+        if document["format"] != FORMAT or document["version"] not in _VERSIONS:
+            raise NotVerdicts(f"expected {FORMAT} {VERSION}, found {document['format']} {document['version']}")
+        return tuple(
+            WrittenMission(
+                mission["name"],
+                mission.get("file", ""),
+                mission["runs"],
+                mission.get("outline", ""),
+                tuple(map(_read_source, _parts_of(mission, document["sources"]))),
+                tuple(map(_read_requirement, _parts_of(mission, document["requirements"]))),
+            )
+            for mission in document["missions"]
+        )
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        why = str(error) if isinstance(error, NotVerdicts) else "expected what btq verify --format json writes"
+        raise NotVerdicts(why) from error
+
+
+def _parts_of(mission: dict[str, Any], parts: Iterable[dict[str, Any]]) -> Iterator[dict[str, Any]]:
+    """The sources or the requirements of a mission."""
+    return (part for part in parts if part["mission"] == mission["name"])
+
+
+def _read_requirement(written: dict[str, Any]) -> RequirementVerdict:
+    return RequirementVerdict(
+        written["id"], written["title"], written["verdict"], tuple(map(_read_clause, written["clauses"]))
+    )
+
+
+def _read_source(written: dict[str, Any]) -> WrittenSource:
+    is_whole = written["joined"] == written["nodes"]
+    end, left_out = written["end"] or "", tuple(written.get("left_out", ()))
+    return WrittenSource(written["file"], written["runs"], written["first_run"], end, is_whole, left_out)
+
+
+def _read_clause(written: dict[str, Any]) -> ClauseVerdict:
+    fields = {name: written[name] for name in ClauseVerdict.__match_args__ if name in written}
+    interval = written["interval"]
+    fields |= {
+        "of": "",
+        "worst": Worst(**written["worst"]) if written["worst"] is not None else None,
+        "bounded": Bounded(**written["bounded"]) if written.get("bounded") is not None else None,
+        "interval": (interval[0], interval[1]) if interval is not None else None,
+        "limits": written["limits"] or "one look",
+        "violations": tuple(map(_violation, written["violations"])),
+        "by_run": tuple(map(_read_run_value, written.get("by_run", ()))),
+        "histogram": None,
+        "measures": _read_measures(written["measures"]) if "measures" in written else None,
+    }
+    return ClauseVerdict(**fields)
+
+
+def _read_run_value(written: dict[str, Any]) -> RunValue:
+    return RunValue(**{**written, "start": time_of(written["start"])})
+
+
+def _read_measures(written: dict[str, Any]) -> Measures:
+    odds, margins = written["odds"], written["margins"]
+    read = {"odds": tuple(odds) if odds else None, "margins": Margins.read(margins) if margins else None}
+    return Measures(**{**written, **read})
+
+
+def _violation(written: dict[str, Any]) -> Violation:
+    words = {"measured": written["measured"] or "", "bound": written["bound"] or "", "start": time_of(written["start"])}
+    return Violation(**{**written, **words, "chain": tuple(CauseLink(**link) for link in written["chain"])})
+
+
+_VERSIONS: Final = range(1, VERSION + 1)  # what an older one has, this one has too

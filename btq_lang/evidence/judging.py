@@ -1,4 +1,4 @@
-"""Judges one log by all missions, each run with the mission it belongs to.
+"""Judges logs by all missions, each run with the mission it belongs to: one log, or many in several processes.
 
 One invariant: a log is judged by itself, its runs numbered from 1, so that logs may be judged in any process and added
 up in their order.
@@ -30,6 +30,7 @@ from btq_lang.workspace.loader import shown
 if TYPE_CHECKING:
     from btq_lang.evidence.store.sets import Draft, Keeping
     from btq_lang.evidence.watching import Watched
+
 NO_SERIES: Final[Mapping[str, SampleSeries]] = {}
 NOTHING_DECLARED: Final = Declared()
 NOTHING: Final[Mapping[tuple[str, int], Sequence[tuple[int, int, int]]]] = {}
@@ -45,7 +46,7 @@ class Means(Record):
         remarks: notes about these bags.
         with_timelines: include the run of the worst violation of each clause.
         with_measures: include what is needed to judge clauses with other bounds.
-        keeping: where what is found in each log is kept; None: nowhere.
+        keeping: where the findings in each log are kept; None: nowhere.
         limits: which limits of probabilities decide.
         left_out: the runs that are counted in another session, by log and number of the session: the number of each run
             there, from 0, and of its first and last row.
@@ -66,7 +67,7 @@ class Means(Record):
 
 
 class JudgedLog(Record):
-    """What was found in a log.
+    """The findings in a log.
 
     Attributes:
         runs: how many were judged.
@@ -88,7 +89,7 @@ class JudgedLog(Record):
 def judge(
     log: str, means: Means, ran: Callable[[int], None] = lambda number: None, running: Watched | None = None
 ) -> JudgedLog:
-    """Judge the runs of a log, and keep what was found in the store, if there is one.
+    """Judge the runs of a log, and keep the findings in the store, if there is one.
 
     Args:
         ran: called with the number of each run after it is judged.
@@ -98,16 +99,16 @@ def judge(
         return _judged(log, means, ran, None, running)
     from btq_lang.evidence.store.sets import NotKept, draft
 
-    found: JudgedLog | None = None
+    judged: JudgedLog | None = None
     try:
         with draft(means.keeping, log, running.id if running is not None else None) as written:
-            found = _judged(log, means, ran, written, running)
-            if found.runs and not found.problems:
-                found = replace(found, renamed=written.publish(means.shown(log)))
+            judged = _judged(log, means, ran, written, running)
+            if judged.runs and not judged.problems:
+                judged = replace(judged, renamed=written.publish(means.shown(log)))
     except NotKept as error:
         problem = f"{means.shown(log)}: {error}"
-        found = replace(found, problems=(problem,)) if found is not None else JudgedLog(0, (), (), (problem,))
-    return found
+        judged = replace(judged, problems=(problem,)) if judged is not None else JudgedLog(0, (), (), (problem,))
+    return judged
 
 
 def _judged(
@@ -126,12 +127,12 @@ def _judged(
             if isinstance(joined, str):
                 if running is not None:
                     running.foreign(difference(missions, session.tree))
-                number = sum(each.uid == ROOT for each in activations(session))
-                what = foreign.get((source, joined))
-                if what is None:
+                number = sum(activation.uid == ROOT for activation in activations(session))
+                foreign_runs = foreign.get((source, joined))
+                if foreign_runs is None:
                     lacks = first_of(session.unlike) or difference(missions, session.tree)
-                    what = Foreign(source, 0, joined, lacks, tuple(session.unlike))
-                foreign[source, joined] = replace(what, runs=what.runs + number)
+                    foreign_runs = Foreign(source, 0, joined, lacks, tuple(session.unlike))
+                foreign[source, joined] = replace(foreign_runs, runs=foreign_runs.runs + number)
             else:
                 mission = joined.mission
                 key = mission.path, session.robot
@@ -149,27 +150,27 @@ def _judged(
                 if problem := means.declared.problem(mission.path, (*session.signals, *means.of_bags)):
                     problems = tuple(dict.fromkeys((*problems, f"{shown(log)}: {problem}")))
                 of_files = means.declared.of_files.get(mission.path, NO_SERIES)
-                given = by_signal(signals, means.samples, of_files, session.signals, means.of_bags)
+                series = by_signal(signals, means.samples, of_files, session.signals, means.of_bags)
                 session.remarks.extend(means.remarks)
                 if joined.others:
                     others = ", ".join(map(shown, joined.others))
                     session.remarks.append(
                         f"judged by {shown(mission.path)}; the same nodes are in {others}: choose with --mission"
                     )
-                here = means.left_out.get((log, len(logged)), ())
+                left_out_here = means.left_out.get((log, len(logged)), ())
                 logged.append(LoggedRuns(log, len(logged), (mission.path, label), session.robot))
-                session = _without(session, here) if here else session
+                session = _without(session, left_out_here) if left_out_here else session
                 before = runs + left_out
-                runs += evaluations[key].read(session, joined, given, runs + 1, source, logged[-1].add)
-                left_out += len(here)
-                evaluations[key].found.leave_out([before + run + 1 for run, *_ in here])
+                runs += evaluations[key].read(session, joined, series, runs + 1, source, logged[-1].add)
+                left_out += len(left_out_here)
+                evaluations[key].findings.leave_out([before + run + 1 for run, *_ in left_out_here])
     except NotALog as error:
         problems += (f"{shown(log)}: {error}",)
     except OSError as error:
         problems += (f"{shown(log)}: cannot be read: {error.strerror or error}",)
     for evaluation in evaluations.values():
         evaluation.end()
-    findings = tuple((path, evaluation.found) for (path, _), evaluation in evaluations.items())
+    findings = tuple((path, evaluation.findings) for (path, _), evaluation in evaluations.items())
     return JudgedLog(runs, findings, tuple(foreign.values()), problems, sessions=tuple(logged))
 
 
@@ -190,24 +191,24 @@ def _without(session: LogSession, runs: Sequence[tuple[int, int, int]]) -> LogSe
 
 def rows_of(log: str, means: Means) -> Sequence[LoggedRows]:
     """The rows of the sessions of a log that were judged."""
-    found = []
+    rows = []
     try:
         for _, session, joined in joined_sessions(read(log), means.missions, log):
             if not isinstance(joined, str):
-                found.append(LoggedRows(session.transitions))
+                rows.append(LoggedRows(session.transitions))
     except (NotALog, OSError):  # as when it was judged, which has said so
         pass
-    return found
+    return rows
 
 
 class Judging:
-    """Adds up what was found in logs, how many runs were judged, and where they are."""
+    """Adds up the findings in logs, how many runs were judged, and where they are."""
 
     def __init__(self, means: Means) -> None:
         self.runs = 0
         self.sessions: Final[list[LoggedRuns]] = []
         of_all = partial(MissionEvaluation, limits=means.limits, with_measures=means.with_measures)
-        self._evaluations: Final = {each.path: of_all(each, means.with_timelines) for each in means.missions}
+        self._evaluations: Final = {mission.path: of_all(mission, means.with_timelines) for mission in means.missions}
         self._foreign: Final[dict[tuple[str, str], Foreign]] = {}
         self._problems: Final[list[str]] = []
         self._renamed: Final[Counter[str]] = Counter()
@@ -215,21 +216,57 @@ class Judging:
     def add(self, log: JudgedLog) -> None:
         """Add the next log."""
         for path, findings in log.findings:
-            self._evaluations[path].found.add(findings, self.runs)
+            self._evaluations[path].findings.add(findings, self.runs)
         self.runs += log.runs
         self.sessions.extend(log.sessions)
-        for each in log.foreign:
-            known = self._foreign.get((each.file, each.of))
-            self._foreign[each.file, each.of] = replace(known, runs=known.runs + each.runs) if known else each
+        for foreign in log.foreign:
+            key = foreign.file, foreign.of
+            runs = self._foreign[key].runs if key in self._foreign else 0
+            self._foreign[key] = replace(self._foreign.get(key, foreign), runs=runs + foreign.runs)
         self._problems.extend(log.problems)
         self._renamed.update(log.renamed)
 
     def report(self) -> VerdictReport:
-        """All that was found."""
-        missions = [each.result() for each in self._evaluations.values()]
-        found = tuple(each for each in missions if each.sources)
-        renamed = tuple(f"{counted(number, 'log')} had {what}" for what, number in self._renamed.items())
-        return VerdictReport(found, tuple(self._foreign.values()), tuple(self._problems), renamed)
+        """The report on all logs that were added."""
+        missions = [evaluation.result() for evaluation in self._evaluations.values()]
+        judged = tuple(mission for mission in missions if mission.sources)
+        renamed = tuple(
+            f"{counted(number, 'log')} had {names_before}" for names_before, number in self._renamed.items()
+        )
+        return VerdictReport(judged, tuple(self._foreign.values()), tuple(self._problems), renamed)
 
 
+def judge_all(logs: Sequence[str], means: Means, jobs: int) -> Iterator[JudgedLog]:
+    """The findings in each log, in order; if a process is ended from outside, a problem instead of the rest."""
+    from concurrent.futures.process import BrokenProcessPool
+
+    from btq_lang.util.processes import pool
+
+    # DuckDB, which may have threads here already, does not work in a forked process.
+    start = None if means.keeping is None else "spawn"
+    try:
+        processes = pool(min(jobs, len(logs)), _take_means, (means,), start)
+    except NotImplementedError:  # there are no processes in a browser
+        yield from (judge(log, means) for log in logs)
+        return
+    with processes:
+        try:
+            yield from processes.map(_judge_by_means, logs)
+        except BrokenProcessPool:
+            yield JudgedLog(0, (), (), (_ENDED,))
+
+
+def _take_means(means: Means) -> None:
+    """Begin a process, in which logs are judged by these means."""
+    global _means
+    _means = means
+
+
+def _judge_by_means(log: str) -> JudgedLog:
+    assert _means is not None, "every process begins with _take_means"
+    return judge(log, _means)
+
+
+_means: Means | None = None  # of a process that judges one log after another
 _NONE: Final = (0, 1 << 63, 1 << 63)  # a run after all rows
+_ENDED: Final = "a process that judges logs was ended from outside, perhaps for lack of memory"

@@ -44,7 +44,7 @@ def _lines(report: VerdictReport) -> Iterator[str]:
 
 
 def _numbers(requirements: Sequence[RequirementVerdict]) -> str:
-    verdicts = [each.verdict for each in requirements]
+    verdicts = [requirement.verdict for requirement in requirements]
     failures = verdicts.count(VIOLATED)
     skipped = len(verdicts) - failures - verdicts.count(SATISFIED)
     return f'tests="{len(verdicts)}" failures="{failures}" errors="0" skipped="{skipped}"'
@@ -53,7 +53,7 @@ def _numbers(requirements: Sequence[RequirementVerdict]) -> str:
 def _case(requirement: RequirementVerdict, mission: MissionVerdicts) -> Iterator[str]:
     yield f'    <testcase classname="{escaped(mission.name)}" name="{escaped(requirement.id)}" time="0">'
     yield f'      <properties><property name="verifies" value="{escaped(requirement.id)}"/></properties>'
-    worst = next(each for each in requirement.clauses if each.verdict == requirement.verdict)
+    worst = next(clause for clause in requirement.clauses if clause.verdict == requirement.verdict)
     if requirement.verdict == VIOLATED:
         yield f'      <failure type="violated" message="{escaped(headline(worst, mission.medians))}">'
         lines = [line for clause in requirement.clauses for line in _details(clause, mission)]
@@ -75,7 +75,7 @@ def _at(clause: ClauseVerdict) -> str:
 def _details(clause: ClauseVerdict, mission: MissionVerdicts) -> Iterator[str]:
     yield f"{clause.text} at {clause.path}: {clause.verdict}, {result(clause)}"
     if clause.verdict == VIOLATED:
-        yield from (f"  {explained(clause, each, mission.medians)}" for each in clause.violations[:_SHOWN])
+        yield from (f"  {explained(clause, violation, mission.medians)}" for violation in clause.violations[:_SHOWN])
 
 
 _SHOWN = 10  # violations of a clause

@@ -1,4 +1,4 @@
-"""How many judgements of a clause come to what, for every bound it may have.
+"""How many judgements of a clause are kept, violated or unknown, for every bound that it may have.
 
 A judgement changes at one value of the bound, that of its measure; so the counts are a sum of steps.  Values are given
 as `Edge.across`: a bound that is smaller than a step's value is broken there.
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 if TYPE_CHECKING:
     from btq_lang.evidence.edges import Edge
 
-    # What a judgement is with a bound that it keeps, and at which values it becomes what, the largest first.
+    # The kind of a judgement with a bound that it keeps, and the values at which it changes, the largest first.
     _Judged: TypeAlias = tuple[int, tuple[tuple[float, int], ...]]
 
 
@@ -128,21 +128,22 @@ class Margins:
     def counts(self, bound: float, edge: Edge) -> tuple[Counts, Counts]:
         """The counts with another bound: if what is inside of a step is kept, and if it is not."""
         least = most = self._base
-        at = edge.across(bound)
+        edge_value = edge.across(bound)
         for step in self._steps:
-            if step.low > at or (edge.is_strict and step.low == at):
+            if step.low > edge_value or (edge.is_strict and step.low == edge_value):
                 least, most = _sum(least, step.change), _sum(most, step.change)
-            elif step.high > at or (edge.is_strict and step.high == at):
+            elif step.high > edge_value or (edge.is_strict and step.high == edge_value):
                 most = _sum(most, step.change)
         return least, most
 
     def worst(self, bound: float, edge: Edge) -> tuple[float, int] | None:
         """The measure furthest on the wrong side with another bound, in SI, and its run."""
-        at = edge.across(bound)
-        found = [each for each in (self._worst,) if each is not None]
-        if self._furthest is not None and (self._furthest[0] > at or (edge.is_strict and self._furthest[0] == at)):
-            found.append(self._furthest)
-        value, run = max(found, key=itemgetter(0), default=(None, 0))
+        edge_value = edge.across(bound)
+        candidates = [self._worst] if self._worst is not None else []
+        furthest = self._furthest
+        if furthest is not None and (furthest[0] > edge_value or (edge.is_strict and furthest[0] == edge_value)):
+            candidates.append(furthest)
+        value, run = max(candidates, key=itemgetter(0), default=(None, 0))
         return (edge.across(value), run) if value is not None else None
 
     # ---- as JSON ----
@@ -153,35 +154,35 @@ class Margins:
         return {"base": list(self._base), "steps": steps, "worst": self._worst, "furthest": self._furthest}
 
     @classmethod
-    def read(cls, found: dict[str, Any]) -> Margins:
+    def read(cls, written: dict[str, Any]) -> Margins:
         """The margins that `written` gave."""
-        made = cls(of_runs=False)
-        made._base = Counts(*found["base"])
-        made._steps = [CountStep(low, high, Counts(*change)) for low, high, *change in found["steps"]]
-        made._worst, made._furthest = (tuple(each) if each else None for each in (found["worst"], found["furthest"]))
-        return made
+        margins = cls(of_runs=False)
+        margins._base = Counts(*written["base"])
+        margins._steps = [CountStep(low, high, Counts(*change)) for low, high, *change in written["steps"]]
+        margins._worst, margins._furthest = (tuple(written[name]) if written[name] else None for name in _EXTREMES)
+        return margins
 
 
 def _of_run(counts: list[int]) -> Counts:
-    """What a run is, if it has so many judgements of each kind."""
+    """The kind of a run that has so many judgements of each kind."""
     of_run = next((kind for kind in (VIOLATED, UNKNOWN, KEPT) if counts[kind]), NOTHING)
     return _sum(_UNITS[of_run], Counts(0, 0, 0, counts[CUT_OFF]))
 
 
 def _compacted(steps: Iterable[CountStep]) -> list[CountStep]:
     """The same in order of the values, equal values as one step, and no more steps than are kept."""
-    found: list[CountStep] = []
+    joint: list[CountStep] = []
     for step in sorted(steps):
-        if found and step.low <= found[-1].high:
-            last = found[-1]
-            found[-1] = CountStep(last.low, max(last.high, step.high), _sum(last.change, step.change))
+        if joint and step.low <= joint[-1].high:
+            last = joint[-1]
+            joint[-1] = CountStep(last.low, max(last.high, step.high), _sum(last.change, step.change))
         else:
-            found.append(step)
-    if len(found) <= MOST_STEPS:
-        return found
-    heaviest = 2 * sum(map(_weight, found)) / MOST_STEPS  # any two neighbours that are left weigh more
-    merged = found[:1]
-    for step in found[1:]:
+            joint.append(step)
+    if len(joint) <= MOST_STEPS:
+        return joint
+    heaviest = 2 * sum(map(_weight, joint)) / MOST_STEPS  # any two neighbours that are left weigh more
+    merged = joint[:1]
+    for step in joint[1:]:
         last = merged[-1]
         if _weight(last) + _weight(step) <= heaviest:
             merged[-1] = CountStep(last.low, step.high, _sum(last.change, step.change))
@@ -194,14 +195,15 @@ def _weight(step: CountStep) -> int:
     return max(sum(map(abs, step.change)), 1)
 
 
-def _sum(one: Counts, other: Counts) -> Counts:
-    return Counts(one[0] + other[0], one[1] + other[1], one[2] + other[2], one[3] + other[3])
+def _sum(first: Counts, second: Counts) -> Counts:
+    return Counts(first[0] + second[0], first[1] + second[1], first[2] + second[2], first[3] + second[3])
 
 
-def _difference(one: Counts, other: Counts) -> Counts:
-    return Counts(one[0] - other[0], one[1] - other[1], one[2] - other[2], one[3] - other[3])
+def _difference(first: Counts, second: Counts) -> Counts:
+    return Counts(first[0] - second[0], first[1] - second[1], first[2] - second[2], first[3] - second[3])
 
 
 MOST_STEPS: Final = 1000
+_EXTREMES: Final = ("worst", "furthest")
 KEPT, VIOLATED, UNKNOWN, CUT_OFF, NOTHING = range(5)  # what judgements are: indices of `Counts`, or not counted
 _UNITS: Final = (Counts(1, 0, 0, 0), Counts(0, 1, 0, 0), Counts(0, 0, 1, 0), Counts(0, 0, 0, 1), Counts(0, 0, 0, 0))

@@ -18,9 +18,9 @@ def render(report: VerdictReport) -> str:
 
 
 def _lines(mission: MissionVerdicts) -> Iterator[str]:
-    verdicts = [each.verdict for each in mission.requirements]
-    found = [f"{verdicts.count(verdict)} {verdict}" for verdict in WORST_FIRST if verdict in verdicts]
-    yield f"### {escaped(mission.name)}: {', '.join(found) or 'no requirement to judge'}"
+    verdicts = [requirement.verdict for requirement in mission.requirements]
+    counts = [f"{verdicts.count(verdict)} {verdict}" for verdict in WORST_FIRST if verdict in verdicts]
+    yield f"### {escaped(mission.name)}: {', '.join(counts) or 'no requirement to judge'}"
     yield ""
     files = ", ".join(code(source.file) for source in folded_sources(mission.sources))
     outcomes = ", ".join(f"{number} {outcome}" for outcome, number in mission.outcomes)
@@ -33,7 +33,7 @@ def _lines(mission: MissionVerdicts) -> Iterator[str]:
         return
     yield ""
     clauses = [(requirement, clause) for requirement in mission.requirements for clause in requirement.clauses]
-    clauses.sort(key=lambda each: WORST_FIRST.index(each[1].verdict))
+    clauses.sort(key=lambda pair: WORST_FIRST.index(pair[1].verdict))
     rows = [
         (
             f"**{clause.verdict}**" if clause.verdict == WORST_FIRST[0] else clause.verdict,

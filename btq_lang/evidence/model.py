@@ -40,7 +40,7 @@ ROOT: Final = 1  # the uid of the node whose activations are the runs
 
 
 class LiveMark(int):
-    """A uid that no node has: what is known of a running robot between two of its transitions."""
+    """A uid that no node has, for a mark between two transitions of a running robot."""
 
 
 GAP: Final = LiveMark(-1)  # transitions before this one were not seen
@@ -182,14 +182,14 @@ class SampleSeries:
 
     def add(self, time: int, value: SampleValue | None) -> None:
         """Add a sample, usually the latest; of several at one time the last counts.  None: no value from then on."""
-        at = len(self.times)
-        if at and time <= self.times[-1]:
-            at = bisect_left(self.times, time)
-            if self.times[at] == time:
-                self.values[at] = value
+        index = len(self.times)
+        if index and time <= self.times[-1]:
+            index = bisect_left(self.times, time)
+            if self.times[index] == time:
+                self.values[index] = value
                 return
-        self.times.insert(at, time)
-        self.values.insert(at, value)
+        self.times.insert(index, time)
+        self.values.insert(index, value)
 
     def at(self, time: int) -> tuple[int, SampleValue | None] | None:
         """The time and value of the last sample at or before a time; None before the first."""

@@ -32,26 +32,26 @@ def joined_sessions(
     Args:
         source: the file, as people read it; returned with each session, with the topic if there are several.
     """
-    for each in read:
-        if isinstance(each, LogSession):
-            yield source, each, join(missions, each.tree) or OTHER
+    for log in read:
+        if isinstance(log, LogSession):
+            yield source, log, join(missions, log.tree) or OTHER
         else:
-            name = f"{source} {each.topic}" if each.topic else source
-            yield from ((name, session, joined) for session, joined in _sessions(each, missions))
+            name = f"{source} {log.topic}" if log.topic else source
+            yield from ((name, session, joined) for session, joined in _sessions(log, missions))
 
 
 def _sessions(log: NamedLog, missions: Sequence[Candidate]) -> Iterator[tuple[LogSession, Joined | str]]:
     trees = _Trees(log, missions)
     pieces = [(*piece, frozenset(log.changed[slice(*piece)])) for piece in _pieces(log, trees.roots)]
     joined_by = trees.joined({nodes for *_, nodes in pieces})
-    at = 0
-    while at < len(pieces):
-        begin, end, nodes = pieces[at]
+    index = 0
+    while index < len(pieces):
+        begin, end, nodes = pieces[index]
         joined = joined_by[nodes]
-        at += 1
-        while at < len(pieces) and joined_by[pieces[at][2]] is joined:
-            end = pieces[at][1]
-            at += 1
+        index += 1
+        while index < len(pieces) and joined_by[pieces[index][2]] is joined:
+            end = pieces[index][1]
+            index += 1
         if isinstance(joined, str):
             uids = dict.fromkeys((trees.roots & nodes) or {log.changed[begin]}, ROOT)
             tree = LoggedTree([(ROOT, "", "", 0)])
@@ -99,8 +99,8 @@ class _Trees:
         self._log: Final = log
         self._has_uids: Final = any(uid for uid, _ in log.nodes)
         self._missions: Final = missions
-        self._given: Final = [(_Names(tree), join(missions, tree)) for tree in reversed(log.trees)]
-        self._made: Final[dict[int, tuple[_Names, Joined] | None]] = {}
+        self._logged: Final = [(_Names(tree), join(missions, tree)) for tree in reversed(log.trees)]
+        self._joined_builds: Final[dict[int, tuple[_Names, Joined] | None]] = {}
 
     @cached_property
     def roots(self) -> Set[int]:
@@ -108,74 +108,74 @@ class _Trees:
         nodes = self._log.nodes
         if self._has_uids:
             return {index for index, (uid, _) in enumerate(nodes) if uid == ROOT}
-        trees = [tree for tree, _ in self._given]
+        trees = [tree for tree, _ in self._logged]
         trees += [tree for mission in self._missions for tree, _ in self._builds(mission)]
         names = {tree.root for tree in trees if tree.is_unique(ROOT)}
         return {index for index, (_, name) in enumerate(nodes) if name in names}
 
     def joined(self, runs: Set[frozenset[int]]) -> dict[frozenset[int], Joined | str]:
         """The mission of each run, given by its nodes, or a description of what it belongs to instead."""
-        named = {run: {self._log.nodes[each] for each in run} for run in runs}
-        found: dict[frozenset[int], Joined | str] = {}
+        named = {run: {self._log.nodes[index] for index in run} for run in runs}
+        joined_by_run: dict[frozenset[int], Joined | str] = {}
         for run, nodes in named.items():
-            for tree, joined in self._given:
+            for tree, joined in self._logged:
                 if tree.has(nodes):
-                    found[run] = joined or OTHER
+                    joined_by_run[run] = joined or OTHER
                     break
-        left = {run: nodes for run, nodes in named.items() if run not in found}
-        fitting: dict[frozenset[int], list[Joined]] = {run: [] for run in left}
-        for mission in self._missions if left else ():
-            self._fit(mission, "", left, fitting)
-        left = {run: nodes for run, nodes in left.items() if not fitting[run]}
-        for mission in self._missions if left and self._has_uids else ():
+        unmatched = {run: nodes for run, nodes in named.items() if run not in joined_by_run}
+        fitting: dict[frozenset[int], list[Joined]] = {run: [] for run in unmatched}
+        for mission in self._missions if unmatched else ():
+            self._fit(mission, "", unmatched, fitting)
+        unmatched = {run: nodes for run, nodes in unmatched.items() if not fitting[run]}
+        for mission in self._missions if unmatched and self._has_uids else ():
             for name in mission.trees():  # a node without a uid may be of the main tree
-                self._fit(mission, name, left, fitting)
-        others = [run for run, each in fitting.items() if not each]
-        for run, each in fitting.items():
+                self._fit(mission, name, unmatched, fitting)
+        others = [run for run, joined_missions in fitting.items() if not joined_missions]
+        for run, joined_missions in fitting.items():
             # A run whose nodes all occur in a run of another mission may belong to that mission too.
-            is_sure = len(each) == 1 and not any(run <= other for other in others)
-            found[run] = each[0] if is_sure else SEVERAL if each else OTHER
-        return found
+            is_sure = len(joined_missions) == 1 and not any(run <= other for other in others)
+            joined_by_run[run] = joined_missions[0] if is_sure else SEVERAL if joined_missions else OTHER
+        return joined_by_run
 
     def unlike(self, run: Set[int]) -> Sequence[str]:
         """How the names of nodes differ in a run and in the tree that has the most of them; empty without uids."""
-        nodes = sorted(self._log.nodes[each] for each in run) if self._has_uids else []
+        nodes = sorted(self._log.nodes[index] for index in run) if self._has_uids else []
         trees = [tree for mission in self._missions for tree, _ in self._builds(mission)] if nodes else []
-        found = [
-            [unlike(uid, name, made) for uid, name in nodes if uid and (made := tree.name_of(uid)) != name]
+        differences = [
+            [unlike(uid, name, written) for uid, name in nodes if uid and (written := tree.name_of(uid)) != name]
             for tree in trees
         ]
-        return min(found, key=len, default=())
+        return min(differences, key=len, default=())
 
     def _fit(
         self,
         mission: Candidate,
         name: str,
-        left: Mapping[frozenset[int], Set[tuple[int, str]]],
+        unmatched: Mapping[frozenset[int], Set[tuple[int, str]]],
         fitting: Mapping[frozenset[int], list[Joined]],
     ) -> None:
         """Add a tree of a mission to those that fit the runs that are left; without a name, the main tree."""
         builds: list[tuple[Set[frozenset[int]], Joined]] = []
         for tree, joined in self._builds(mission, name):
-            builds.append(({run for run, nodes in left.items() if tree.has(nodes)}, joined))
-            if len(builds[-1][0]) == len(left):
+            builds.append(({run for run, nodes in unmatched.items() if tree.has(nodes)}, joined))
+            if len(builds[-1][0]) == len(unmatched):
                 break
-        builds.sort(key=lambda each: -len(each[0]))  # a short run may fit builds that the others do not
-        for run in left:
+        builds.sort(key=lambda fit: -len(fit[0]))  # a short run may fit builds that the others do not
+        for run in unmatched:
             fitting[run] += [joined for runs, joined in builds if run in runs][:1]
 
     def uids(self, tree: LoggedTree) -> dict[int, int]:
         """The uids of the log's nodes in a tree, by their index."""
         names = _Names(tree)
-        found = ((index, names.uid(*node)) for index, node in enumerate(self._log.nodes))
-        return {index: uid for index, uid in found if uid is not None}
+        pairs = ((index, names.uid(*node)) for index, node in enumerate(self._log.nodes))
+        return {index: uid for index, uid in pairs if uid is not None}
 
     def _builds(self, mission: Candidate, name: str = "") -> Iterator[tuple[_Names, Joined]]:
         for build in mission.builds(name):
-            if id(build) not in self._made:
-                self._made[id(build)] = self._joined_build(mission, build)
-            if (made := self._made[id(build)]) is not None:
-                yield made
+            if id(build) not in self._joined_builds:
+                self._joined_builds[id(build)] = self._joined_build(mission, build)
+            if (joined_build := self._joined_builds[id(build)]) is not None:
+                yield joined_build
 
     def _joined_build(self, mission: Candidate, build: Build) -> tuple[_Names, Joined] | None:
         tree = build.tree()

@@ -1,4 +1,4 @@
-"""What each node did, as rows of texts: the report on a log of which no requirement is judged."""
+"""What each node did, as rows of texts: the report on a log without requirements to judge."""
 
 from __future__ import annotations
 
@@ -56,11 +56,11 @@ def _counts(head: str, nodes: Sequence[NodeSummary], value: Callable[[NodeSummar
 
 def _times(head: str, nodes: Sequence[NodeSummary], value: Callable[[NodeSummary], float | None]) -> Column:
     times = tuple(map(value, nodes))
-    return Column(head, times, tuple("" if each is None else duration(each) for each in times))
+    return Column(head, times, tuple("" if time is None else duration(time) for time in times))
 
 
 def _bounded(node: NodeSummary) -> str:
-    """How many durations are known only to lie below a limit, and that limit."""
+    """How many durations have only a known upper limit, and that limit."""
     if not node.bounded:
         return ""
     return f"{node.bounded}, at most {duration(node.longest)}" if node.longest is not None else str(node.bounded)

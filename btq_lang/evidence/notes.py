@@ -23,13 +23,13 @@ if TYPE_CHECKING:
 def ignored_columns(path: str, samples: Iterable[str], missions: Sequence[Candidate]) -> Iterator[str]:
     """Reports columns that no mission reads, each with likely intended names."""
     scopes = [mission.workspace.scope(mission.path) for mission in missions]
-    found = [each for scope in scopes for name in scope.names(Kind.SIGNAL) for each in scope.all(Kind.SIGNAL, name)]
-    signals = [each.symbol.target for each in found if isinstance(each.symbol.target, Signal)]
-    words = [word for each in signals for word in (each.name, each.source) if word is not None]
-    known = {word.text.strip("{} ").removeprefix("@") for word in words}
+    entries = [entry for scope in scopes for name in scope.names(Kind.SIGNAL) for entry in scope.all(Kind.SIGNAL, name)]
+    signals = [entry.symbol.target for entry in entries if isinstance(entry.symbol.target, Signal)]
+    words = [word for signal in signals for word in (signal.name, signal.source) if word is not None]
+    read_names = {word.text.strip("{} ").removeprefix("@") for word in words}
     for name in samples:
-        if name not in known:
-            meant = did_you_mean(near(name, known))
+        if name not in read_names:
+            meant = did_you_mean(near(name, read_names))
             yield f"{path}: column `{name}` is ignored, because no signal or entry has this name{meant}"
 
 
@@ -42,15 +42,15 @@ def other_times(read_from: Iterable[tuple[str, SampleSeries]], report: VerdictRe
     times: dict[str, set[int]] = {}
     for file, series in read_from:
         times.setdefault(file, set()).update(series.times)
-    sources = [each for mission in report.missions for each in mission.sources]
-    begin = min((each.begin for each in sources if each.begin is not None), default=None)
-    end = max((each.end for each in sources if each.end is not None), default=None)
-    for file, found in times.items():
-        if begin is None or end is None or len(found) < 2:
+    sources = [source for mission in report.missions for source in mission.sources]
+    begin = min((source.begin for source in sources if source.begin is not None), default=None)
+    end = max((source.end for source in sources if source.end is not None), default=None)
+    for file, sample_times in times.items():
+        if begin is None or end is None or len(sample_times) < 2:
             continue
-        if max(found) < begin - _NEAR or min(found) > end + _NEAR:
+        if max(sample_times) < begin - _NEAR or min(sample_times) > end + _NEAR:
             yield (
-                f"{file}: its samples are from {period(min(found), max(found))}, and the runs from"
+                f"{file}: its samples are from {period(min(sample_times), max(sample_times))}, and the runs from"
                 f" {period(begin, end)}; expected times in seconds since the epoch"
             )
 
@@ -60,21 +60,22 @@ def missions_with_errors(report: VerdictReport, missions: Sequence[Candidate]) -
     judged = {mission.file for mission in report.missions}
     for mission in missions:
         if mission.path in judged:
-            found = (
-                each for file in mission.workspace.closure(mission.path) for each in check(mission.workspace, file)
-            )
-            if any(each.effective_severity is Severity.ERROR for each in found):
+            workspace = mission.workspace
+            files = workspace.closure(mission.path)
+            diagnostics = (diagnostic for file in files for diagnostic in check(workspace, file))
+            if any(diagnostic.effective_severity is Severity.ERROR for diagnostic in diagnostics):
                 yield f"{shown(mission.path)} has errors, so clauses may be missing; run btq check"
 
 
 def missing_verdicts(report: VerdictReport, requested: Sequence[str]) -> Iterator[str]:
     """Explains why there are no verdicts at all; `requested`: the missions on the command line."""
     if not report.missions and not report.problems:
-        differences = dict.fromkeys(each.difference for each in report.foreign if requested and each.difference)
+        unlike = [foreign for foreign in report.foreign if foreign.difference]
+        differences = dict.fromkeys(foreign.difference for foreign in unlike if requested)
         if differences:
-            yield from (f"no log matches {', '.join(requested)}: {each}" for each in differences)
+            yield from (f"no log matches {', '.join(requested)}: {difference}" for difference in differences)
         else:
-            log = next((each.file for each in report.foreign if each.difference), "")
+            log = unlike[0].file if unlike else ""
             instead = f"; btq import {log} writes its tree as one" if log else ""
             yield f"no log matches a known mission; name the mission with --mission FILE{instead}"
     elif report.missions and not any(mission.runs for mission in report.missions):
@@ -83,8 +84,8 @@ def missing_verdicts(report: VerdictReport, requested: Sequence[str]) -> Iterato
 
 def foreign_runs(report: VerdictReport) -> Iterator[str]:
     """Reports runs that belong to other missions."""
-    for each in report.foreign:
-        yield f"{each.file}: {counted(each.runs, 'run')} {each.of}, not judged"
+    for foreign in report.foreign:
+        yield f"{foreign.file}: {counted(foreign.runs, 'run')} {foreign.of}, not judged"
 
 
 _NEAR: Final = 60_000_000  # µs: a robot may log a minute before its tree starts, or after it has ended

@@ -69,8 +69,8 @@ class Observed:
         if self.reads_initial:
             return self
         if self._in_scope is None:
-            known = self.signals, self.nodes, self.begin, self.end, self.is_end_known
-            self._in_scope = Observed(*known, is_early=self.is_early, reads_initial=True)
+            same = self.signals, self.nodes, self.begin, self.end, self.is_end_known
+            self._in_scope = Observed(*same, is_early=self.is_early, reads_initial=True)
         return self._in_scope
 
     def during(self, activation: Activation) -> Observed:
@@ -113,19 +113,19 @@ class Observed:
 
     def moments(self, *parts: object) -> list[Moment]:
         """The moments, from the beginning to the end, at which conditions and bounds may change."""
-        found = {self.begin}
+        moments = {self.begin}
         begin, end = self.begin, self.end
         for part in parts:
-            for each in parts_in(part):
-                if isinstance(each, SignalRead):
-                    found.update([(time, 0) for time in self.signals.changes(each.signal, begin[0], end[0])])
-                elif isinstance(each, Running):
-                    for activation in self.nodes.activations(each.target):
+            for read in parts_in(part):
+                if isinstance(read, SignalRead):
+                    moments.update([(time, 0) for time in self.signals.changes(read.signal, begin[0], end[0])])
+                elif isinstance(read, Running):
+                    for activation in self.nodes.activations(read.target):
                         stopped = activation.end, activation.ended[1] + 1
                         started = activation.begun(self.is_early)
                         since = started[0], started[1] + 1  # unknown from then on if the end is
-                        found.update([at for at in (started, since, stopped) if begin < at <= end])
-        return sorted(found)
+                        moments.update([moment for moment in (started, since, stopped) if begin < moment <= end])
+        return sorted(moments)
 
 
 def _mean(values: Sequence[float]) -> float:

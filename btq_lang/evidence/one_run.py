@@ -59,40 +59,44 @@ def one_run(log: str, mission: Candidate, number: int) -> OneRun | None:
         if isinstance(joined, str):
             continue
         written = joined.written()
-        found: list[Activation] = []
+        recorded: list[Activation] = []
         left_out = 0
         for activation in activations(session):
             if number == 1 and activation.uid in written:
-                left_out += len(found) >= _MOST
-                found += [activation] if len(found) < _MOST else []
+                left_out += len(recorded) >= _MOST
+                recorded += [activation] if len(recorded) < _MOST else []
             if activation.uid == ROOT:
                 number -= 1
                 if number == 0:
                     paths = {uid: joined.tree.nodes[uid].path for uid in written}
-                    steps = _steps(found, activation.begin, written, paths)
-                    of = timestamp(activation.begin), OUTCOMES[activation.outcome]
-                    return OneRun(*of, outline(mission.requirements), steps, left_out)
+                    steps = _steps(recorded, activation.begin, written, paths)
+                    start_and_outcome = timestamp(activation.begin), OUTCOMES[activation.outcome]
+                    return OneRun(*start_and_outcome, outline(mission.requirements), steps, left_out)
     return None
 
 
 def _steps(
-    found: Sequence[Activation], start: int, written: dict[int, int], paths: dict[int, str]
+    recorded: Sequence[Activation], start: int, written: dict[int, int], paths: dict[int, str]
 ) -> tuple[RunStep, ...]:
     """The beginnings and the ends of activations in the order of the log's rows; parents begin before their children,
     and end after them.
     """
-    events = [(each.started, each.uid, False, each) for each in found if each.started != each.ended]
-    events += [(each.ended, -each.uid, True, each) for each in found]
+    events = [
+        (activation.started, activation.uid, False, activation)
+        for activation in recorded
+        if activation.started != activation.ended
+    ]
+    events += [(activation.ended, -activation.uid, True, activation) for activation in recorded]
     events.sort(key=lambda event: event[:3])
     return tuple(
         RunStep(
-            (at[0] - start) / 1e6,
-            written[each.uid],
-            paths[each.uid],
-            OUTCOMES[each.outcome] if is_end else "running",
-            took(each) if is_end else "",
+            (moment[0] - start) / 1e6,
+            written[activation.uid],
+            paths[activation.uid],
+            OUTCOMES[activation.outcome] if is_end else "running",
+            took(activation) if is_end else "",
         )
-        for at, _, is_end, each in events
+        for moment, _, is_end, activation in events
     )
 
 

@@ -1,4 +1,9 @@
-"""What identifies a mission and the places of its clauses in later texts, without building it."""
+"""The clauses of a mission: those that logs can show, and those that no log can.
+
+What identifies a mission and the places of its clauses in later texts is computed without building it.
+
+One invariant: what `demands` leaves out of a mission is open, or unknown where that is due to a mistake.
+"""
 
 from __future__ import annotations
 
@@ -7,11 +12,14 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.evidence.tally import Tally
+from btq_lang.evidence.verdicts import OPEN, UNKNOWN, ClauseVerdict
 from btq_lang.requirements.model import Applied, NodeTarget, ResolvedClaim, ResolvedRequirement
 from btq_lang.util.record import Record, fields_of
 from btq_lang.workspace.resolved import ResolvedNode, ResolvedTree
 
 if TYPE_CHECKING:
+    from btq_lang.evidence.verdicts import Verdict
     from btq_lang.requirements.resolve import Requirements
 
 
@@ -34,33 +42,33 @@ class Demand(Record):
         """The clause as typed, with all that counts for its requirement."""
         requirement = self.requirement
         of_all = (*requirement.scopes, requirement.odds, requirement.window)
-        parts = [self.claim.text, *(each.text for each in of_all if each is not None)]
+        parts = [self.claim.text, *(part.text for part in of_all if part is not None)]
         return " ".join([*parts, f"goal {requirement.goal.text}"] if requirement.goal is not None else parts)
 
 
-def demands(found: Requirements) -> Iterator[Demand]:
+def demands(requirements: Requirements) -> Iterator[Demand]:
     """The clauses that logs can show, in the order in which they are judged."""
     seen: Counter[tuple[str, str, str]] = Counter()
     used: set[tuple[str, str]] = set()
-    for applied in found.applied:
+    for applied in requirements.applied:
         for claim in applied.requirement.claims if not applied.requirement.is_verified_by_people else ():
             used.add((applied.requirement.name, claim.text))
-            at = _place(applied)
-            key = applied.requirement.name, claim.text, at
-            yield Demand(applied.requirement, claim, applied, f"{at} {seen[key]}")
+            place = _place(applied)
+            key = applied.requirement.name, claim.text, place
+            yield Demand(applied.requirement, claim, applied, f"{place} {seen[key]}")
             seen[key] += 1
-    for requirement in found.all.values():
+    for requirement in requirements.all.values():
         for claim in requirement.claims if not requirement.is_verified_by_people else ():
             if (requirement.name, claim.text) not in used:
                 yield Demand(requirement, claim, None, "")
 
 
-def outline(found: Requirements) -> str:
+def outline(requirements: Requirements) -> str:
     """A digest of what all trees do, and of what signals and contexts mean, whatever the layout, comments and
     requirements.
     """
-    trees = [_text(tree) for tree in found.nodes.trees]
-    words = [_meaning(each) for each in (*found.signals.values(), *found.contexts.items())]
+    trees = [_text(tree) for tree in requirements.nodes.trees]
+    words = [_meaning(part) for part in (*requirements.signals.values(), *requirements.contexts.items())]
     return hashlib.sha256("\n".join([*trees, *words]).encode()).hexdigest()[:_DIGITS]
 
 
@@ -74,9 +82,9 @@ def _place(applied: Applied) -> str:
 
 def _text(tree: ResolvedTree) -> str:
     lines = [f"tree {tree.name}"]
-    for each in tree.all:
-        pairs = (f"{pair.key.text}={pair.value.text if pair.value else ''}" for pair in each.node.attributes)
-        lines.append(f"{sum(1 for _ in each.ancestors())} {each.shown} {' '.join(pairs)}")
+    for node in tree.all:
+        pairs = (f"{pair.key.text}={pair.value.text if pair.value else ''}" for pair in node.node.attributes)
+        lines.append(f"{sum(1 for _ in node.ancestors())} {node.shown} {' '.join(pairs)}")
     return "\n".join(lines)
 
 
@@ -88,6 +96,39 @@ def _meaning(part: object) -> str:
         fields = [getattr(part, name) for name in fields_of(part) if name != "place"]
         return f"{type(part).__name__}{_meaning(fields)}"
     return f"({' '.join(map(_meaning, part))})" if isinstance(part, tuple | list) else repr(part)
+
+
+def open_reason(requirement: ResolvedRequirement) -> str:
+    """Why no log can show a requirement; empty if logs can."""
+    if requirement.is_verified_by_people:
+        return f"verified by {requirement.method}"
+    return "" if requirement.claims or requirement.unread else "it has no clause that can be measured"
+
+
+def open_clauses(requirement: ResolvedRequirement) -> tuple[ClauseVerdict, ...]:
+    """What a report has of an open requirement: each clause, or one without text if there is none."""
+    texts = [Demand(requirement, claim, None, "").text for claim in requirement.claims]
+    return tuple(_without_evidence(requirement, text, OPEN, open_reason(requirement)) for text in texts or [""])
+
+
+def unread_clauses(requirement: ResolvedRequirement) -> tuple[ClauseVerdict, ...]:
+    """The clauses of a requirement that were not understood."""
+    texts = requirement.unread if not requirement.is_verified_by_people else ()
+    return tuple(_without_evidence(requirement, text, UNKNOWN, "it has a mistake; run btq check") for text in texts)
+
+
+def _without_evidence(requirement: ResolvedRequirement, text: str, verdict: Verdict, why: str) -> ClauseVerdict:
+    return ClauseVerdict(
+        text=text,
+        path="",
+        of="",
+        verdict=verdict,
+        why=why,
+        unit="activations",
+        confidence=requirement.confidence,
+        histogram=None,
+        **Tally(None, None).fields(),
+    )
 
 
 _DIGITS: Final = 16

@@ -24,7 +24,7 @@ class Happening(Record):
         until: equal to `at`; later if the log shows only that it happened between them.
         why: why the moment cannot be judged; empty if what follows from both ends may be.
         is_certain: it did happen, rather than may have.
-        order: what it comes before or after others by; None: its moment.
+        order: the moment that orders it among other events; None: its own.
         judged: when scopes and bounds are read; None: at `at`.
     """
 
@@ -37,7 +37,7 @@ class Happening(Record):
 
     @property
     def first(self) -> Moment:
-        """From when on it may have happened, in the order of events."""
+        """The earliest moment at which it may have happened, in the order of events."""
         return self.order or self.at
 
     @property
@@ -47,7 +47,7 @@ class Happening(Record):
 
     @property
     def last(self) -> Moment:
-        """By when it has happened, in the order of events."""
+        """The latest moment at which it may have happened, in the order of events."""
         return self.order or self.until
 
 
@@ -103,12 +103,12 @@ class OverRun(Record):
     def begins(self, event: ResolvedEvent) -> list[Moment]:
         """When the clause's nodes began, to be compared with an event: a moment, or the row of another node."""
         is_by_row = event.condition is None
-        return [each.shown if is_by_row else each.begun(self.observed.is_early) for each in self.own]
+        return [activation.shown if is_by_row else activation.begun(self.observed.is_early) for activation in self.own]
 
     def starts(self) -> list[tuple[Activation, bool | UnknownValue]]:
         """The activations of the clause's nodes that count or may count."""
-        found = [(each, self.counts_one(each)) for each in self.own]
-        return [each for each in found if each[1] is not False]
+        starts = ((start, self.counts_one(start)) for start in self.own)
+        return [(start, counts) for start, counts in starts if counts is not False]
 
     def stretches(self) -> list[Stretch]:
         """The parts of the run whose time counts or may count."""
@@ -120,7 +120,7 @@ class OverRun(Record):
     def with_all_along(self, condition: Condition) -> list[Stretch]:
         """The maximal parts of the run in which a condition holds or is unknown."""
         observed = self.observed.in_scope
-        found: list[Stretch] = []
+        stretches: list[Stretch] = []
         begin = observed.begin
         before: bool | UnknownValue = False
         for moment in (*observed.moments(condition), None):
@@ -130,38 +130,40 @@ class OverRun(Record):
                 continue
             end = moment if moment is not None else observed.end
             if before is not False:
-                found.append(Stretch(begin, end, before.why if isinstance(before, UnknownValue) else ""))
+                stretches.append(Stretch(begin, end, before.why if isinstance(before, UnknownValue) else ""))
             begin, before = end, now
-        return found
+        return stretches
 
     def happenings(
-        self, event: ResolvedEvent, of: Sequence[Activation] | None = None, is_by_row: bool = True
+        self, event: ResolvedEvent, activations: Sequence[Activation] | None = None, is_by_row: bool = True
     ) -> list[Happening]:
         """The certain and possible occurrences of an event, in order.
 
         Args:
-            of: the activations of its node; None: those of the node that the clause names.
+            activations: of its node; None: those of the node that the clause names.
             is_by_row: begins are in the order of their rows, not of their times.
         """
-        found: list[Happening] = []
+        occurrences: list[Happening] = []
         if event.condition is not None:
             ended: Moment | None = None  # of the last part in which it is unknown
             for part in self.with_all_along(event.condition):
                 if part.why or part.begin != ended:
-                    found.append(Happening(part.begin, part.end if part.why else part.begin, part.why, not part.why))
+                    occurrences.append(
+                        Happening(part.begin, part.end if part.why else part.begin, part.why, not part.why)
+                    )
                 ended = part.end if part.why else None
-            return found
+            return occurrences
         outcomes = _OUTCOMES.get(event.happening)
-        for each in of if of is not None else self.observed.nodes.activations(target_of(event)):
+        for activation in activations if activations is not None else self.observed.nodes.activations(target_of(event)):
             if outcomes is None:
-                begun = each.begun(self.observed.is_early)
-                order = each.shown if is_by_row else begun
-                found.append(Happening(each.begun(True), each.started, order=order, judged=begun))
-            elif each.outcome in outcomes and each.timing == "latest":
-                found.append(Happening(each.shown, each.ended, UNKNOWN_END, judged=each.ended))
-            elif each.outcome in outcomes:
-                found.append(Happening(each.ended, each.ended))
-        return sorted(found, key=lambda each: each.first)
+                begun = activation.begun(self.observed.is_early)
+                order = activation.shown if is_by_row else begun
+                occurrences.append(Happening(activation.begun(True), activation.started, order=order, judged=begun))
+            elif activation.outcome in outcomes and activation.timing == "latest":
+                occurrences.append(Happening(activation.shown, activation.ended, UNKNOWN_END, judged=activation.ended))
+            elif activation.outcome in outcomes:
+                occurrences.append(Happening(activation.ended, activation.ended))
+        return sorted(occurrences, key=lambda happening: happening.first)
 
 
 def target_of(event: ResolvedEvent) -> NodeTarget:

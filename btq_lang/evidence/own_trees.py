@@ -1,4 +1,4 @@
-"""The trees in logs as missions without requirements, for logs of which no mission is known."""
+"""The trees in logs as missions without requirements, for logs whose mission is unknown."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class OwnTree(Candidate):
         return OwnTree, self._made_of
 
     def builds(self, tree: str = "") -> Iterator[Build]:
-        """What `btq build` makes of it, and at the end the tree itself, which always is that in the log."""
+        """The builds of the mission, and last the tree itself, which always equals the one in the log."""
         yield from super().builds(tree)
         main = self._document.root.get("main_tree_to_execute") or ""
         if tree in ("", main):
@@ -53,7 +53,7 @@ class OwnTrees:
 
     def __init__(self) -> None:
         self.missions: Final[list[OwnTree]] = []
-        self._known: Final[set[tuple[tuple[int, str, str], ...]]] = set()
+        self._node_lists: Final[set[tuple[tuple[int, str, str], ...]]] = set()
 
     def of(self, sessions: Iterator[LogSession], address: str) -> Iterator[LogSession]:
         """The sessions of a running robot, with a mission for each when it begins."""
@@ -65,10 +65,10 @@ class OwnTrees:
         """Make missions of the trees in a log that are not known yet."""
         for tree in trees:
             nodes = tuple((node.uid, node.kind, node.path) for node in tree.nodes.values())
-            if nodes in self._known:
+            if nodes in self._node_lists:
                 continue
-            self._known.add(nodes)
+            self._node_lists.add(nodes)
             ID = as_written(tree.xml).root.get("main_tree_to_execute") or "tree"
             names = chain((ID,), (f"{ID} {number}" for number in count(2)))
-            name = next(each for each in names if all(each != mission.name for mission in self.missions))
+            name = next(unused for unused in names if all(unused != mission.name for mission in self.missions))
             self.missions.append(OwnTree(f"{log}/{name}.btq", name, tree))

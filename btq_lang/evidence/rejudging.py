@@ -46,7 +46,7 @@ class Shown(Record):
     least: int = 0
 
 
-def shown_now(found: Requirements, judged: Iterable[RequirementVerdict]) -> Iterator[Shown]:
+def shown_now(requirements: Requirements, judged: Iterable[RequirementVerdict]) -> Iterator[Shown]:
     """The clauses of the present text, each with its verdict.
 
     Args:
@@ -60,7 +60,7 @@ def shown_now(found: Requirements, judged: Iterable[RequirementVerdict]) -> Iter
         if clause.measures is not None
     )
     by_text = grouped(((name, clause.text), clause) for name, clause in verdicts if clause.measures is None)
-    for demand in demands(found):
+    for demand in demands(requirements):
         name, subject = demand.requirement.name, demand.applied.subject if demand.applied is not None else None
         edge = edge_of(within(demand.claim, demand.requirement.scopes), subject, demand.requirement)  # as it was judged
         # Several of a requirement with arguments may be at one node: they are in one order.
@@ -82,7 +82,7 @@ def _is_named(clause: ClauseVerdict, subject: Subject | None) -> bool:
     return any(without_number(path.rpartition("/")[2]) == wanted for path in paths)
 
 
-_PLACE: Final = re.compile(r" \(\d+ of \d+\)$")  # as of `node_names`
+_PLACE: Final = re.compile(r" \(\d+ of \d+\)$")  # as in `rows.node_names`
 
 
 def _again(demand: Demand, clause: ClauseVerdict, edge: Edge | None) -> Shown:
@@ -90,8 +90,8 @@ def _again(demand: Demand, clause: ClauseVerdict, edge: Edge | None) -> Shown:
     assert measures is not None, "only clauses with measures are looked up"
     odds, confidence = demand.requirement.odds, demand.requirement.confidence
     is_same_bound = (edge.value.si if edge is not None else None) == measures.bound
-    now = (odds.relation, odds.probability) if odds is not None else None
-    if is_same_bound and (now, confidence) == (measures.odds, clause.confidence):
+    odds_now = (odds.relation, odds.probability) if odds is not None else None
+    if is_same_bound and (odds_now, confidence) == (measures.odds, clause.confidence):
         return Shown(demand, clause, clause.violated)
     if demand.requirement.window is not None or (not is_same_bound and measures.margins is None):
         return Shown(demand, None)

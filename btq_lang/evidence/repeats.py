@@ -1,5 +1,7 @@
 """Runs that several logs hold, as those of two loggers, of a copy, or of a log that was copied while it was written.
 
+A log that is given twice, under two names, counts once.
+
 One invariant: a run is left out only if another one that is kept holds all its rows: node and status of each, in their
 order, within a millisecond; of equal ones that of the session with more rows is kept, then the first.
 
@@ -8,6 +10,7 @@ Only sessions in which runs begin or end at the same time are read for this; whe
 
 from __future__ import annotations
 
+import os
 from array import array
 from bisect import bisect_left, bisect_right
 from collections import Counter
@@ -17,10 +20,12 @@ from itertools import accumulate
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.evidence.model import PLACES
+from btq_lang.evidence.store.sets import files_of_log, sha256
 from btq_lang.util.grouping import grouped
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Activation, Transition
+
 
 WITHIN: Final = 1000  # µs between two rows of one change of a node
 
@@ -84,20 +89,20 @@ class LoggedRows:
         """The first and the last of the rows that match those of another session from `first` to `last`, counted from
         1; None if one has no match.
         """
-        at = bisect_left(self.latest, other.times[first - 1] - WITHIN)
+        index = bisect_left(self.latest, other.times[first - 1] - WITHIN)
         begin = -1
         for time, change in zip(other.times[first - 1 : last], other.changes[first - 1 : last], strict=True):
-            while at < len(self.times) and not (
-                self.changes[at] == change and -WITHIN <= self.times[at] - time <= WITHIN
+            while index < len(self.times) and not (
+                self.changes[index] == change and -WITHIN <= self.times[index] - time <= WITHIN
             ):
-                if self.earliest[at] > time + WITHIN:
+                if self.earliest[index] > time + WITHIN:
                     return None
-                at += 1
-            if at == len(self.times):
+                index += 1
+            if index == len(self.times):
                 return None
-            begin = at if begin < 0 else begin
-            at += 1
-        return begin + 1, at
+            begin = index if begin < 0 else begin
+            index += 1
+        return begin + 1, index
 
 
 LeftOut: TypeAlias = dict[int, LoggedRuns]  # by the run's number in its session, from 0: where it is counted
@@ -106,17 +111,17 @@ LeftOut: TypeAlias = dict[int, LoggedRuns]  # by the run's number in its session
 def repeated(
     sessions: Sequence[LoggedRuns], read: Callable[[str], Sequence[LoggedRows]]
 ) -> list[tuple[LoggedRuns, LeftOut]]:
-    """The sessions of which runs are left out because other sessions hold them.
+    """The sessions with runs that are left out because other sessions hold them.
 
     Args:
         read: the rows of all sessions in a log, in their order; what is not read again is missing.
     """
     rows_of = lru_cache(_LOGS_AT_ONCE)(read)
     left_out_of: dict[int, LeftOut] = {}
-    for alike in grouped((each.whose, each) for each in sessions if each.begins).values():
+    for alike in grouped((session.whose, session) for session in sessions if session.begins).values():
         checked = _LeftOut(_overlapping(alike), rows_of)
         left_out_of.update(zip(map(id, checked.sessions), checked.runs, strict=True))
-    return [(each, left_out) for each in sessions if (left_out := left_out_of.get(id(each)))]
+    return [(session, left_out) for session in sessions if (left_out := left_out_of.get(id(session)))]
 
 
 def notes(
@@ -124,8 +129,8 @@ def notes(
 ) -> Iterator[str]:
     """Which runs of which logs are not counted, a note for each two logs; `sessions`: all of them."""
     runs: Counter[str] = Counter()
-    for each in sessions:
-        runs[each.log] += len(each.begins)
+    for logged in sessions:
+        runs[logged.log] += len(logged.begins)
     pairs = Counter((session.log, kept.log) for session, left_out in repeats for kept in left_out.values())
     for (log, kept), number in pairs.items():
         where = f"in {shown(kept)} too" if kept != log else "there twice"
@@ -137,18 +142,20 @@ def _overlapping(sessions: Sequence[LoggedRuns]) -> list[LoggedRuns]:
     """The sessions during which another one has runs, those with the most rows first."""
     overlapping: set[int] = set()
     latest: tuple[int, LoggedRuns] | None = None
-    for begin, end, place in sorted((min(each.begins), max(each.ends), at) for at, each in enumerate(sessions)):
+    for begin, end, place in sorted(
+        (min(session.begins), max(session.ends), index) for index, session in enumerate(sessions)
+    ):
         session = sessions[place]
         if latest is not None and begin <= latest[0] + WITHIN:
             overlapping.update((id(latest[1]), id(session)))
         if latest is None or end > latest[0]:
             latest = end, session
-    in_order = [each for each in sessions if id(each) in overlapping]
-    return sorted(in_order, key=lambda each: -each.rows)
+    in_order = [session for session in sessions if id(session) in overlapping]
+    return sorted(in_order, key=lambda session: -session.rows)
 
 
 class _LeftOut:
-    """Sessions, and of each the runs that are left out.
+    """Sessions, and the runs of each that are left out.
 
     Attributes:
         sessions: those with the most rows first.
@@ -159,38 +166,40 @@ class _LeftOut:
         self.runs: Final[list[LeftOut]] = [{} for _ in sessions]
         self._rows_of: Final = rows_of
         self._marks: Final = [
-            sorted((time, at, run) for at, each in enumerate(sessions) for run, time in enumerate(times(each)))
+            sorted(
+                (time, index, run) for index, session in enumerate(sessions) for run, time in enumerate(times(session))
+            )
             for times in _TIMES
         ]
-        for at in range(len(sessions)):
-            for other in self._beside(at):
-                self._leave_out(other, at, is_first=False)
-                self._leave_out(at, other, is_first=True)
+        for index in range(len(sessions)):
+            for other in self._beside(index):
+                self._leave_out(other, index, is_first=False)
+                self._leave_out(index, other, is_first=True)
 
-    def _beside(self, at: int) -> list[int]:
-        """The later sessions of which runs that are counted begin or end when some of this one do."""
+    def _beside(self, index: int) -> list[int]:
+        """The later sessions whose counted runs begin or end at the same time as some of this one."""
         others = set()
         for marks, times in zip(self._marks, _TIMES, strict=True):
-            for run in self._counted(at):
-                time = times(self.sessions[at])[run]
+            for run in self._counted(index):
+                time = times(self.sessions[index])[run]
                 begin = bisect_left(marks, (time - WITHIN,))
-                for _, other, its in marks[begin : bisect_right(marks, (time + WITHIN + 1,))]:
-                    if other > at and its not in self.runs[other] and self._may_be_one(at, other):
+                for _, other, other_run in marks[begin : bisect_right(marks, (time + WITHIN + 1,))]:
+                    if other > index and other_run not in self.runs[other] and self._may_be_one(index, other):
                         others.add(other)
         return sorted(others)
 
-    def _may_be_one(self, at: int, other: int) -> bool:
-        robots = {self.sessions[at].robot, self.sessions[other].robot}
+    def _may_be_one(self, index: int, other: int) -> bool:
+        robots = {self.sessions[index].robot, self.sessions[other].robot}
         return len(robots - {""}) < 2
 
-    def _counted(self, at: int) -> Iterator[int]:
-        return (run for run in range(len(self.sessions[at].begins)) if run not in self.runs[at])
+    def _counted(self, index: int) -> Iterator[int]:
+        return (run for run in range(len(self.sessions[index].begins)) if run not in self.runs[index])
 
-    def _leave_out(self, at: int, other: int, is_first: bool) -> None:
+    def _leave_out(self, index: int, other: int, is_first: bool) -> None:
         """Leave out the runs of a session that another one holds; `is_first`: not those that are equal."""
-        session, kept = self.sessions[at], self.sessions[other]
+        session, kept = self.sessions[index], self.sessions[other]
         rows, wider = self._rows(session), self._rows(kept)
-        for run in [*self._counted(at)]:
+        for run in [*self._counted(index)]:
             first, last = session.first[run], min(session.last[run], len(rows.times))
             if first <= last and (match := wider.find(rows, first, last)) is not None:
                 begin, end = match
@@ -198,11 +207,37 @@ class _LeftOut:
                 if held and not self.runs[other].keys() & held:
                     number = max(end, kept.last[held[-1]]) - min(begin, kept.first[held[0]])
                     if number > last - first or not is_first:
-                        self.runs[at][run] = kept
+                        self.runs[index][run] = kept
 
     def _rows(self, session: LoggedRuns) -> LoggedRows:
         of_log = self._rows_of(session.log)
         return of_log[session.number] if session.number < len(of_log) else LoggedRows(())
+
+
+def without_copies(logs: Sequence[str]) -> tuple[Sequence[str], dict[str, str]]:
+    """The logs without copies of earlier ones, and for each copy the log that it equals.
+
+    Only logs of the same size are read for this.
+    """
+    sizes = {log: _size(log) for log in logs}
+    alike = Counter(sizes.values())
+    first: dict[str, str] = {}
+    copies: dict[str, str] = {}
+    for log in logs:
+        if sizes[log] is not None and alike[sizes[log]] > 1:
+            original = first.setdefault(sha256(log), log)
+            if original != log:
+                copies[log] = original
+    return [log for log in logs if log not in copies], copies
+
+
+def _size(log: str) -> int | None:
+    """The bytes of all files of a log; None if it cannot be read."""
+    try:
+        files = files_of_log(log)
+        return sum(map(os.path.getsize, files)) if all(os.access(file, os.R_OK) for file in files) else None
+    except OSError:
+        return None
 
 
 _TIMES: Final[tuple[Callable[[LoggedRuns], array[int]], ...]] = (lambda each: each.begins, lambda each: each.ends)

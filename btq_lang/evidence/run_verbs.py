@@ -119,18 +119,17 @@ def _between_limits(
     return longest if isinstance(longest, UnknownValue) else (shortest, longest)
 
 
-def _timed(claim: ResolvedClaim, times: tuple[Measure, Measure], at: int, since: int, said: str = "") -> Judgement:
-    """The judgement of a time that lies between two; unknown unless both come to the same."""
+def _timed(claim: ResolvedClaim, times: tuple[Measure, Measure], moment: int, since: int, what: str = "") -> Judgement:
+    """The judgement of a time between two limits; unknown unless both limits give the same."""
     least, most = times
-    sentence = said or VERBS[claim.verb].said
-    judgement = Judgement(least.holds, at, sentence, least, since)
-    if not is_same(judgement, Judgement(most.holds, at, "", most)):
-        return Judgement(None, at, UNKNOWN_BEGIN)
+    sentence = what or VERBS[claim.verb].said
+    judgement = Judgement(least.holds, moment, sentence, least, since)
+    if not is_same(judgement, Judgement(most.holds, moment, "", most)):
+        return Judgement(None, moment, UNKNOWN_BEGIN)
     return between(judgement, least, most)
 
 
 def _begin(activation: Activation, run: OverRun) -> Happening:
-    """The begin of an activation as an event."""
     return Happening(activation.begun(True), activation.started, judged=activation.begun(run.observed.is_early))
 
 
@@ -141,8 +140,10 @@ def _follows(claim: ResolvedClaim, run: OverRun) -> Judgements:
     name = claim.text.partition(" follows ")[2]
     before = (run.root.begin, -1)  # the beginning of the run
     for start, moment in zip(run.own, run.begins(claim.event), strict=True):
-        between = [each for each in events if before < each.last and each.first <= moment]
-        is_sure = any(each.is_certain and before < each.first and each.last <= moment for each in between)
+        between = [happening for happening in events if before < happening.last and happening.first <= moment]
+        is_sure = any(
+            happening.is_certain and before < happening.first and happening.last <= moment for happening in between
+        )
         since = "since its last start" if before[1] >= 0 else "before it in the run"
         before = moment
         counts = run.counts_one(start)
@@ -167,19 +168,19 @@ def _tries(claim: ResolvedClaim, run: OverRun) -> Judgements:
     assert claim.limit is not None, "a number of tries has a bound"
     is_upper = claim.limit.relation in ("<=", "<")
     starts = run.starts()
-    moments = [each.shown for each, _ in starts]
+    moments = [start.shown for start, _ in starts]
     periods = run.observed.nodes.activations(claim.per) if isinstance(claim.per, NodeTarget) else [run.root]
     for refusal in run.refused:
         if not any(period.shown <= refusal.at <= period.ended for period in periods):
             yield Judgement(False, refusal.at[0], f"its start was refused by its guard at {refusal.guard.path}")
     for period in periods:
         inside = starts[bisect_left(moments, period.shown) : bisect_right(moments, period.ended)]
-        refused = [each for each in run.refused if period.shown <= each.at <= period.ended]
+        refused = [refusal for refusal in run.refused if period.shown <= refusal.at <= period.ended]
         if not inside and not refused and is_upper:
             yield OUT
             continue
-        least = _number(claim, run, period, [each for each, counts in inside if counts is True], refused)
-        most = _number(claim, run, period, [each for each, _ in inside], refused)
+        least = _number(claim, run, period, [start for start, counts in inside if counts is True], refused)
+        most = _number(claim, run, period, [start for start, _ in inside], refused)
         reasons = [counts.why for _, counts in inside if isinstance(counts, UnknownValue)]
         has_none = is_upper and not refused and len(reasons) == len(inside)  # perhaps: then the period does not count
         is_open = least is None or most is None or least.holds is most.holds
@@ -213,16 +214,16 @@ def _number(
         return None
     if holds is False and not refused and period.timing == "latest":
         return Judgement(None, period.end, UNKNOWN_END, tried)
-    at = period.end
+    decided_at = period.end
     bound = tried.bound.si
     breaking = max(floor(bound) if claim.limit.relation != "<" else ceil(bound) - 1, 0)
     if holds is False and tried.is_upper and breaking < len(starts):
-        at = starts[breaking].begin
+        decided_at = starts[breaking].begin
     sentence = VERBS[claim.verb].said.replace("{}", counted(len(starts), "time"))
     if refused:
         sentence += f", and its guard at {refused[0].guard.path} refused {len(refused)} more"
     tried.unit = None
-    return Judgement(holds is not False, at, sentence, tried, period.begin, starts)
+    return Judgement(holds is not False, decided_at, sentence, tried, period.begin, starts)
 
 
 def _runs(claim: ResolvedClaim, run: OverRun) -> Judgements:
@@ -232,13 +233,13 @@ def _runs(claim: ResolvedClaim, run: OverRun) -> Judgements:
     starts = run.starts()
     for stretch in run.stretches():
         is_early = run.observed.is_early
-        inside = [(each, counts) for each, counts in starts if stretch.begin <= each.begun(is_early) <= stretch.end]
+        inside = [(start, counts) for start, counts in starts if stretch.begin <= start.begun(is_early) <= stretch.end]
         unclear = [counts.why for _, counts in inside if isinstance(counts, UnknownValue)]
         if stretch.why or unclear:
             yield Judgement(None, stretch.begin[0], stretch.why or unclear[0])
             continue
         is_open = run.is_cut_off and stretch.end == run.observed.end
-        counted_starts = [each for each, _ in inside]
+        counted_starts = [start for start, _ in inside]
         yield from (_between if claim.every else _in_windows)(claim, run, stretch, counted_starts, is_open)
 
 
@@ -246,8 +247,8 @@ def _between(
     claim: ResolvedClaim, run: OverRun, stretch: Stretch, starts: Sequence[Activation], is_open: bool
 ) -> Judgements:
     """Judge the times from each start to the next, and from the last to the end of the stretch."""
-    said = VERBS[claim.verb].said.replace("{}", "{} after its last start")
-    moments = [_begin(each, run) for each in starts]
+    sentence_until_next = VERBS[claim.verb].said.replace("{}", "{} after its last start")
+    moments = [_begin(start, run) for start in starts]
     for start, after in pairwise([*moments, Happening(stretch.end, stretch.end)]):
         is_last = start is moments[-1]
         until = after.until[0]
@@ -257,7 +258,7 @@ def _between(
         elif is_last and is_open and times[0].holds:
             yield None
         else:
-            sentence = "had not run again after {}" if is_last else said
+            sentence = "had not run again after {}" if is_last else sentence_until_next
             yield _timed(claim, times, until, start.until[0], sentence)
 
 
@@ -270,7 +271,7 @@ def _in_windows(
     begin, last = stretch.begin[0], stretch.end[0] - length  # when the first and the last window begin
     if begin > last:
         return
-    times = [each.begun(run.observed.is_early)[0] for each in starts]
+    times = [start.begun(run.observed.is_early)[0] for start in starts]
 
     def inside(window: int) -> slice:
         return slice(bisect_left(times, window), bisect_left(times, window + length))
@@ -288,7 +289,7 @@ def _in_windows(
             yield Judgement(None, stretch.begin[0], reading.why)
             return
         measures.append((reading, window))
-    measure, window = max(measures, key=lambda each: each[0].excess)
+    measure, window = max(measures, key=lambda pair: pair[0].excess)
     measure.unit = None
     if not measure.holds:
         broken = starts[inside(window)]
@@ -310,20 +311,20 @@ def _span(claim: ResolvedClaim, run: OverRun) -> Judgements:
     first = span.first
     is_by_row = first.condition is None and span.last.condition is None
     lasts = run.happenings(span.last, is_by_row=is_by_row)
-    certain = [each for each in lasts if each.is_certain]
-    moments = [each.first for each in certain]
+    certain = [last_event for last_event in lasts if last_event.is_certain]
+    moments = [last_event.first for last_event in certain]
     # The first one that has happened, of those from each index on.
-    ends = [*accumulate(reversed(certain), lambda *each: min(each, key=attrgetter("last")))][::-1]
+    ends = [*accumulate(reversed(certain), lambda *pair: min(pair, key=attrgetter("last")))][::-1]
     next_after = bisect_right if first == span.last else bisect_left  # an event does not follow itself
     for event in run.happenings(first, run.own if first.condition is None else None, is_by_row):
         index = next_after(moments, event.first)
         last = ends[index] if index < len(ends) else None
         until = last.last if last is not None else run.root.ended
-        if any(each.shown <= event.first <= each.ended <= until for each in run.stopped):
+        if any(stopped.shown <= event.first <= stopped.ended <= until for stopped in run.stopped):
             yield Judgement(False, until[0], "its guard stopped it before it came to an end", since=event.read[0])
             continue
-        others = [each for each in lasts if each.until >= event.first and each.at <= until]
-        unclear = next((each.why for each in others if each.why), "")
+        others = [last_event for last_event in lasts if last_event.until >= event.first and last_event.at <= until]
+        unclear = next((last_event.why for last_event in others if last_event.why), "")
         yield from _ended(claim, run, event, last, unclear)
 
 
@@ -370,15 +371,15 @@ def _total(claim: ResolvedClaim, run: OverRun) -> Judgements:
     starts = run.starts()
     if not starts:
         return
-    every = [each for each, _ in starts]
-    sure = [each for each, counts in starts if counts is True and each.timing == "exact"]
+    every = [start for start, _ in starts]
+    sure = [start for start, counts in starts if counts is True and start.timing == "exact"]
     reasons = [counts.why for _, counts in starts if isinstance(counts, UnknownValue)]
     if len(reasons) == len(starts):  # perhaps none counts
         yield Judgement(None, run.root.end, reasons[0])
         return
     unclear = reasons[0] if reasons else UNKNOWN_END if sure != every else UNKNOWN_BEGIN
-    least = _sum(claim, run, sure, sum(each.end - each.begin for each in sure))
-    most = _sum(claim, run, every, sum(each.end - each.earliest for each in every))
+    least = _sum(claim, run, sure, sum(start.end - start.begin for start in sure))
+    most = _sum(claim, run, every, sum(start.end - start.earliest for start in every))
     if least is not None and most is not None and is_same(least, most):
         yield between(least, least.measure, most.measure)
     elif least is None and most is None:

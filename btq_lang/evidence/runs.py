@@ -10,8 +10,8 @@ How real logs deviate from the plain sequence RUNNING, result, IDLE:
 * A node writes its first row after its first tick: `begins.py` says when it began.
 * Nothing is written when a node is halted (logs without rows to IDLE): it had ended by the time a node above it ended,
   or by its next start.
-* Rows before the first one, or between two, were not seen (a running robot): the open run ends there, cut off, and of
-  each node it is unknown whether it is active until a row says so.
+* Rows before the first one, or between two, were not seen (a running robot): the open run ends there, cut off, and
+  whether a node is active is unknown until a row says so.
 """
 
 from __future__ import annotations
@@ -44,14 +44,13 @@ def activations(session: LogSession) -> Iterator[Activation]:
     """The activations of a session, each as it ends; those of the root are the runs."""
     tree = session.tree
     begins = Begins(tree)
-    nodes = _OpenNodes(tree, begins)
+    odd = Oddities()
+    nodes = _OpenNodes(tree, begins, odd, session.keeping)
     parent = tree.parent
     leaves = tree.leaves
     by_others = begins.others
-    begun, running, unseen = nodes.begun, nodes.running, nodes.unseen
-    odd = Oddities()
+    begun, running, completed, unseen = nodes.begun, nodes.running, nodes.completed, nodes.unseen
     idle: tuple[int, Moment] | None = None  # a halt that may turn out to be part of the node's own completion
-    done: set[int] = set()  # the nodes that have completed and have not been reset since
     is_reset_written = False
     row, now = 0, (0, 0)
     until = now  # nodes that are active at `now` are still active then
@@ -65,19 +64,13 @@ def activations(session: LogSession) -> Iterator[Activation]:
                 if uid is UNTIL:
                     until = time, row
                 if uid is GAP:
-                    if ROOT in begun:
-                        yield from nodes.end(ROOT, max(now, until), "O", "lost", below="O")
-                    done.clear()
-                    unseen.update(parent)
-                    begins.lose()
+                    yield from nodes.lose(max(now, until))
             else:
                 odd.count("rows with an unknown node or status, left out", time)
             continue
         before, now = now, (time, row)
         if time < before[0]:
-            odd.count("rows earlier than the row before them, so durations across them are unknown", time)
-            nodes.distrust()
-            begins.lose()
+            nodes.distrust(time)
         completes = status in _RESULTS
         if idle is not None:
             halted, then = idle
@@ -90,28 +83,20 @@ def activations(session: LogSession) -> Iterator[Activation]:
         is_of_tick = status == RUNNING or (completes and not (uid in running and uid in leaves))
         if status == RUNNING:
             if uid in running:
-                if uid == ROOT:
-                    yield from nodes.end(ROOT, (before[0], row - 1), "O", below="O")
-                else:
-                    odd.count(_UNWRITTEN, time)
-                    yield from nodes.end(uid, now, "H", "latest")
+                yield from nodes.end_unwritten(uid, before[0], now)
             running.add(uid)
             if uid not in begun:
                 nodes.begin(uid, now, status)
-                if uid in done:
-                    session.keeping.add(parent[uid])
         elif completes:
             if uid not in begun:
                 nodes.begin(uid, now, status)
-                if uid in done:
-                    session.keeping.add(parent[uid])
-            done.add(uid)
+            completed.add(uid)
             ended = nodes.end(uid, now, "S" if status == SUCCESS else "F")
             if len(ended) > 1:
                 odd.count(_UNWRITTEN, time)
             yield from ended
         else:
-            done.discard(uid)
+            completed.discard(uid)
             is_reset_written = True
             if uid in running:
                 idle = uid, now
@@ -138,16 +123,21 @@ class _OpenNodes:
     Attributes:
         begun: when each began at the latest.
         running: those that have written RUNNING.
-        unseen: those of which it is unknown whether they are active.
+        completed: those that have completed and have not been reset since.
+        unseen: those that may or may not be active.
     """
 
-    def __init__(self, tree: LoggedTree, begins: Begins) -> None:
+    def __init__(self, tree: LoggedTree, begins: Begins, odd: Oddities, keeping: set[int]) -> None:
+        """No node is active; `keeping`: nodes that start a child again without resetting it are added."""
         self.begun: Final[dict[int, Begin]] = {}
         self.running: Final[set[int]] = set()
+        self.completed: Final[set[int]] = set()
         self.unseen: Final[set[int]] = set()
         self._late: Final[set[int]] = set()  # those that began before their time in `begun`
         self._tree: Final = tree
         self._begins: Final = begins
+        self._odd: Final = odd
+        self._keeping: Final = keeping
         self._distrusted: Final[set[int]] = set()
 
     def begin(self, uid: int, now: Moment, status: int) -> None:
@@ -156,8 +146,10 @@ class _OpenNodes:
         beginning = [uid]
         while (above := parent[beginning[-1]]) and above not in begun:
             beginning.append(above)
-        for each in reversed(beginning):
-            begun[each] = self._begins.of(each, now, status, uid, begun)
+        for node in reversed(beginning):
+            begun[node] = self._begins.begin_of(node, now, status, uid, begun)
+        if uid in self.completed:
+            self._keeping.add(parent[uid])
 
     def see(self, uid: int, now: Moment, status: int) -> None:
         """Conclude from a row which nodes were active before it."""
@@ -180,16 +172,16 @@ class _OpenNodes:
         self, uid: int, now: Moment, outcome: Outcome, timing: Timing = "exact", below: Outcome = "H"
     ) -> list[Activation]:
         """End a node; returns the activations that end with it, innermost first, its own last."""
-        found: list[Activation] = []
+        ended: list[Activation] = []
         last = self._tree.last[uid]
         if last > uid and max(self.begun) > uid:  # mostly nothing below is open any more
-            for each in sorted([each for each in self.begun if uid < each <= last], reverse=True):
-                if each in self.running:
-                    found.append(self._made(each, now, below, "latest" if below == "H" else "exact"))
+            for node in sorted([node for node in self.begun if uid < node <= last], reverse=True):
+                if node in self.running:
+                    ended.append(self._activation(node, now, below, "latest" if below == "H" else "exact"))
                 else:  # only its descendants have written rows
-                    self.forget(each)
-        found.append(self._made(uid, now, outcome, timing))
-        return found
+                    self.forget(node)
+        ended.append(self._activation(uid, now, outcome, timing))
+        return ended
 
     def forget(self, uid: int) -> None:
         """Mark a node as inactive."""
@@ -198,11 +190,32 @@ class _OpenNodes:
         self._distrusted.discard(uid)
         self._late.discard(uid)
 
-    def distrust(self) -> None:
-        """Mark the durations of all active nodes as unknown: the clock was set back."""
-        self._distrusted.update(self.begun)
+    def end_unwritten(self, uid: int, before: int, now: Moment) -> list[Activation]:
+        """End a running node that starts again: its end has no row.
 
-    def _made(self, uid: int, now: Moment, outcome: Outcome, timing: Timing) -> Activation:
+        Args:
+            before: the time of the row before this one; a run ends there.
+        """
+        if uid == ROOT:
+            return self.end(ROOT, (before, now[1] - 1), "O", below="O")
+        self._odd.count(_UNWRITTEN, now[0])
+        return self.end(uid, now, "H", "latest")
+
+    def distrust(self, time: int) -> None:
+        """Mark the durations of all active nodes as unknown: the clock was set back to this time."""
+        self._odd.count("rows earlier than the row before them, so durations across them are unknown", time)
+        self._distrusted.update(self.begun)
+        self._begins.lose()
+
+    def lose(self, now: Moment) -> list[Activation]:
+        """End the open run, because later rows were lost; which nodes are active is unknown from now on."""
+        ended = self.end(ROOT, now, "O", "lost", below="O") if ROOT in self.begun else []
+        self.completed.clear()
+        self.unseen.update(self._tree.parent)
+        self._begins.lose()
+        return ended
+
+    def _activation(self, uid: int, now: Moment, outcome: Outcome, timing: Timing) -> Activation:
         self.running.discard(uid)
         if uid in self._distrusted:
             self._distrusted.remove(uid)
@@ -218,17 +231,17 @@ class Oddities:
     """Counts what is unusual in a log; each kind is one remark, with the time of the first."""
 
     def __init__(self) -> None:
-        self._found: Final[dict[str, tuple[int, int]]] = {}
+        self._kinds: Final[dict[str, tuple[int, int]]] = {}
 
     def count(self, what: str, time: int) -> int:
         """Count one; returns how many of its kind were before it."""
-        first, number = self._found.get(what, (time, 0))
-        self._found[what] = first, number + 1
+        first, number = self._kinds.get(what, (time, 0))
+        self._kinds[what] = first, number + 1
         return number
 
     def remarks(self) -> Iterator[str]:
         """A remark for each kind."""
-        for what, (first, number) in self._found.items():
+        for what, (first, number) in self._kinds.items():
             yield f"{what}: {number}, the first at {timestamp(first)}"
 
 

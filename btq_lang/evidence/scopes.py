@@ -40,17 +40,17 @@ def in_scope(scopes: Sequence[ResolvedScope], verb: str, observed: Observed) -> 
         if scope.word == "while" and VERBS[verb].operand == "rate":  # it is time that counts, not activations
             continue
         moments = [observed.begin] if scope.word == "when" else observed.moments(scope.condition)
-        found = [truth(scope.condition, observed, moment) for moment in moments]
+        answers = [truth(scope.condition, observed, moment) for moment in moments]
         is_some_enough = scope.word == "while" and VERBS[verb].judged == "while it runs"  # a part of its time is enough
         if not observed.is_end_known:  # except at its start, it may have been halted already
-            found[1:] = [UnknownValue(UNKNOWN_END) if each is is_some_enough else each for each in found[1:]]
-        unknown = next((each for each in found if isinstance(each, UnknownValue)), None)
+            answers[1:] = [UnknownValue(UNKNOWN_END) if answer is is_some_enough else answer for answer in answers[1:]]
+        unknown = next((answer for answer in answers if isinstance(answer, UnknownValue)), None)
         if is_some_enough:
-            if True in found:
+            if True in answers:
                 continue
             counts = unknown or False
         else:
-            counts = False if False in found else unknown or True
+            counts = False if False in answers else unknown or True
         if counts is False:
             return False
         result = counts if isinstance(counts, UnknownValue) else result

@@ -18,8 +18,8 @@ def result(clause: ClauseVerdict) -> str:
     if clause.worst is not None and clause.interval is None and clause.verdict != UNKNOWN:
         run = clause.worst.run
         worst = f"worst {clause.worst.text} in run {run}" if run is not None else f"worst {clause.worst.text}"
-        known = f"{clause.counted - clause.bounded.number} known, " if clause.bounded is not None else ""
-        parts.append(f"{known}{worst}")
+        known_number = f"{clause.counted - clause.bounded.number} known, " if clause.bounded is not None else ""
+        parts.append(f"{known_number}{worst}")
     if clause.cut_off and clause.verdict != NEVER:
         parts.append(f"{clause.cut_off} cut off by the end of a log")
     left_out = [f"{number} that {how}" for number, how in _left_out(clause) if number]
@@ -45,7 +45,7 @@ def headline(clause: ClauseVerdict, medians: Mapping[str, float]) -> str:
         return f"{clause.of or clause.path}: no share can be as large as the requirement asks"
     first = clause.violations[0]
     line = f"{clause.of or first.path}: {clause.violated} of {clause.counted} {clause.unit} broke it"
-    causes = Counter(each.chain[0].path for each in clause.violations if each.chain)
+    causes = Counter(violation.chain[0].path for violation in clause.violations if violation.chain)
     if causes and (cause := causes.most_common(1)[0])[0] != first.path:
         line += f", {cause[1]} of them at {cause[0]}"
     return f"{line} ({_where(first)}{_others(clause)})"
@@ -72,15 +72,16 @@ def reason(violation: Violation, medians: Mapping[str, float]) -> str:
 def worst_violation(clause: ClauseVerdict) -> Violation:
     """The violation furthest beyond the bound; the first if nothing is measured."""
     worst = clause.worst
-    found = (each for each in clause.violations if worst and (each.run, each.measured) == (worst.run, worst.text))
-    return next(found, clause.violations[0])
+    violations = clause.violations
+    worst_ones = (each for each in violations if worst and (each.run, each.measured) == (worst.run, worst.text))
+    return next(worst_ones, violations[0])
 
 
 def _others(clause: ClauseVerdict) -> str:
-    """The runs that broke a clause beside the first: those of its log by number, then how many others if that is known,
-    for a store gives only the worst violations.
+    """The runs that broke a clause beside the first: those of its log by number, then how many others if that is known:
+    a store gives only the worst violations.
     """
-    first, *others = dict.fromkeys((each.source, each.run) for each in clause.violations)
+    first, *others = dict.fromkeys((violation.source, violation.run) for violation in clause.violations)
     named = [str(run) for source, run in others if source == first[0]][:_RUNS]
     runs = clause.violated if clause.unit == "runs" else len(others) + 1
     is_known = clause.unit == "runs" or len(clause.violations) == clause.violated
@@ -102,22 +103,22 @@ def _counted(clause: ClauseVerdict) -> str:
         number = counted(clause.counted, clause.unit.removesuffix("s"))
         return f"{clause.violated} of {number}{unknown}" if clause.verdict == VIOLATED else f"held so far in {number}"
     held = clause.counted - clause.violated
-    of = f"{held} of {clause.counted}{unknown}"
+    counts = f"{held} of {clause.counted}{unknown}"
     if clause.verdict == UNDECIDED:
         decided = f"no number of further {clause.unit} can decide it"
         if clause.more is not None:
             decided = f"{clause.more} more without a violation decide{'s' if clause.more == 1 else ''} it"
-        return f"{of}; {decided}"
+        return f"{counts}; {decided}"
     if not clause.counted:
-        return of
+        return counts
     low, high = clause.interval
     looks = _LOOKS[clause.limits]
     if clause.confidence is None:
         each = "" if clause.limits == "every look" else " each"
         limits = f"{share(low)} to {share(high)} with confidence {share(USUAL_CONFIDENCE)}{each}{looks}"
-        return f"{of}, {share(held / clause.counted)}; limits {limits}"
+        return f"{counts}, {share(held / clause.counted)}; limits {limits}"
     limit = f"at least {share(low)}" if clause.verdict == SATISFIED else f"at most {share(high)}"
-    return f"{of}, {limit} with confidence {share(clause.confidence)}{looks}"
+    return f"{counts}, {limit} with confidence {share(clause.confidence)}{looks}"
 
 
 def _where(violation: Violation) -> str:

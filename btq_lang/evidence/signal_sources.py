@@ -58,9 +58,9 @@ def signal_sources(missions: Sequence[Candidate], problems: list[str]) -> Declar
     Args:
         problems: errors are appended, if all missions are of one project; those of several only matter to their runs.
     """
-    here = find_project(".")
+    here_project = find_project(".")
     homes = {mission.path: mission.workspace.project for mission in missions}
-    projects = {path: home if home.evidence is not None else here.project for path, home in homes.items()}
+    projects = {path: home if home.evidence is not None else here_project.project for path, home in homes.items()}
     by_root = grouped((projects[mission.path].root, mission) for mission in missions)
     of_files: dict[str, Mapping[str, SampleSeries]] = {}
     broken: dict[str, str] = {}
@@ -90,7 +90,7 @@ def _read(project: Project, missions: Sequence[Candidate], problems: list[str]) 
         return {}
     wrong = dict.fromkeys(problem for source in sources for problem in _wrong(source, missions))
     file = find_project(project.root).path or project.root
-    problems += [f"{shown(file)}: [evidence.signals]: {each}" for each in wrong]
+    problems += [f"{shown(file)}: [evidence.signals]: {problem}" for problem in wrong]
     try:
         return {} if wrong else read_sources(sources, project.root)
     except NoSamples as error:
@@ -104,11 +104,11 @@ def _wrong(source: SignalSource, missions: Sequence[Candidate]) -> Iterator[str]
     """The errors of a source, given the missions' signals."""
     name = source.signal
     signals = [mission.requirements.signals for mission in missions]
-    for each in signals:
-        if name in each:
-            yield from _wrong_for(source, each[name])
-    known = {signal for each in signals for signal in each}
-    if known and name not in known and (meant := near(name, known, 1)):
+    for signals_of_mission in signals:
+        if name in signals_of_mission:
+            yield from _wrong_for(source, signals_of_mission[name])
+    names = {signal for signals_of_mission in signals for signal in signals_of_mission}
+    if names and name not in names and (meant := near(name, names, 1)):
         yield f"no mission has a signal `{name}`{did_you_mean(meant)}"
 
 

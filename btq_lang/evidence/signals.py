@@ -7,11 +7,13 @@ until `fresh within` is over.
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import pairwise
 from typing import Final
 
 from btq_lang.catalog.units import Unit, to_si
 from btq_lang.evidence.model import SampleSeries, SampleValue
+from btq_lang.evidence.wording import duration
 from btq_lang.requirements.model import Quantity, ResolvedSignal
 from btq_lang.util.record import Record
 
@@ -52,8 +54,8 @@ class Signals:
 
     def sampled(self, signal: ResolvedSignal, time: int) -> int | None:
         """The time of the sample that gives a signal its value at a time."""
-        found = self._series(signal).at(time)
-        return found[0] if found is not None else None
+        sample = self._series(signal).at(time)
+        return sample[0] if sample is not None else None
 
     def changes(self, signal: ResolvedSignal, begin: int, end: int) -> list[int]:
         """The times after `begin`, up to `end`, at which a signal may change: a sample comes or expires."""
@@ -77,20 +79,20 @@ class Signals:
         if not times:
             return UnknownValue(f"no sample of `{signal.name}` meanwhile" if series.times else _none_of(signal))
         checked = [*times, *self.changes(signal, times[0], end)] if signal.fresh is not None else times
-        found: list[float] = []
+        values: list[float] = []
         for time in checked:
             value = self.reading(signal, time)
             if isinstance(value, UnknownValue):
                 return value
-            found.append(float(value))
-        return found[: len(times)]
+            values.append(float(value))
+        return values[: len(times)]
 
     def sampled_values(self, signal: ResolvedSignal, begin: int, end: int) -> list[float] | UnknownValue:
         """A signal's values at its samples after `begin`, up to `end`; unknown if one is not a number."""
         series = self._series(signal)
-        at = bisect_right(series.times, begin), bisect_right(series.times, end)
+        places = bisect_right(series.times, begin), bisect_right(series.times, end)
         converted: list[float] = []
-        for sample in series.values[slice(*at)]:
+        for sample in series.values[slice(*places)]:
             value = _as_declared(signal, sample, series.unit) if sample is not None else None
             if isinstance(value, UnknownValue):
                 return value
@@ -103,9 +105,25 @@ class Signals:
         series = self._series(signal)
         return float(len(series.between(begin - 1, end))) if series.times else UnknownValue(_none_of(signal))
 
-    def sampled_times(self, signal: ResolvedSignal, begin: int, end: int) -> Sequence[int]:
-        """The times of a signal's samples from `begin` to `end`, as far as they are kept."""
-        return self._series(signal).between(begin - 1, end)
+    def remarks(self, signals: Mapping[str, ResolvedSignal], begin: int, end: int) -> Iterator[str]:
+        """A remark on each signal whose samples end long before the log, compared with the times between them.
+
+        Args:
+            signals: by name.
+            begin, end: of the session.
+        """
+        for name, signal in signals.items():
+            times = self._series(signal).between(begin - 1, end)
+            gaps = sorted(after - before for before, after in pairwise(times))
+            if len(gaps) < _FEW:
+                continue
+            median = gaps[len(gaps) // 2]
+            # A signal that is written when it changes has long gaps anyway.
+            allowed = signal.fresh * 1e6 if signal.fresh is not None else max(_GAPS * median, gaps[-1])
+            if end - times[-1] > allowed:
+                lacking, usual = (duration(time / 1e6) for time in (end - times[-1], median))
+                holds = "" if signal.fresh is not None else "; without `fresh within` the last one counts until the end"
+                yield f"the samples of `{name}`, mostly one each {usual}, end {lacking} before the log does{holds}"
 
     def forget_before(self, time: int) -> None:
         """Drop the samples of the log's entries that are not needed for this time or later ones."""
@@ -151,15 +169,17 @@ def _as_declared(signal: ResolvedSignal, value: SampleValue, unit: Unit | None) 
 def by_signal(signals: Iterable[ResolvedSignal], *sources: Mapping[str, SampleSeries]) -> dict[str, SampleSeries]:
     """The samples of signals, each from the first source that has it by its name or its entry."""
     names = {signal.name: (signal.name, signal.entry) for signal in signals}
-    found: dict[str, SampleSeries] = {}
+    series_by_signal: dict[str, SampleSeries] = {}
     for signal, keys in names.items():
         for source in sources:
             if (key := next((key for key in keys if key in source), None)) is not None:
-                found[signal] = source[key]
+                series_by_signal[signal] = source[key]
                 break
-    return found
+    return series_by_signal
 
 
 NO_SAMPLES: Final = "no samples of"
+_FEW: Final = 10  # fewer times between samples say nothing about them
+_GAPS: Final = 10
 _EMPTY: Final = SampleSeries()
 _BOOLS: Final[dict[str, SampleValue | UnknownValue]] = {"true": True, "1": True, "false": False, "0": False}

@@ -44,10 +44,10 @@ def render(report: VerdictReport, colour: bool = False, verbose: bool = False, w
 def _heading(mission: MissionVerdicts) -> Iterator[str]:
     """The mission and the logs that were read."""
     for source in folded_sources(mission.sources):
-        found = f"{source.joined} of {source.nodes} nodes"
-        identity = f"{source.identity}, {found}" if source.nodes else source.identity
+        joined_nodes = f"{source.joined} of {source.nodes} nodes"
+        identity = f"{source.identity}, {joined_nodes}" if source.nodes else source.identity
         if source.joined < source.nodes:
-            identity = f"{found} joined: {source.identity}"
+            identity = f"{joined_nodes} joined: {source.identity}"
         runs = f"{counted(source.runs, 'run')} in {source.file}"
         if source.first_run > 1 and source.runs:
             runs += f", numbered from {source.first_run}"
@@ -67,24 +67,24 @@ def requirement_rows(
 
     Args:
         medians: how long nodes take, in seconds by path.
-        verbose: as of `render`.
+        verbose: as in `render`.
     """
     rows: list[tuple[Verdict, list[str], Sequence[str]]] = []
-    for requirement in sorted(requirements, key=lambda each: _ORDER.index(each.verdict)):
+    for requirement in sorted(requirements, key=lambda requirement: _ORDER.index(requirement.verdict)):
         title = requirement.title
         name = requirement.id
-        for clause in sorted(requirement.clauses, key=lambda each: _ORDER.index(each.verdict)):
+        for clause in sorted(requirement.clauses, key=lambda clause: _ORDER.index(clause.verdict)):
             hint = "give them with --signals FILE" if clause.why.startswith(NO_SAMPLES) else ""
-            found = result(clause)
+            result_text = result(clause)
             if clause.idle and clause.verdict != NEVER and not _is_lone(clause, requirement):
-                found += f", not started in {counted(clause.idle, 'run')}"
-            texts = [name, title, _clause(clause, requirement), found, hint]
+                result_text += f", not started in {counted(clause.idle, 'run')}"
+            texts = [name, title, _clause(clause, requirement), result_text, hint]
             below: Sequence[str] = [*_explanation(clause, medians, verbose)] if clause.verdict == VIOLATED else []
             rows.append((clause.verdict, [printable(text) for text in texts], below))
             name = title = ""  # shown once
-    left = len(NEVER) + 4
+    indent = len(NEVER) + 4
     widths = [max(cells_of(row[column]) for _, row, _ in rows) if rows else 0 for column in range(4)]
-    fitting = narrowed(widths, room - left - 2 * (sum(map(bool, widths)) - 1))
+    fitting = narrowed(widths, room - indent - 2 * (sum(map(bool, widths)) - 1))
     is_narrowed = fitting != widths
     for verdict, row, below in rows:
         *texts, hint = row
@@ -96,7 +96,7 @@ def requirement_rows(
         for number, line in enumerate(zip_longest(*cells, fillvalue="")):
             parts = [text + " " * (width - cells_of(text)) for text, width in zip(line, shown, strict=True)]
             yield f"  {' ' * len(NEVER) if number else word}  {'  '.join(parts)}".rstrip()
-        yield from (f"{' ' * left}{line}" for line in _broken(map(printable, below), room - left))
+        yield from (f"{' ' * indent}{line}" for line in _broken(map(printable, below), room - indent))
     if not rows:
         yield "  no requirement to judge"
 
@@ -107,7 +107,7 @@ def _clause(clause: ClauseVerdict, requirement: RequirementVerdict) -> str:
 
 
 def _is_lone(clause: ClauseVerdict, requirement: RequirementVerdict) -> bool:
-    return sum(each.text == clause.text for each in requirement.clauses) == 1
+    return sum(other.text == clause.text for other in requirement.clauses) == 1
 
 
 def _explanation(clause: ClauseVerdict, medians: Mapping[str, float], verbose: bool) -> Iterator[str]:
@@ -116,8 +116,8 @@ def _explanation(clause: ClauseVerdict, medians: Mapping[str, float], verbose: b
     if verbose and clause.violations:
         worst = worst_violation(clause)
         yield from (f"  - {link.text}" for link in worst.chain if link.kind != "self")
-        others = [each for each in clause.violations if each is not worst]
-        yield from (explained(clause, each, medians) for each in others[:_FURTHER])
+        others = [violation for violation in clause.violations if violation is not worst]
+        yield from (explained(clause, violation, medians) for violation in others[:_FURTHER])
         if clause.violated - 1 > _FURTHER:
             yield f"… {clause.violated - 1 - _FURTHER} more; --format json has them"
 
@@ -130,8 +130,8 @@ def _summary(mission: MissionVerdicts) -> Iterator[str]:
     by = {"failed": f" ({guards})" if guards else ""}
     counts = (f"{number} {outcome}{by.get(outcome, '')}" for outcome, number in mission.outcomes)
     runs = [f"runs: {', '.join(counts) or 'none'}"]
-    if began := sorted(mission.nodes, key=lambda each: -each.failures_began)[:_NAMED]:
-        places = [f"{each.path} ({each.failures_began})" for each in began if each.failures_began]
+    if began := sorted(mission.nodes, key=lambda node: -node.failures_began)[:_NAMED]:
+        places = [f"{node.path} ({node.failures_began})" for node in began if node.failures_began]
         runs += [f"failures began at {', '.join(places)}"] if places else []
     for word, repeats in (("retries", mission.retries), ("recoveries", mission.recoveries)):
         if repeats.total:
@@ -143,13 +143,13 @@ def _summary(mission: MissionVerdicts) -> Iterator[str]:
 
 def _nodes(mission: MissionVerdicts) -> Iterator[str]:
     """The nodes, in a line."""
-    nodes = [f"nodes: exercised {sum(each.runs > 0 for each in mission.nodes)} of {len(mission.nodes)}"]
+    nodes = [f"nodes: exercised {sum(node.runs > 0 for node in mission.nodes)} of {len(mission.nodes)}"]
     if mission.contexts:
-        nodes.append(f"contexts {sum(each.runs > 0 for each in mission.contexts)} of {len(mission.contexts)}")
-    slowest = max((each for each in mission.nodes if each.is_leaf), key=lambda each: each.p95 or 0, default=None)
+        nodes.append(f"contexts {sum(context.runs > 0 for context in mission.contexts)} of {len(mission.contexts)}")
+    slowest = max((node for node in mission.nodes if node.is_leaf), key=lambda node: node.p95 or 0, default=None)
     if slowest is not None and slowest.p95 and slowest.p50 is not None:
         nodes.append(f"slowest: {slowest.path} p50 {duration(slowest.p50)}, p95 {duration(slowest.p95)}")
-    blocks = max(mission.nodes, key=lambda each: each.tick_worst or 0, default=None)
+    blocks = max(mission.nodes, key=lambda node: node.tick_worst or 0, default=None)
     if blocks is not None and blocks.tick_p95 is not None and (worst := blocks.tick_worst or 0) >= _LONG_TICK:
         nodes.append(f"longest tick: {blocks.path} p95 {duration(blocks.tick_p95)}, worst {duration(worst)}")
     yield " · ".join(map(printable, nodes))

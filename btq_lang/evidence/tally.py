@@ -127,7 +127,7 @@ class Tally:
         self.unknown += unclear
         if broken:
             room = max(_MOST_VIOLATIONS - len(self.violations), 0)
-            self.violations.extend(_violation(*each, run) for each in shown[:room])
+            self.violations.extend(_violation(*entry, run) for entry in shown[:room])
             self._broken.clear()
         self._kept = self._unclear = 0
         self._end_worst(run, VIOLATED if broken else UNKNOWN if unclear else SATISFIED)
@@ -162,7 +162,7 @@ class Tally:
         self.cut_off += other.cut_off
         self.why = self.why or other.why
         room = max(_MOST_VIOLATIONS - len(self.violations), 0)
-        self.violations.extend(replace(each, run=each.run + runs) for each in other.violations[:room])
+        self.violations.extend(replace(violation, run=violation.run + runs) for violation in other.violations[:room])
         if other.worst is not None and other._worst_excess > self._worst_excess:
             self._worst_excess = other._worst_excess
             self.worst = replace(other.worst, run=(other.worst.run or 0) + runs)
@@ -193,22 +193,24 @@ class Tally:
         Args:
             broken: the violations of activations that are still open, with their paths.
         """
-        found = copy(self)
-        still = [(judgement, path, ()) for judgement, path in broken]
-        vars(found).update(violations=[*self.violations], by_run=[*self.by_run], _broken=[*self._broken, *still])
-        for judgement, _, _ in still:
-            found._note_worst(judgement)
-        if self.counts_runs and not found._broken:
-            found._kept = found._unclear = 0
-        found.end_run(run)
-        return found
+        tally = copy(self)
+        open_violations = [(judgement, path, ()) for judgement, path in broken]
+        vars(tally).update(
+            violations=[*self.violations], by_run=[*self.by_run], _broken=[*self._broken, *open_violations]
+        )
+        for judgement, _, _ in open_violations:
+            tally._note_worst(judgement)
+        if self.counts_runs and not tally._broken:
+            tally._kept = tally._unclear = 0
+        tally.end_run(run)
+        return tally
 
     def fields(self) -> dict[str, Any]:
         """What `ClauseVerdict` has of it, by name."""
         same = ("counted", "violated", "unknown", "cut_off", "worst", "limits", "bounded")
-        found = {name: getattr(self, name) for name in same}
+        fields = {name: getattr(self, name) for name in same}
         lists = {"violations": tuple(self.violations), "by_run": self._last_runs()}
-        return {**found, "interval": self.interval(), "more": self.more(), **lists}
+        return {**fields, "interval": self.interval(), "more": self.more(), **lists}
 
     def verdict(self) -> Verdict:
         """Without odds one violation decides; with odds the unknown ones are taken as false and as true, and a verdict
@@ -235,9 +237,9 @@ class Tally:
         if self._odds is None or self._confidence is None or self.verdict() != UNDECIDED:
             return None
         n, most, wanted = self.counted + self.unknown, self._most, self._odds.probability
-        found = runs_to_decide(self.counted - self.violated, n, self._confidence, wanted, self.limits)
-        if most is None or (found is not None and n + found <= most):
-            return found
+        further = runs_to_decide(self.counted - self.violated, n, self._confidence, wanted, self.limits)
+        if most is None or (further is not None and n + further <= most):
+            return further
         return most if lower_limit(most, most, self._confidence) >= wanted else None  # they push out all others
 
     def _by_odds(self, k: int, n: int) -> Verdict:
@@ -255,10 +257,10 @@ def _violation(judgement: Judgement, path: str, chain: tuple[CauseLink, ...], ru
     measure = judgement.measure
     value = measured(measure.si, measure.unit, measure.bound.si) if measure is not None else ""
     bound = measure.bound.text if measure is not None else ""
-    at = (judgement.at - run.begin) / 1e6
+    seconds = (judgement.at - run.begin) / 1e6
     why = judgement.sentence.replace("{}", value)
     passed = (judgement.passed - run.begin) / 1e6 if judgement.passed is not None else None
-    return Violation(run.number, run.source, path, run.begin, at, value, bound, why, chain, passed)
+    return Violation(run.number, run.source, path, run.begin, seconds, value, bound, why, chain, passed)
 
 
 MOST_RUNS: Final = 60  # whose values are kept: as many as a small drawing can show

@@ -30,7 +30,7 @@ class Judgement(NamedTuple):  # not a Record for the same reason as Measure
         since: for a clause judged over a run, when the judged time began.
         starts: for such a clause, the activations that it counts or adds up.
         note: what is unusual about it; a log has each once.
-        most: if it is known only between which limits what is measured lies, the upper one; `measure` is the lower one.
+        most: the upper limit of what is measured, if only its limits are known; `measure` is the lower one.
         passed: when a duration became longer than its bound.
     """
 
@@ -65,7 +65,7 @@ def agreed(late: Judgement | None, early: Judgement | None, activation: Activati
 
 
 def between(judgement: Judgement, one: Measure | None, other: Measure | None) -> Judgement:
-    """The judgement with a measure that lies between two; unchanged without both."""
+    """The judgement with a measure between two limits; unchanged without both."""
     if one is None or other is None:
         return judgement
     least, most = sorted((one, other), key=lambda measure: measure.si)
@@ -74,7 +74,7 @@ def between(judgement: Judgement, one: Measure | None, other: Measure | None) ->
 
 
 def is_same(one: Judgement, other: Judgement) -> bool:
-    """Whether two judgements come to the same, also for all measures between theirs."""
+    """Whether two judgements agree, for all measures between theirs, too."""
     is_on_both_sides = (
         one.measure is not None and other.measure is not None and one.measure.is_upper is not other.measure.is_upper
     )
@@ -91,18 +91,20 @@ def takes(claim: ResolvedClaim, activation: Activation, observed: Observed) -> J
 
 def succeeds(claim: ResolvedClaim, activation: Activation, observed: Observed) -> Judgement | None:
     """`succeeds [within d]`: its result, and how long it takes; halted or cut off before, it does not count."""
-    outcome, at = activation.outcome, activation.end
+    outcome, ended_at = activation.outcome, activation.end
     if outcome == "F" or claim.limit is None:
-        said = {"S": "succeeded", "F": "failed"}
-        return Judgement(outcome == "S", at, said[outcome]) if outcome in said else None
-    found = duration(claim, activation, observed)
-    if isinstance(found, UnknownValue):
-        return Judgement(None, at, found.why)
-    if not found.holds and activation.timing == "latest":
-        return Judgement(None, at, UNKNOWN_END, found)
-    if found.holds and outcome != "S":
+        words = {"S": "succeeded", "F": "failed"}
+        return Judgement(outcome == "S", ended_at, words[outcome]) if outcome in words else None
+    measure = duration(claim, activation, observed)
+    if isinstance(measure, UnknownValue):
+        return Judgement(None, ended_at, measure.why)
+    if not measure.holds and activation.timing == "latest":
+        return Judgement(None, ended_at, UNKNOWN_END, measure)
+    if measure.holds and outcome != "S":
         return None
-    return Judgement(found.holds, at, "succeeded after {}" if outcome == "S" else "had not succeeded after {}", found)
+    return Judgement(
+        measure.holds, ended_at, "succeeded after {}" if outcome == "S" else "had not succeeded after {}", measure
+    )
 
 
 def uses(claim: ResolvedClaim, activation: Activation, observed: Observed) -> Judgement | None:
@@ -115,7 +117,7 @@ def uses(claim: ResolvedClaim, activation: Activation, observed: Observed) -> Ju
     return judgement._replace(note=note) if judgement is not None else None
 
 
-def judged(claim: ResolvedClaim, found: Measure | UnknownValue, activation: Activation) -> Judgement | None:
+def judged(claim: ResolvedClaim, measure: Measure | UnknownValue, activation: Activation) -> Judgement | None:
     """The judgement of a measure that grows during an activation.
 
     An upper bound is violated as soon as it is exceeded, however the activation ends; a lower bound is judged only if
@@ -123,15 +125,15 @@ def judged(claim: ResolvedClaim, found: Measure | UnknownValue, activation: Acti
     """
     assert claim.limit is not None, "it is compared with a bound"
     is_complete = activation.outcome in ("S", "F")
-    if isinstance(found, UnknownValue):
+    if isinstance(measure, UnknownValue):
         can_fail = is_complete or claim.limit.relation not in (">=", ">")
-        return Judgement(None, activation.end, found.why) if can_fail else None
-    holds = found.kept(is_complete)
+        return Judgement(None, activation.end, measure.why) if can_fail else None
+    holds = measure.kept(is_complete)
     if holds is None:
         return None
     if not holds and activation.timing == "latest":
-        return Judgement(None, activation.end, UNKNOWN_END, found)
-    return Judgement(holds, activation.end, VERBS[claim.verb].said, found)
+        return Judgement(None, activation.end, UNKNOWN_END, measure)
+    return Judgement(holds, activation.end, VERBS[claim.verb].said, measure)
 
 
 def duration(claim: ResolvedClaim, activation: Activation, observed: Observed) -> Measure | UnknownValue:
@@ -197,22 +199,22 @@ def keeps(claim: ResolvedClaim, activation: Activation, observed: Observed) -> J
     closest: tuple[Measure | bool, Moment] | None = None
     most = float("-inf")
     for moment in observed.moments(condition):
-        found = _result(condition, moment, observed)
-        if isinstance(found, UnknownValue):
-            unknown = unknown or (found, moment)
-        elif found is False or (isinstance(found, Measure) and not found.holds):
+        answer = _result(condition, moment, observed)
+        if isinstance(answer, UnknownValue):
+            unknown = unknown or (answer, moment)
+        elif answer is False or (isinstance(answer, Measure) and not answer.holds):
             if activation.timing != "exact" and moment != observed.begin:
                 return Judgement(None, moment[0], "the log does not say whether it was still running")
-            is_of_all = any(isinstance(each, Aggregate) for each in parts_in(condition))  # known only at the end
-            return _of(found, (activation.end, 0) if is_of_all else moment, claim, observed)
+            is_of_all = any(isinstance(part, Aggregate) for part in parts_in(condition))  # known only at the end
+            return _of(answer, (activation.end, 0) if is_of_all else moment, claim, observed)
         else:
-            excess = found.excess if isinstance(found, Measure) else most
+            excess = answer.excess if isinstance(answer, Measure) else most
             if closest is None or excess > most:
-                closest, most = (found, moment), excess
+                closest, most = (answer, moment), excess
     result = unknown or closest
     assert result is not None, "the start is one of the moments"
-    said, moment = result
-    return _of(said, moment, claim, observed)
+    answer, moment = result
+    return _of(answer, moment, claim, observed)
 
 
 def _result(condition: Condition, moment: Moment, observed: Observed) -> Measure | bool | UnknownValue:
@@ -228,8 +230,8 @@ def _of(result: Measure | bool | UnknownValue, moment: Moment, claim: ResolvedCl
         return Judgement(None, time, result.why)
     sentence = VERBS[claim.verb].said
     if isinstance(result, Measure):
-        said = "" if result.holds else sentence.replace("{}", f"`{result.name}` was {{}}")
-        return Judgement(result.holds, time, said, result)
+        text = "" if result.holds else sentence.replace("{}", f"`{result.name}` was {{}}")
+        return Judgement(result.holds, time, text, result)
     return Judgement(
         result, time, "" if result else f"{sentence.replace('{}', _held(claim))}{_read(claim, moment, observed)}"
     )

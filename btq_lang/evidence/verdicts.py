@@ -103,7 +103,7 @@ class RunValue(Record):
 
 
 class Bounded(Record):
-    """Judgements whose measure is known only to lie between limits, as the log does not say when something began.
+    """Judgements whose measure has only known limits, because the log does not say when something began.
 
     Attributes:
         number: how many.
@@ -191,7 +191,7 @@ class Measures(Record):
     """What is needed to judge a clause again after its bound or its odds have been edited.
 
     Attributes:
-        key, place: what it demands apart from them, and where: as of `edges.key_of` and `outline.Demand`.
+        key, place: what it demands apart from them, and where: as in `edges.key_of` and `outline.Demand`.
         bound: in SI; None: it has none that can be moved.
         odds: the relation and the probability that the requirement asks for.
         missing: why it cannot be judged at all its nodes; empty if it can.
@@ -352,8 +352,8 @@ class MissionVerdicts(Record):
     Attributes:
         file: of the mission.
         outcomes: how many runs had each outcome.
-        ended_by: how many of the failed ones were ended by the guard of which requirement; `*`: by a halt of which the
-            log does not say what asked for it.
+        ended_by: how many of the failed ones the guard of each requirement ended; `*`: a halt, where the log does not
+            say what asked for it.
         nodes: of the logs, in the order of their uids.
         contexts: of the mission, in the order of definition.
         retries: by Retry nodes and Nav2's RecoveryNodes.
@@ -381,7 +381,7 @@ class MissionVerdicts(Record):
     @property
     def medians(self) -> dict[str, float]:
         """The median durations of nodes, in seconds by path."""
-        return {each.path: each.p50 for each in self.nodes if each.p50 is not None}
+        return {node.path: node.p50 for node in self.nodes if node.p50 is not None}
 
 
 class Foreign(Record):
@@ -417,7 +417,7 @@ class VerdictReport(Record):
     @property
     def verdicts(self) -> frozenset[Verdict]:
         """The verdicts that occur."""
-        return frozenset(each.verdict for mission in self.missions for each in mission.requirements)
+        return frozenset(requirement.verdict for mission in self.missions for requirement in mission.requirements)
 
 
 def worst_of(verdicts: Iterable[Verdict]) -> Verdict:

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING
 from btq_lang.btcpp.export import xml_name
 from btq_lang.btcpp.side_file import side_path
 from btq_lang.evidence import write
-from btq_lang.evidence.copies import without_copies
 from btq_lang.evidence.identity import Candidate
-from btq_lang.evidence.judging import Judging, Means, judge, rows_of
+from btq_lang.evidence.judging import Judging, Means, judge, judge_all, rows_of
 from btq_lang.evidence.notes import ignored_columns, missing_verdicts, missions_with_errors, other_times
 from btq_lang.evidence.own_trees import NO_MISSION, OwnTree
 from btq_lang.evidence.readers import SUFFIXES, samples_of_bags, whole_bags
@@ -20,7 +19,7 @@ from btq_lang.evidence.readers.bag import METADATA
 from btq_lang.evidence.readers.samples import NoSamples
 from btq_lang.evidence.readers.samples import read as read_samples
 from btq_lang.evidence.readers.side import side_file_at
-from btq_lang.evidence.repeats import notes, repeated
+from btq_lang.evidence.repeats import notes, repeated, without_copies
 from btq_lang.evidence.signal_sources import signal_sources
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.loader import IS_SPECIAL, absolute, collect, is_special, shown
@@ -82,8 +81,8 @@ def verify_logs(
     is_side = side is not None and side.mission == absolute(path)
     name = os.path.splitext(os.path.basename(path))[0]
     mission = Candidate(workspace, path, name, side.nodes if side is not None and is_side else None)
-    given = [logs] if isinstance(logs, str) else logs
-    readable, problems = logs_below(given, workspace.project)
+    paths = [logs] if isinstance(logs, str) else logs
+    readable, problems = logs_below(paths, workspace.project)
     try:
         samples = read_samples(signals) if signals is not None else {}
     except NoSamples as error:
@@ -92,18 +91,18 @@ def verify_logs(
     declared = signal_sources([mission], wrong)
     if wrong:
         raise ValueError("; ".join(wrong))
-    found = judged(readable, Means([mission], samples, declared), [path], signals or "")
-    return replace(found, problems=(*problems, *(found.problems if readable else ())))
+    verification = judged(readable, Means([mission], samples, declared), [path], signals or "")
+    return replace(verification, problems=(*problems, *(verification.problems if readable else ())))
 
 
 def logs_below(paths: Sequence[str], project: Project) -> tuple[Sequence[str], list[str]]:
     """The logs that paths denote, and what is wrong with the paths."""
     files, unreachable = collect(paths, project, (*SUFFIXES, METADATA))
     logs = whole_bags(files)
-    problems = [*map(str, unreachable), *(f"{shown(each)}: {IS_SPECIAL}" for each in logs if is_special(each))]
+    problems = [*map(str, unreachable), *(f"{shown(log)}: {IS_SPECIAL}" for log in logs if is_special(log))]
     if not logs and not problems:
         problems.append(f"no {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]} below {', '.join(paths)}")
-    return [each for each in logs if not is_special(each)], problems
+    return [log for log in logs if not is_special(log)], problems
 
 
 def judged(
@@ -122,7 +121,7 @@ def judged(
         jobs, progress: as in `verify`.
     """
     report = verify(logs, means, jobs, progress)
-    read_from = [(file, each) for each in means.samples.values()]
+    read_from = [(file, series) for series in means.samples.values()]
     files = {source.signal: source.file for source in means.declared.sources}
     of_files = (means.declared.of_files.get(mission.file, {}) for mission in report.missions)
     read_from += [(files[signal], series) for samples in of_files for signal, series in samples.items()]
@@ -167,8 +166,6 @@ def _all(logs: Sequence[str], means: Means, jobs: int, progress: Callable[[int, 
     """What was found in all logs."""
     judging = Judging(means)
     if jobs > 1 and len(logs) > 1:
-        from btq_lang.evidence.parallel import judge_all
-
         for number, of_log in enumerate(judge_all(logs, means, jobs), start=1):
             judging.add(of_log)
             progress(number, judging.runs)
@@ -202,7 +199,7 @@ def judged_live(running: Watched, address: str, means: Means, requested: Sequenc
 
 def _with_problems(report: VerdictReport, missions: Sequence[Candidate], requested: Sequence[str]) -> Verification:
     """The report with what makes its verdicts incomplete."""
-    written = [each for each in missions if not isinstance(each, OwnTree)]
+    written = [mission for mission in missions if not isinstance(mission, OwnTree)]
     if len(written) < len(missions):
         report = replace(report, remarks=(f"nothing is judged: {NO_MISSION}", *report.remarks))
     problems = (*report.problems, *missing_verdicts(report, requested), *missions_with_errors(report, written))

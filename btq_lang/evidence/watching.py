@@ -63,7 +63,7 @@ class Watched:
         self._rows = 0  # of the current session
 
     def judged_by(self, evaluation: MissionEvaluation) -> None:
-        """Tell what the evaluation of a mission finds, by which no session before was judged."""
+        """Tell what the evaluation of a mission finds; the mission has judged no session before."""
         listener = _Listener(self)
         self._missions.append((evaluation, listener))
         evaluation.listeners.append(listener)
@@ -113,8 +113,8 @@ class Watched:
                 self._open.clear()
             if uid in last:
                 latest = time
-                for each in [each for each in self._open if uid <= each <= last[uid]]:
-                    del self._open[each]
+                for open_uid in [open_uid for open_uid in self._open if uid <= open_uid <= last[uid]]:
+                    del self._open[open_uid]
                 if status == RUNNING:
                     self._open[uid] = time, self._rows
             yield row
@@ -125,7 +125,7 @@ class Watched:
 
 
 class _Listener:
-    """Tells what is found while a mission is judged."""
+    """Tells what an evaluation finds while a mission is judged."""
 
     def __init__(self, watched: Watched) -> None:
         self._watched: Final = watched
@@ -167,10 +167,10 @@ class _Listener:
         began = f"; the failure began at {self._paths[failure]}" if failure is not None else ""
         watched.tell(f"run {watched.outcomes.total()} {how} after {duration(root.seconds)}{began}", root.end)
         self._begin = None
-        for clause, told in self._clauses.items():
-            found = clause.found
-            verdict, _ = verdict_of(found.tally.result(), found.missing, found.has_run)
-            if verdict != told:
+        for clause, told_verdict in self._clauses.items():
+            findings = clause.findings
+            verdict, _ = verdict_of(findings.tally.result(), findings.missing, findings.has_run)
+            if verdict != told_verdict:
                 self._clauses[clause] = verdict
                 watched.tell(f"{_named(clause)}: {result(clause.verdict())}", root.end, verdict)
 
@@ -184,7 +184,7 @@ class _Listener:
         return Run(self._watched.outcomes.total() + 1, self._watched.address, self._begin, self._end)
 
     def _judged(self, clause: JudgedClause, judgement: Judgement, begin: int, end: int, path: str) -> None:
-        if judgement.holds is False and path not in [known for _, known in clause.broken.values()]:
+        if judgement.holds is False and path not in [known_path for _, known_path in clause.broken.values()]:
             self._tell(clause, judgement, path)
 
     def _tell(self, clause: JudgedClause, judgement: Judgement, path: str, more: str = "") -> None:

@@ -64,7 +64,7 @@ def share(probability: float) -> str:
     """A fraction of one as a percentage, with three digits, or more if rounding would give 0 or 100 %."""
     percent = probability * 100
     shown = (float(f"{percent:.{digits}g}") for digits in range(3, 16))
-    return f"{next((each for each in shown if each < 100 or percent >= 100), percent):.15g} %"
+    return f"{next((rounded for rounded in shown if rounded < 100 or percent >= 100), percent):.15g} %"
 
 
 def moment(time: int) -> datetime | None:
@@ -77,8 +77,8 @@ def moment(time: int) -> datetime | None:
 
 def clock_time(time: int) -> str:
     """A time in µs since the epoch, to the millisecond; empty outside the calendar."""
-    found = moment(time)
-    return f"{found:%Y-%m-%d %H:%M:%S}.{found.microsecond // 1000:03} UTC" if found is not None else ""
+    date = moment(time)
+    return f"{date:%Y-%m-%d %H:%M:%S}.{date.microsecond // 1000:03} UTC" if date is not None else ""
 
 
 def period(begin: int, end: int) -> str:
@@ -93,8 +93,8 @@ def period(begin: int, end: int) -> str:
 
 def timestamp(time: int) -> str:
     """A time in ISO 8601; the bare number outside the calendar."""
-    found = moment(time)
-    return found.isoformat(timespec="microseconds").replace("+00:00", "Z") if found is not None else f"{time} us"
+    date = moment(time)
+    return date.isoformat(timespec="microseconds").replace("+00:00", "Z") if date is not None else f"{time} us"
 
 
 def time_of(text: str) -> int:

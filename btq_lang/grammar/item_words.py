@@ -21,6 +21,8 @@ ITEM_WORDS: Final = (
 @lru_cache(1_000)
 def item_word_meant(word: str) -> str:
     """The item word nearest to another word; empty if none is near."""
+    if word.removesuffix("Node") in CATEGORIES:
+        return word.removesuffix("Node")  # the classes of C++
     likely = near(word, ITEM_WORDS, limit=1)
     return likely[0] if likely else ""
 

@@ -348,7 +348,11 @@ class ItemParser(NodeParser):
             return self.take()
         key = unquote(self.raw).strip("{}") if self.kind == STRING else self.raw
         fixes = (write_fix(f"{{{key}}}", self.here()),) if is_name(key) else ()
-        self.expected("a blackboard entry: `{key}`", (), fixes)
+        notes: tuple[str, ...] = ()
+        if topic := _TOPIC.match(self.text, self.here().start):
+            notes = ("the topic from which `btq verify` takes samples goes under `[evidence.signals]` in btq.toml",)
+            fixes = (write_fix(f"{{{topic[2]}}}", Span(topic.start(), topic.end())),)
+        self.expected("a blackboard entry: `{key}`", notes, fixes)
         return None
 
 
@@ -365,6 +369,7 @@ _OF_CPP: Final = re.compile(
 )
 _PLAIN_TYPE: Final = re.compile(r"\w+(?:::\w+)*")
 _NOT_FROM: Final = frozenset(("in", "is", "of", "at", "reads", "source"))
+_TOPIC: Final = re.compile(r"([\"']?)/(?:\w+/)*([^\W\d]\w*)\1")
 _BEHAVIOURS: Final = frozenset(("level", "counter", "gauge"))
 _SIGNAL_WORDS: Final = ("from", *sorted(_BEHAVIOURS), "fresh", "initially")
 _SIGNAL_ORDER: Final = "the order is: signal x : % from {x} level fresh within 5 s initially 100 %"

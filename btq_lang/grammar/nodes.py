@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from typing import Final
 
+from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, replace_fix, write_fix
 from btq_lang.grammar.attributes import AttributeParser, meant_clause
 from btq_lang.grammar.claims import VERB_WORDS
@@ -129,12 +130,38 @@ class NodeParser(AttributeParser):
                 self.complain(self.here(), "ports go before satisfices, satisfies and tags")
             ports.append(self.port())
             self.no_block(level)
+        elif word in DIRECTIONS and self.kinds[self.index + 1] == NAME and self.is_operator(self.index + 2, ":"):
+            self.port_below_node(blocks[0])
+            ports.append(self.port())
+            self.no_block(level)
         else:
             return False
         return True
 
+    def port_below_node(self, tree: OpenBlock) -> None:
+        """Report `input shelf : string` below a node or after one; the fix moves the line to the tree's first one."""
+        at, text = self.here(), self.text
+        own = Span(line_start(text, 0, at.start), line_end(text, at.end))
+        newline = "\r\n" if text.startswith("\r\n", own.end) else text[own.end : own.end + 1]
+        fixes: tuple[Fix, ...] = ()
+        first = tree.children[0] if tree.children and not tree.clauses else None
+        if first is not None and newline:
+            start = first.start + self.base
+            line = line_start(text, 0, start)
+            moved = f"{text[line:start]}{text[at.start : own.end]}{newline}"
+            changes = (
+                FixEdit(Place(Span(line, line)), moved),
+                FixEdit(Place(Span(own.start, own.end + len(newline))), ""),
+            )
+            fixes = (Fix("Move it to the first line below the tree's own", changes),)
+        self.complain(at, "the ports of a tree go directly below its own line, before its node", *fixes)
+
     def node(self, level: int) -> Node | None:
         """Kind [ Label ] [ Attributes ] { NodeClause } NL"""
+        if self.is_after_dashes():
+            self.other_comment(self.here().start + 2)
+            self.end_line()
+            return None
         if self.kind == OPERATOR:
             self.skip_dash()
         start = self.starts[self.index] - self.base
@@ -200,6 +227,12 @@ class NodeParser(AttributeParser):
         """Whether the line is a triple-quoted string, as in Python."""
         following = self.index + 1
         return self.raw in ('""', "''") and self.kinds[following] == STRING and self.adjacent(following)
+
+    def is_after_dashes(self) -> bool:
+        """Whether the line is a comment in the syntax of SQL, Lua and others: `-- drives home`."""
+        start = self.here().start
+        after = self.text[start + 2 : start + 3]
+        return self.at("-") and self.text.startswith("--", start) and (after.isalpha() or after.isspace())
 
     def other_comment(self, inner: int) -> None:
         """Report a comment of another language, which begins at the current token; its text begins at `inner`."""
@@ -532,12 +565,20 @@ class NodeParser(AttributeParser):
             type_ = self.type_()
         elif name is not None and self.kind == NAME:
             notes = ("a port is written `input name : type`",)
-            self.expected("`:` and the port's type", notes, (self.put_before(":"),))
+            self.expected("`:` and the port's type", notes, (self.type_first(name) or self.put_before(":"),))
         default = self.value() if self.accept("=") else None
         attributes = self.pairs()
         text = self.take() if self.kind == STRING else None
         notes = ("write a port's type after `:`, and its text in quotes",)
         return Port(direction.start, self.end_line(notes), direction, name, type_, default, attributes, text)
+
+    def type_first(self, name: Word) -> Fix | None:
+        """The fix for `input int count`, with type and name in the order of C++."""
+        start = name.start + self.base
+        declared = _TYPE_FIRST.match(self.text, start)
+        if declared is None or not is_known_type(plain_type(declared[1])):
+            return None
+        return write_fix(f"{declared[2]} : {declared[1]}", Span(start, declared.end()))
 
     def at_ports(self) -> bool:
         """Whether brackets have ports in them, as the parameters of a function: `(place, speed : double)`."""
@@ -644,6 +685,7 @@ _BRACKETED_PORT: Final = re.compile(
     r"(?:(?P<direction>input|output|inout)\s+)?(?:(?P<before>(?:\w+::)*\w+)\s+)?(?P<name>[^\W\d]\w*)"
     r"(?:\s*:\s*(?P<type>(?:\w+::)*\w+))?"
 )
+_TYPE_FIRST: Final = re.compile(r"(\w+)[ \t]+([^\W\d]\w*)(?![ \t]*:)")
 _NO_PORTS: Final = NODE_CLAUSES | {"parameters", "QualityReq"}
 _NEXT_MARGIN: Final = re.compile(r"(?:[ \t]*\r?\n)+([ \t]+)")
 _BEFORE_TYPES: Final = frozenset(("const", "unsigned", "signed", "long", "short"))

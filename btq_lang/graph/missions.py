@@ -155,7 +155,7 @@ def requirement_note(key: str, applied: Applied, measured: tuple[MeasuredClause,
         key, state: as of `Note`.
     """
     requirement = applied.requirement
-    name, clauses = f"{requirement.name}{applied.given}", clauses_in_words(applied)
+    name, clauses = f"{requirement.name}{applied.argument_list}", clauses_in_words(applied)
     title = " ".join((requirement.title or "").split())
     lines = (title, *clauses) if measured and title and title not in clauses else clauses
     text = "; ".join((name, *lines, *(each.text for each in measured), *([state] if state else [])))

@@ -10,7 +10,7 @@ all features and the checks that they use takes a third of that time.
     completion.py          with completion_list, proposals, node_proposals, clause_words, measures, snippets and ports
     xml_completion.py      the same in XML, of the same proposals
     hover.py               with describe and clause_enforcement; the ports of a node while it is typed
-    navigation.py, calls.py   from a name to its definition, its uses and its callers
+    navigation.py          from a name to its definition, its uses and its callers
     rename.py, moves.py    edits in every file that names a thing
     actions.py             with refactor, block, short_form and unused
     on_type.py, structure.py, outline.py, hints.py   edits while typing, folding, outline, inlay hints and lenses
@@ -25,7 +25,6 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from btq_lang.ide import actions as actions
-    from btq_lang.ide import calls as calls
     from btq_lang.ide import colours as colours
     from btq_lang.ide import completion as completion
     from btq_lang.ide import describe as describe

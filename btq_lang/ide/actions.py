@@ -22,35 +22,42 @@ QUICK_FIX, REFACTOR, FIX_ALL, ORGANIZE = "quickfix", "refactor", "source.fixAll.
 
 
 def code_actions(
-    workspace: Workspace, path: str, span: Span, only: Sequence[str] = (), found: Sequence[Diagnostic] | None = None
+    workspace: Workspace,
+    path: str,
+    span: Span,
+    only: Sequence[str] = (),
+    diagnostics: Sequence[Diagnostic] | None = None,
 ) -> tuple[Action, ...]:
     """The code actions for a span of a file; of XML those that mend it.
 
     Args:
         span: counted from the start of the file on the disk, as are all edits.
         only: the kinds to return, with all their subkinds; none: every kind.
-        found: the diagnostics of the file, if they are known already.
+        diagnostics: those of the file; None: they are computed.
     """
 
     def wanted(kind: str) -> bool:
         return not only or any(one in ("", kind) or kind.startswith(f"{one}.") for one in only)
 
     is_foreign = workspace.files[path].is_foreign
-    diagnostics = tuple(check(workspace, path) if found is None else found)
+    diagnostics = tuple(check(workspace, path) if diagnostics is None else diagnostics)
     actions: list[Action] = []
     if wanted(QUICK_FIX):
-        here = [one for one in diagnostics if one.span.touches(span)]
-        for diagnostic in here:
+        touching = [one for one in diagnostics if one.span.touches(span)]
+        for diagnostic in touching:
             actions += _fixes(workspace, path, diagnostic)
             actions += () if is_foreign else _removal(workspace, path, diagnostic)
         for include in () if is_foreign else needless_includes(workspace, path):
             if include.span.touches(span):
                 title = f"Remove the {include.why} include `{include.name}`"
                 actions.append(Action(title, QUICK_FIX, {path: without(workspace.files[path], [include.span])}))
-        actions += _silencing(workspace, path, here)
+        actions += _silencing(workspace, path, touching)
     if not is_foreign and (not only or any(one == "" or one.split(".")[0] == REFACTOR for one in only)):
-        for made in (*refactorings(workspace, path, span.start), *short_form(workspace, path, span.start, diagnostics)):
-            actions += [made] if wanted(made.kind) else []
+        for refactoring in (
+            *refactorings(workspace, path, span.start),
+            *short_form(workspace, path, span.start, diagnostics),
+        ):
+            actions += [refactoring] if wanted(refactoring.kind) else []
     if wanted(FIX_ALL):
         actions += _fix_all(workspace, path, diagnostics)
     if not is_foreign and wanted(ORGANIZE) and (needless := needless_includes(workspace, path)):
@@ -87,11 +94,11 @@ def _respells(fix: Fix, diagnostic: Diagnostic, text: str) -> bool:
 
 def _removal(workspace: Workspace, path: str, diagnostic: Diagnostic) -> Iterator[Action]:
     """The removal of an item that a rule reports as unused."""
-    what = UNUSED.get(diagnostic.rule)
+    unused = UNUSED.get(diagnostic.rule)
     entry = entry_at(workspace, path, diagnostic.span.start)
-    if what is not None and entry is not None:
+    if unused is not None and entry is not None:
         file = workspace.files[path]
-        title = f"Remove the {what} `{file.text[diagnostic.span.start : diagnostic.span.end].strip(_QUOTES)}`"
+        title = f"Remove the {unused} `{file.text[diagnostic.span.start : diagnostic.span.end].strip(_QUOTES)}`"
         yield Action(title, QUICK_FIX, {path: removal(file, entry)}, diagnostic)
 
 
@@ -104,14 +111,14 @@ def edits_of(fix: Fix, path: str) -> dict[str, tuple[Edit, ...]]:
     return edits
 
 
-def _silencing(workspace: Workspace, path: str, found: Sequence[Diagnostic]) -> Iterator[Action]:
+def _silencing(workspace: Workspace, path: str, diagnostics: Sequence[Diagnostic]) -> Iterator[Action]:
     """A comment that silences a rule, at the end of the line or before the XML's element, if it can be written and has
     an effect."""
     file = workspace.files[path]
     if is_generated(file.source):
         return
-    comment, where = (before_element, "at this element") if file.is_foreign else (at_line_end, "on this line")
-    for diagnostic in found:
+    comment, where = (at_line_end, "on this line") if not file.is_foreign else (before_element, "at this element")
+    for diagnostic in diagnostics:
         line = line_to_silence(file, diagnostic)
         edit = comment(file, line, (diagnostic.rule,)) if line is not None else None
         if edit is not None:

@@ -18,33 +18,33 @@ MOST_MISSIONS = 4  # that are looked at: resolving one takes long, and a library
 _MOST_NODES = 4
 
 
-def enforcement_lines(workspace: Workspace, path: str, found: Definition, *, is_attached: bool) -> str:
+def enforcement_lines(workspace: Workspace, path: str, definition: Definition, *, is_attached: bool) -> str:
     """A line for each clause: enforced, monitored or reviewed, with the node if that differs between nodes, and why;
     empty if the requirement applies to nothing.  If the file `path` is a part of missions, some of those are planned.
     """
-    item = found.symbol.target
+    item = definition.symbol.target
     assert isinstance(item, Requirement), "a requirement's symbol defines one"
     ways: dict[str, dict[tuple[str, str], dict[str, None]]] = {}
-    resolved, _ = workspace.store.ask(requirement, found.path, found.symbol.name)
-    known = unasked(resolved) if resolved is not None and not resolved.classic else None
-    if known is not None:  # and for a large mission that takes long
-        file = workspace.files[found.path]
+    resolved, _ = workspace.store.ask(requirement, definition.path, definition.symbol.name)
+    outcome = unasked(resolved) if resolved is not None and not resolved.classic else None
+    if outcome is not None:  # and for a large mission that takes long
+        file = workspace.files[definition.path]
         for claim in item.clauses:
             if isinstance(claim, Claim) and (is_attached or claim.subject is not None):
-                ways[file.on_one_line(found.entry, claim)] = {known: {}}
+                ways[file.on_one_line(definition.entry, claim)] = {outcome: {}}
         return _lines(ways)
-    for mission in _missions(workspace, path, found):
-        for each in workspace.store.ask(_plan, mission):
-            if (each.requirement, each.place.path) == (found.symbol.name, found.path):
-                nodes = ways.setdefault(each.clause, {}).setdefault((_way(each), each.why), {})
-                if each.subject:
-                    nodes[each.subject] = None
+    for mission in _missions(workspace, path, definition):
+        for enforcement in workspace.store.ask(_plan, mission):
+            if (enforcement.requirement, enforcement.place.path) == (definition.symbol.name, definition.path):
+                nodes = ways.setdefault(enforcement.clause, {}).setdefault((_way(enforcement), enforcement.why), {})
+                if enforcement.subject:
+                    nodes[enforcement.subject] = None
     return _lines(ways)
 
 
-def _missions(workspace: Workspace, path: str, found: Definition) -> tuple[str, ...]:
+def _missions(workspace: Workspace, path: str, definition: Definition) -> tuple[str, ...]:
     """The missions for which the requirement is planned: the file itself, or some that it is a part of."""
-    missions = (one for one in missions_of(workspace, path) if found.path in workspace.scope(one).paths)
+    missions = (one for one in missions_of(workspace, path) if definition.path in workspace.scope(one).paths)
     return tuple(missions)[:MOST_MISSIONS]
 
 
@@ -67,13 +67,13 @@ def _way(clause: ClauseEnforcement) -> str:
 
 
 def _lines(ways: dict[str, dict[tuple[str, str], dict[str, None]]]) -> str:
-    return "\n".join(f"- `{clause}`: {_shown(said)}" for clause, said in ways.items())
+    return "\n".join(f"- `{clause}`: {_shown(nodes_by_way)}" for clause, nodes_by_way in ways.items())
 
 
-def _shown(said: dict[tuple[str, str], dict[str, None]]) -> str:
+def _shown(nodes_by_way: dict[tuple[str, str], dict[str, None]]) -> str:
     return "; ".join(
-        f"**{way}**{_at(nodes) if len(said) > 1 else ''}{f': {why}' if why else ''}"
-        for (way, why), nodes in said.items()
+        f"**{way}**{_at(nodes) if len(nodes_by_way) > 1 else ''}{f': {why}' if why else ''}"
+        for (way, why), nodes in nodes_by_way.items()
     )
 
 

@@ -59,13 +59,13 @@ def expected(words: Sequence[Token]) -> Expected:
     if last.kind in (NUMBER, QUANTITY):
         if is_window(earlier):
             return Expected(_EXPERIMENTS) if last.kind == NUMBER else Expected(clause=True)
-        return Expected(_behind_value(earlier), clause=True)
+        return Expected(_after_value(earlier), clause=True)
     if last.kind in (NAME, STRING, CLOSE) or text in HAPPENINGS:
         if _begins_last(earlier, (*_EVENTS, *_CLAUSES)) in _EVENTS and text not in HAPPENINGS:
             return Expected(_HAPPENINGS)
         if text in HAPPENINGS and _begins_last(earlier, ("from", "to", *_CLAUSES)) == "from":
             return Expected(("to",))
-        return Expected(_behind_value(earlier), clause=True)
+        return Expected(_after_value(earlier), clause=True)
     return Expected(clause=True)
 
 
@@ -84,8 +84,8 @@ def is_count(words: Sequence[str]) -> bool:
     head = _begins_last(words, _CLAUSES)
     if head not in _COUNTED:
         return False
-    behind = words[last_index(words, head) + 1 :]
-    return not {"per", "every"} & set(behind) and _begins_last(behind, ("if", "else", ",")) != "if"
+    following = words[last_index(words, head) + 1 :]
+    return not {"per", "every"} & set(following) and _begins_last(following, ("if", "else", ",")) != "if"
 
 
 def is_window(words: Sequence[str]) -> bool:
@@ -95,13 +95,13 @@ def is_window(words: Sequence[str]) -> bool:
 
 def _in_brackets(words: Sequence[Token], opened: int) -> Expected:
     """What may follow in the innermost open brackets of a condition: no clause, for they are still open."""
-    is_behind = opened < len(words) - 1
+    is_after = opened < len(words) - 1
     if opened and _is_function(words[opened - 1]):
-        return Expected(signal=not is_behind)
-    if not is_behind:
+        return Expected(signal=not is_after)
+    if not is_after:
         return _at_bracket(words)
     wanted = replace(expected([word for word in words if word.kind != OPEN]), clause=False)
-    return replace(wanted, words=_BEHIND_OPERAND) if "else" in wanted.words else wanted
+    return replace(wanted, words=_AFTER_OPERAND) if "else" in wanted.words else wanted
 
 
 def _at_bracket(words: Sequence[Token]) -> Expected:
@@ -123,7 +123,7 @@ def _begins_last(words: Sequence[str], heads: Sequence[str]) -> str:
     return next((word for word in reversed(words) if word in heads), "")
 
 
-def _behind_value(words: Sequence[str]) -> tuple[str, ...]:
+def _after_value(words: Sequence[str]) -> tuple[str, ...]:
     head = _begins_last(words, _CLAUSES)
     if head in _USES and "of" not in words[last_index(words, head) :]:
         return ("of",)
@@ -136,7 +136,7 @@ def _behind_value(words: Sequence[str]) -> tuple[str, ...]:
     if head == "over":
         return _EXPERIMENTS
     if head in _CONDITIONS:
-        return _BEHIND_OPERAND
+        return _AFTER_OPERAND
     if "if" in words:
         return ("and", "or", "else")
     return ("if",) if head in _TIMED or head == "goal" else ()
@@ -156,7 +156,7 @@ _TIMED = words_of(operands=("duration", "deadline"))
 _USES = words_of(operands=("use",))
 _CONDITIONS = (*words_of(operands=("condition",)), "while", "when", "context")
 _BEFORE_CONDITIONS = frozenset((*_CONDITIONS, "if"))
-_BEHIND_OPERAND = ("and", "or", "<=", ">=", "<", ">", "==", "!=")
+_AFTER_OPERAND = ("and", "or", "<=", ">=", "<", ">", "==", "!=")
 _EVENTS = (*words_of(operands=("event",)), "after", "from", "to")
 _CLAUSES = (
     *VERBS,

@@ -62,21 +62,21 @@ class TokenEdit(Record):
     other edit."""
 
     start: int
-    gone: int
-    come: list[int]
+    delete_count: int
+    data: list[int]
 
 
 def colours(workspace: Workspace, path: str, encoding: Encoding) -> Colours:
     """The semantic tokens of a file, kept from one edit to the next until `forget`."""
     workspace.store.pin(_parts, path, encoding)
-    found: list[tuple[int, int, str]] = []
+    parts: list[tuple[int, int, str]] = []
     lines = 0
     for item, part in zip(workspace.store.ask(_items, path), workspace.store.ask(_parts, path, encoding), strict=True):
         if part.others:
-            found.append((lines + part.first, id(item), part.others))
+            parts.append((lines + part.first, id(item), part.others))
             lines = 0
         lines += part.rest
-    return Colours(tuple(found))
+    return Colours(tuple(parts))
 
 
 def forget(workspace: Workspace, path: str, encoding: Encoding) -> None:
@@ -87,9 +87,9 @@ def forget(workspace: Workspace, path: str, encoding: Encoding) -> None:
 def making(workspace: Workspace, path: str, encoding: Encoding) -> Iterator[None]:
     """Compute the parts of a file in advance: for a large file that takes noticeable time, so the caller may do
     something else between two steps."""
-    for done, item in enumerate(workspace.store.ask(_items, path), 1):
+    for count, item in enumerate(workspace.store.ask(_items, path), 1):
         workspace.store.ask(_part, path, encoding, item)
-        if done % _A_STEP == 0:
+        if count % _A_STEP == 0:
             yield
 
 
@@ -132,12 +132,12 @@ def delta(before: Colours, after: Colours) -> list[TokenEdit]:
         if (place := places.get(part, -1)) > same[-1][0]:
             same.append((place, other))
     changes: list[TokenEdit] = []
-    at = 0
+    offset = 0
     for (start, other_start), (end, other_end) in pairwise((*same, (len(before.parts), len(after.parts)))):
-        gone, come = Colours(before.parts[start + 1 : end]), Colours(after.parts[other_start + 1 : other_end])
-        if (gone.parts or come.parts) and (made := difference(gone.data, come.data)):
-            changes.append(TokenEdit(at + made.start, made.gone, made.come))
-        at += sum([others.count(",") + 1 for _, _, others in before.parts[start + 1 : end + 1]])
+        removed, added = Colours(before.parts[start + 1 : end]), Colours(after.parts[other_start + 1 : other_end])
+        if (removed.parts or added.parts) and (change := difference(removed.data, added.data)):
+            changes.append(TokenEdit(offset + change.start, change.delete_count, change.data))
+        offset += sum([others.count(",") + 1 for _, _, others in before.parts[start + 1 : end + 1]])
     return changes
 
 
@@ -160,7 +160,7 @@ def encoded_within(workspace: Workspace, path: str, within: Span, encoding: Enco
     items = workspace.store.ask(_items, path)
     starts = [0, *(entry.start for entry in file.parsed.entries)]
     data: list[int] = []
-    at = 0
+    previous = 0
     for index in range(bisect_right(starts, within.start) - 1, bisect_right(starts, within.end)):
         part = workspace.store.ask(_part, path, encoding, items[index])
         line = file.lines.position(starts[index]).line
@@ -168,8 +168,8 @@ def encoded_within(workspace: Workspace, path: str, within: Span, encoding: Enco
         for down, *others in zip(*[integers] * 5, strict=True):
             line += down
             if first <= line <= last:
-                data += (line - at, *others)
-                at = line
+                data += (line - previous, *others)
+                previous = line
     return data
 
 

@@ -65,18 +65,18 @@ def complete(
     """
     text = workspace.files[path].source
     if workspace.files[path].is_foreign:
-        found = Completion(*complete_in_xml(workspace, path, offset))
-        proposals = list(found.proposals)
+        completion = Completion(*complete_in_xml(workspace, path, offset))
+        proposals = list(completion.proposals)
     else:
         place = place_at(workspace, path, offset)
         if not asked and _ends_something(place, text[:offset], trigger):
             return Completion(Span(offset, offset), ())
-        found = _complete(workspace, path, place, offset)
-        known = (one for one in found.proposals if one.label)
-        proposals = [one for one in known if not _is_typed_here(workspace, path, found.span, one)]
+        completion = _complete(workspace, path, place, offset)
+        labelled = (one for one in completion.proposals if one.label)
+        proposals = [one for one in labelled if not _is_typed_here(workspace, path, completion.span, one)]
     if not snippets:
         proposals = [replace(one, snippet=None) for one in proposals if one.kind != "snippet"]
-    return Completion(found.span, listed(proposals, text[found.span.start : offset], asked))
+    return Completion(completion.span, listed(proposals, text[completion.span.start : offset], asked))
 
 
 def _ends_something(place: CursorPlace, before: str, trigger: str) -> bool:
@@ -84,10 +84,10 @@ def _ends_something(place: CursorPlace, before: str, trigger: str) -> bool:
     return (trigger == '"' and place.inside != "string") or (trigger == "." and before[-2:-1].isdecimal())
 
 
-def _is_typed_here(workspace: Workspace, path: str, span: Span, one: Proposal) -> bool:
+def _is_typed_here(workspace: Workspace, path: str, span: Span, proposal: Proposal) -> bool:
     """Whether a name occurs only in the word that is being typed."""
-    name = one.label.strip("{}")
-    if one.kind not in ("node", "instance", "tag", "key") or one.include or lookup(name) is not None:
+    name = proposal.label.strip("{}")
+    if proposal.kind not in ("node", "instance", "tag", "key") or proposal.include or lookup(name) is not None:
         return False
     file = workspace.files[path]
     if name not in file.text[span.start : span.end] or _is_elsewhere(file, span, name):
@@ -99,11 +99,11 @@ def _is_typed_here(workspace: Workspace, path: str, span: Span, one: Proposal) -
 def _is_elsewhere(file: File, span: Span, name: str) -> bool:
     """Whether a name also occurs outside a span.  Mostly the tokens suffice: a tree has many words."""
     if is_name(name):
-        for found in re.finditer(rf"(?<!\w){re.escape(name)}(?!\w)", file.text):
-            if span.start <= found.start() < span.end:
+        for occurrence in re.finditer(rf"(?<!\w){re.escape(name)}(?!\w)", file.text):
+            if span.start <= occurrence.start() < span.end:
                 continue
-            tokens = item_tokens(file, found.start())
-            token = tokens[bisect_right(tokens, found.start(), key=lambda token: token.start) - 1]
+            tokens = item_tokens(file, occurrence.start())
+            token = tokens[bisect_right(tokens, occurrence.start(), key=lambda token: token.start) - 1]
             if token.kind == NAME and token.text == name:
                 return True
             if token.kind not in (NAME, COMMENT):  # for quotes and braces, that depends on their contents
@@ -120,21 +120,23 @@ def _complete(workspace: Workspace, path: str, place: CursorPlace, offset: int) 
     special = special or _in_string(workspace, path, place, text, offset) or _unit(workspace, path, place, text, offset)
     if special is not None:
         return special
-    found = _unique(_in_code(workspace, path, place, offset))
+    proposals = _unique(_in_code(workspace, path, place, offset))
     if text[offset - 1 : offset] in (":", ",") and place.span.start == offset:
-        found = tuple(map(_with_blank, found))
+        proposals = tuple(map(_with_blank, proposals))
     if text[place.span.end : place.span.end + 2].lstrip(" ").startswith("("):  # the brackets are there already
-        found = tuple(replace(one, snippet=None) for one in found)
-    return Completion(place.span, found)
+        proposals = tuple(replace(one, snippet=None) for one in proposals)
+    return Completion(place.span, proposals)
 
 
-def _with_blank(one: Proposal) -> Proposal:
+def _with_blank(proposal: Proposal) -> Proposal:
     """The proposal after a sign that needs a blank: an editor that goes on with the list after one replaces it, too."""
-    return replace(one, insert=f" {one.insert}", snippet=None if one.snippet is None else f" {one.snippet}")
+    return replace(
+        proposal, insert=f" {proposal.insert}", snippet=None if proposal.snippet is None else f" {proposal.snippet}"
+    )
 
 
-def _unique(found: Iterable[Proposal]) -> tuple[Proposal, ...]:
-    return tuple({one.label: one for one in reversed(tuple(found))}.values())[::-1]
+def _unique(proposals: Iterable[Proposal]) -> tuple[Proposal, ...]:
+    return tuple({one.label: one for one in reversed(tuple(proposals))}.values())[::-1]
 
 
 # ---- inside comments, braces, strings, and after numbers ----
@@ -171,13 +173,15 @@ def _in_string(workspace: Workspace, path: str, place: CursorPlace, text: str, o
     key = place.key
     entry = entry_at(workspace, path, offset)
     if key is not None and entry is not None and of_nodes.is_script(workspace, path, place.node, key):
-        typed, found = of_nodes.in_script(workspace, path, entry, place.text)
-        return Completion(Span(offset - typed, offset), found)
+        typed, proposals = of_nodes.in_script(workspace, path, entry, place.text)
+        return Completion(Span(offset - typed, offset), proposals)
     whole = Span(offset - len(place.text) - 1, offset)
     if key in ("ID", "Quality", "main_tree_to_execute") or place.last in ("satisfies", "satisfices", ","):
-        found = _unique(_in_code(workspace, path, place, offset))
+        proposals = _unique(_in_code(workspace, path, place, offset))
         end = re.match(r"[^\"'\r\n]*[\"']?", text[offset:])
-        quoted = (replace(one, insert=offer.quoted(one.insert), snippet=None, filter=f'"{one.label}') for one in found)
+        quoted = (
+            replace(one, insert=offer.quoted(one.insert), snippet=None, filter=f'"{one.label}') for one in proposals
+        )
         return Completion(Span(whole.start, offset + (len(end[0]) if end else 0)), tuple(quoted))
     return Completion(whole, ())
 
@@ -214,10 +218,10 @@ def _unit(workspace: Workspace, path: str, place: CursorPlace, text: str, offset
         wanted = measured_at(workspace, path, place)
     separator = "" if begun[1] else " "
     clause = [word.text for word in place.group]
-    known = () if not in_brackets and is_count(clause) else offer.units(wanted)
-    found = tuple(replace(one, insert=f"{separator}{one.insert}") for one in known)
-    behind = () if not begun[1] else _unique(_in_code(workspace, path, place, offset))
-    proposals = (*behind, *found) if not in_brackets and is_window(clause) else (*found, *behind)
+    fitting = () if not in_brackets and is_count(clause) else offer.units(wanted)
+    units = tuple(replace(one, insert=f"{separator}{one.insert}") for one in fitting)
+    following = () if not begun[1] else _unique(_in_code(workspace, path, place, offset))
+    proposals = (*following, *units) if not in_brackets and is_window(clause) else (*units, *following)
     return Completion(Span(offset - len(begun[2]), offset), proposals)
 
 
@@ -226,8 +230,8 @@ def _before_unit(place: CursorPlace) -> CursorPlace:
     if not place.words or place.words[-1].kind != QUANTITY:
         return place
     whole = place.words[-1]
-    found = re.match(r"[+-]?[\d.]+(?:[eE][+-]?\d+)?", whole.text)
-    number = Token(NUMBER, whole.start, found[0] if found else "")
+    match = re.match(r"[+-]?[\d.]+(?:[eE][+-]?\d+)?", whole.text)
+    number = Token(NUMBER, whole.start, match[0] if match else "")
     group = (*place.group[:-1], number) if place.group[-1:] == (whole,) else place.group
     return replace(place, words=(*place.words[:-1], number), group=group)
 
@@ -301,19 +305,19 @@ def _in_item(workspace: Workspace, path: str, place: CursorPlace, first: str) ->
         yield from of_nodes.unknown_nodes(workspace, path)
 
 
-def _others(found: Iterable[Proposal], place: CursorPlace) -> Iterator[Proposal]:
+def _others(proposals: Iterable[Proposal], place: CursorPlace) -> Iterator[Proposal]:
     """All but the quality or the context that the line defines."""
     own = [word_text(word) for word in place.words[1:2]]
-    yield from (one for one in found if one.label not in own or one.kind not in ("quality", "context"))
+    yield from (one for one in proposals if one.label not in own or one.kind not in ("quality", "context"))
 
 
 def _in_signal(place: CursorPlace, last: str) -> Iterator[Proposal]:
     if last == ":":
         yield from offer.units_of_names()
     elif len(place.words) >= 4 and last not in ("/", "*", "^"):
-        given = {word.text for word in place.words}
+        texts = {word.text for word in place.words}
         wanted = (word for word in ("from {}", "level", "counter", "gauge", "fresh within", "initially"))
-        yield from offer.words((word for word in wanted if word.split()[0] not in given), "keyword")
+        yield from offer.words((word for word in wanted if word.split()[0] not in texts), "keyword")
 
 
 def _in_apply(workspace: Workspace, path: str, place: CursorPlace) -> Iterator[Proposal]:
@@ -339,20 +343,20 @@ def _in_apply(workspace: Workspace, path: str, place: CursorPlace) -> Iterator[P
 def _in_requirement(workspace: Workspace, path: str, place: CursorPlace) -> Iterator[Proposal]:
     """What may follow `QualityReq` on its line, in brackets, or in its block."""
     words = place.group
-    at = next((index for index in reversed(range(len(words))) if words[index].text == "QualityReq"), None)
-    if at is not None:
-        behind = [word.text for word in words[at + 1 :]]
-        if not behind:
+    head = next((index for index in reversed(range(len(words))) if words[index].text == "QualityReq"), None)
+    if head is not None:
+        following = [word.text for word in words[head + 1 :]]
+        if not following:
             yield from offer.words(('ID = "" description = ""',), "keyword") if place.depth else ()
             yield from offer.undeclared(workspace, path, *_DECLARED["QualityReq"])
             return
-        if behind[-1] in (":", ".") and VERBS.keys().isdisjoint(behind):
+        if following[-1] in (":", ".") and VERBS.keys().isdisjoint(following):
             yield from offer.qualities(workspace, path, place)
             return
-        if behind == ["ID", "="]:
+        if following == ["ID", "="]:
             yield from offer.requirements(workspace, path)
             return
-        if len(behind) == 3 and behind[0] == "ID":
+        if len(following) == 3 and following[0] == "ID":
             yield from offer.words(('description = ""',), "keyword")
             return
     yield from _clause_words(workspace, path, expected(words), place)

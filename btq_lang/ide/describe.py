@@ -45,8 +45,8 @@ def node_kind(workspace: Workspace, path: str, name: str, quoted: bool = False, 
     if isinstance(target, Model):
         text = target.text.text if target.text else ""
         shown = f"```btq\n{target.category.raw} {name}\n```"
-        _, known = workspace.store.ask(inputs.declared, path, name)
-        semantics = known.semantics if known is not None else ""
+        _, behavior = workspace.store.ask(inputs.declared, path, name)
+        semantics = behavior.semantics if behavior is not None else ""
         shown_ports = _ports(ports_of_kind(workspace, path, name))
         return "\n\n".join(filter(None, (shown, text, semantics, shown_ports, cpp_link(workspace, path, name))))
     if not quoted and name in KNOWN_WORDS:
@@ -58,44 +58,44 @@ def _head(kind: NodeKind) -> str:
     least, most = kind.children
     count = f"{least}" if least == most else f"{least} or more" if most is None else f"{least} to {most}"
     children = f" · children: {count}" if kind.category in ("Control", "Decorator") else ""
-    written = " ".join(f"`{word}`" for word in spellings(kind))
-    return f"**{kind.tag}** ({kind.category}) · {written}{children} · since {kind.since}"
+    spelt = " ".join(f"`{word}`" for word in spellings(kind))
+    return f"**{kind.tag}** ({kind.category}) · {spelt}{children} · since {kind.since}"
 
 
 def _ports(ports: Iterable[PortKind]) -> str:
     return "\n".join(f"- {port(one)}" for one in ports)
 
 
-def port(one: PortKind) -> str:
+def port(port_kind: PortKind) -> str:
     """A port on one line: `` `input msec : unsigned int` in ms, required: how long ``."""
-    notes = [f"in {one.unit}"] if one.unit else []
-    notes += ["required"] if one.required else []
-    said = f" ({', '.join(notes)})" if notes else ""
-    return f"`{signature(one)}`{said}{f': {one.doc}' if one.doc else ''}"
+    notes = [f"in {port_kind.unit}"] if port_kind.unit else []
+    notes += ["required"] if port_kind.required else []
+    remark = f" ({', '.join(notes)})" if notes else ""
+    return f"`{signature(port_kind)}`{remark}{f': {port_kind.doc}' if port_kind.doc else ''}"
 
 
 def tree(workspace: Workspace, path: str, name: str) -> str:
     """A tree: its ports, what is attached to it, and its callers."""
-    found = _definition(workspace, path, Kind.TREE, name)
-    if found is None:
+    definition = _definition(workspace, path, Kind.TREE, name)
+    if definition is None:
         return f"`{name}`: unknown tree."
-    item = found.symbol.target
+    item = definition.symbol.target
     shown = f"```btq\nBehaviorTree {name}\n```"
     attached = clauses_detail(item.clauses) if isinstance(item, Tree) else ""
-    ports = _ports(ports_of_tree(workspace, found.path, name))
+    ports = _ports(ports_of_tree(workspace, definition.path, name))
     count = sum(1 for _ in item.walk()) if isinstance(item, Tree) else 0
-    size = f"{counted(count, 'node')} · {workspace.project.shown(found.path)}"
-    wanted = Subject(What.TREE, name, home_of(found))
+    size = f"{counted(count, 'node')} · {workspace.project.shown(definition.path)}"
+    wanted = Subject(What.TREE, name, home_of(definition))
     return "\n\n".join(filter(None, (shown, attached, size, ports, used(workspace, wanted, "Run by"))))
 
 
-def requirement(workspace: Workspace, path: str, found: Definition) -> str:
+def requirement(workspace: Workspace, path: str, definition: Definition) -> str:
     """A requirement as it is written, with its values in SI units, its quality, what a build does about each clause,
     and where it is used."""
-    item = found.symbol.target
+    item = definition.symbol.target
     assert isinstance(item, Requirement), "a requirement's symbol defines one"
-    lines = [f"**{found.symbol.name}**{_parameters(workspace, found, item)}"]
-    quality = quality_of(found)
+    lines = [f"**{definition.symbol.name}**{_parameters(workspace, definition, item)}"]
+    quality = quality_of(definition)
     if quality is not None:
         lines[0] += f" · {quality.text}"
     if item.text is not None:
@@ -103,89 +103,98 @@ def requirement(workspace: Workspace, path: str, found: Definition) -> str:
     if item.clauses:
         lines.append(
             "```btq\n"
-            + "\n".join(_clause(workspace, found, Span(one.start, one.end)) for one in item.clauses)
+            + "\n".join(_clause(workspace, definition, Span(clause.start, clause.end)) for clause in item.clauses)
             + "\n```"
         )
-    attached = used(workspace, Subject(What.REQUIREMENT, found.symbol.name, home_of(found)), "Attached to")
+    attached = used(workspace, Subject(What.REQUIREMENT, definition.symbol.name, home_of(definition)), "Attached to")
     if item.clauses or item.text is not None:
         from btq_lang.ide.clause_enforcement import enforcement_lines  # most hovers need no plan of a build
 
-        said = enforcement_lines(workspace, path, found, is_attached=bool(attached))
-        lines.append(f"Enforcement by `btq build`:\n{said}" if said else "")
+        enforcement = enforcement_lines(workspace, path, definition, is_attached=bool(attached))
+        lines.append(f"Enforcement by `btq build`:\n{enforcement}" if enforcement else "")
     return "\n\n".join(filter(None, (*lines, attached)))
 
 
-def _parameters(workspace: Workspace, found: Definition, item: Requirement) -> str:
+def _parameters(workspace: Workspace, definition: Definition, item: Requirement) -> str:
     """`` `(limit : m/s = 0.25 m/s)` ``, as it is written; empty if it has none."""
-    file = workspace.files[found.path]
+    file = workspace.files[definition.path]
     shown = []
-    for one in item.parameters:
-        end = max(word.end for word in walk(one) if isinstance(word, Word))
-        shown.append(file.on_one_line(found.entry, Span(one.name.start, end)))
+    for parameter in item.parameters:
+        end = max(word.end for word in walk(parameter) if isinstance(word, Word))
+        shown.append(file.on_one_line(definition.entry, Span(parameter.name.start, end)))
     return f" `({', '.join(shown)})`" if shown else ""
 
 
-def _clause(workspace: Workspace, found: Definition, span: Span) -> str:
+def _clause(workspace: Workspace, definition: Definition, span: Span) -> str:
     """A clause on one line, and a comment with its quantities in SI units if they are written in others."""
-    file = workspace.files[found.path]
-    text = file.on_one_line(found.entry, span)
-    typed = [one.name for one in file.mentions_of(found.entry) if one.what is What.QUANTITY and span.contains(one.span)]
+    file = workspace.files[definition.path]
+    text = file.on_one_line(definition.entry, span)
+    typed = [
+        mention.name
+        for mention in file.mentions_of(definition.entry)
+        if mention.what is What.QUANTITY and span.contains(mention.span)
+    ]
     converted = [
-        f"{one} = {said}" for one in dict.fromkeys(typed) if (said := in_si(one)) and said.split() != one.split()
+        f"{measured} = {si}"
+        for measured in dict.fromkeys(typed)
+        if (si := in_si(measured)) and si.split() != measured.split()
     ]
     return f"{text}  # {', '.join(converted)}" if converted else text
 
 
 def used(workspace: Workspace, wanted: Subject, heading: str) -> str:
     """Where something is used: a list of nodes; empty if it is not used."""
-    uses = [found for found in everywhere(workspace, wanted) if not found.mention.defines or found.mention.node]
-    lines = [f"- {place_of(workspace, found)}" for found in uses[:_MOST_USES]]
+    uses = [
+        reference
+        for reference in everywhere(workspace, wanted)
+        if not reference.mention.defines or reference.mention.node
+    ]
+    lines = [f"- {place_of(workspace, reference)}" for reference in uses[:_MOST_USES]]
     if len(uses) > _MOST_USES:
         lines.append(f"- and {len(uses) - _MOST_USES} more")
     return "\n".join([f"{heading}:", *lines]) if lines else ""
 
 
-def place_of(workspace: Workspace, found: ReferenceAt) -> str:
+def place_of(workspace: Workspace, reference: ReferenceAt) -> str:
     """The place of a reference: `` `MoveBase ToWard` in `Deliver` (deliver.btq) ``, or the `apply` that it is in."""
-    node, entry = found.mention.node, found.entry
+    node, entry = reference.mention.node, reference.entry
     item = entry.item if entry is not None else None
     name = item.name.text if isinstance(item, Tree | Requirement | Signal | Context) and item.name else ""
     where = f"`{node.called}`" + (f" in `{name}`" if name else "") if node is not None else f"`{name}`" if name else ""
     if isinstance(item, Apply) and entry is not None:
-        where = f"`{workspace.files[found.path].on_one_line(entry, item)}`"
-    path = workspace.project.shown(found.path)
+        where = f"`{workspace.files[reference.path].on_one_line(entry, item)}`"
+    path = workspace.project.shown(reference.path)
     return f"{where} ({path})" if where else path
 
 
-def quality(workspace: Workspace, path: str, found: Quality, explanation: str = "") -> str:
+def quality(workspace: Workspace, path: str, standard: Quality, explanation: str = "") -> str:
     """A quality of the standard: definition, edition, parts and siblings."""
     year = EDITIONS[workspace.edition(path)]
-    lines = [f"**{found.id}** · {found.name}", found.definition, f"_{found.source}_"]
+    lines = [f"**{standard.id}** · {standard.name}", standard.definition, f"_{standard.source}_"]
     lines += [explanation] if explanation else []
-    lines += [f"Measures: {found.measures}"] if found.measures else []
-    lines += [f"Nearest in ISO/IEC 25010: `{found.nearest}`"] if found.nearest else []
-    below = [f"`{part.id.rpartition('.')[2]}`" for part in parts(found.id, year)]
+    lines += [f"Measures: {standard.measures}"] if standard.measures else []
+    lines += [f"Nearest in ISO/IEC 25010: `{standard.nearest}`"] if standard.nearest else []
+    below = [f"`{part.id.rpartition('.')[2]}`" for part in parts(standard.id, year)]
     lines += [f"Parts: {', '.join(below)}"] if below else []
-    beside = [f"`{one.id.rpartition('.')[2]}`" for one in siblings(found, year)] if found.parent else []
+    beside = [f"`{one.id.rpartition('.')[2]}`" for one in siblings(standard, year)] if standard.parent else []
     lines += [f"Siblings: {', '.join(beside)}"] if beside else []
     return "\n\n".join(lines)
 
 
-def own_quality(workspace: Workspace, found: Definition) -> str:
+def own_quality(workspace: Workspace, definition: Definition) -> str:
     """A quality that a file declares."""
-    item = found.symbol.target
+    item = definition.symbol.target
     assert isinstance(item, QualityDecl), "a quality's symbol declares one"
     parent = f" · {item.parent.text}" if item.parent else ""
     text = item.text.text if item.text else ""
-    return "\n\n".join(
-        filter(None, (f"**{found.symbol.name}**{parent}", text, f"_declared in {workspace.project.shown(found.path)}_"))
-    )
+    place = f"_declared in {workspace.project.shown(definition.path)}_"
+    return "\n\n".join(filter(None, (f"**{definition.symbol.name}**{parent}", text, place)))
 
 
-def declared(workspace: Workspace, found: Definition) -> str:
+def declared(workspace: Workspace, definition: Definition) -> str:
     """A signal or a context, as it is written."""
-    text = workspace.files[found.path].text[slice(*found.whole)]
-    return f"```btq\n{text}\n```\n\n_{workspace.project.shown(found.path)}_"
+    text = workspace.files[definition.path].text[slice(*definition.whole)]
+    return f"```btq\n{text}\n```\n\n_{workspace.project.shown(definition.path)}_"
 
 
 def key(workspace: Workspace, wanted: Subject, writes: Iterable[ReferenceAt], reads: Iterable[ReferenceAt]) -> str:
@@ -193,43 +202,45 @@ def key(workspace: Workspace, wanted: Subject, writes: Iterable[ReferenceAt], re
     where = "of the root blackboard" if wanted.home.startswith(ROOT_BLACKBOARD) else "of this tree's blackboard"
     lines = [f"**{wanted.name}** · entry {where}"]
     for heading, places in (("Written by", writes), ("Read by", reads)):
-        shown = [f"- {place_of(workspace, found)}" for found in places]
+        shown = [f"- {place_of(workspace, reference)}" for reference in places]
         lines += ["\n".join([f"{heading}:", *shown[:_MOST_USES]])] if shown else []
     return "\n\n".join(lines)
 
 
 def quantity(text: str, port_unit: str | None = None) -> str | None:
     """A quantity in SI units, and in the unit of the port that it is assigned to."""
-    read = parse_quantity(text)
-    if read is None:
+    parsed = parse_quantity(text)
+    if parsed is None:
         return None
-    shown = f"**{text}** = {in_si(text)} ({dimension_name(read[1])})"
+    shown = f"**{text}** = {in_si(text)} ({dimension_name(parsed[1])})"
     converted = in_unit(text, port_unit)
     return f"{shown}\n\nWritten to the port as `{converted}`, in {port_unit}." if converted else shown
 
 
 def in_si(text: str) -> str:
     """A quantity in SI units; empty if it is not a quantity."""
-    read = parse_quantity(text)
-    return f"{number(to_si(read[0], read[1]))} {si_symbol(read[1])}".rstrip() if read is not None else ""
+    parsed = parse_quantity(text)
+    return f"{number(to_si(parsed[0], parsed[1]))} {si_symbol(parsed[1])}".rstrip() if parsed is not None else ""
 
 
 def unit(text: str) -> str | None:
     """A unit: what it measures, and its value in SI units."""
-    read = parse_unit(text)
-    if read is None:
+    parsed = parse_unit(text)
+    if parsed is None:
         return None
-    one = f" · 1 {text} = {number(to_si(1.0, read))} {si_symbol(read)}".rstrip() if text != si_symbol(read) else ""
-    return f"**{text}** · {dimension_name(read)}{one}"
+    converted = (
+        f" · 1 {text} = {number(to_si(1.0, parsed))} {si_symbol(parsed)}".rstrip() if text != si_symbol(parsed) else ""
+    )
+    return f"**{text}** · {dimension_name(parsed)}{converted}"
 
 
 def in_unit(text: str, port_unit: str | None) -> str | None:
     """The number for a quantity on a port with a unit; None if they do not fit."""
-    read = parse_quantity(text)
+    parsed = parse_quantity(text)
     target = parse_unit(port_unit) if port_unit else None
-    if read is None or target is None or read[1].dimension != target.dimension:
+    if parsed is None or target is None or parsed[1].dimension != target.dimension:
         return None
-    return number(convert(read[0], read[1], target))
+    return number(convert(parsed[0], parsed[1], target))
 
 
 def number(value: float) -> str:
@@ -255,23 +266,25 @@ def rule(name: str) -> str | None:
 
 def words(name: str) -> str | None:
     """The meanings of words of the language, in each place where they may occur; None if there are none."""
-    found = (f"**{one.words}** ({one.part}) · `{one.form}`\n\n{one.sentence}" for one in phrases_of(name))
-    return "\n\n".join(found) or None
+    descriptions = (
+        f"**{phrase.words}** ({phrase.part}) · `{phrase.form}`\n\n{phrase.sentence}" for phrase in phrases_of(name)
+    )
+    return "\n\n".join(descriptions) or None
 
 
 def documentation(workspace: Workspace, path: str, kind: str, name: str) -> str | None:
     """A description in Markdown of a proposal of this kind and name, if there is one."""
     if kind == "node":
-        found = _definition(workspace, path, Kind.MODEL, name)
-        return node_kind(workspace, found.path if found else path, name)
+        definition = _definition(workspace, path, Kind.MODEL, name)
+        return node_kind(workspace, definition.path if definition else path, name)
     if kind == "tree":
         return tree(workspace, path, name)
     if kind == "requirement":
-        found = _definition(workspace, path, Kind.REQUIREMENT, name)
-        return requirement(workspace, path, found) if found else None
+        definition = _definition(workspace, path, Kind.REQUIREMENT, name)
+        return requirement(workspace, path, definition) if definition else None
     if kind in ("signal", "context"):
-        found = _definition(workspace, path, Kind.SIGNAL if kind == "signal" else Kind.CONTEXT, name)
-        return declared(workspace, found) if found else None
+        definition = _definition(workspace, path, Kind.SIGNAL if kind == "signal" else Kind.CONTEXT, name)
+        return declared(workspace, definition) if definition else None
     if kind == "quality":
         own = declared_quality(workspace, path, name) or _definition(workspace, path, Kind.QUALITY, name)
         match = quality_match(workspace, path, name)
@@ -285,9 +298,9 @@ def documentation(workspace: Workspace, path: str, kind: str, name: str) -> str 
     if kind == "port":
         node, _, wanted = name.rpartition("/")
         category, _, called = node.rpartition(" ")
-        known = ports_of_tree(workspace, path, called) if category == "SubTree" else ()
-        known = known or ports_of_kind(workspace, path, called)
-        return next((port(one) for one in known if one.name == wanted), None)
+        port_kinds = ports_of_tree(workspace, path, called) if category == "SubTree" else ()
+        port_kinds = port_kinds or ports_of_kind(workspace, path, called)
+        return next((port(one) for one in port_kinds if one.name == wanted), None)
     return None
 
 
@@ -295,8 +308,8 @@ def include_edits(workspace: Workspace, path: str, other: str) -> tuple[Edit, ..
     """The edits that add a proposal to the file's scope; `other`: the file that defines it, empty if it is in scope."""
     if other not in workspace.files:
         return ()
-    at, line = include_line(workspace.store.ask(head, path), path, other)
-    return (Edit(Span(at, at), line),)
+    offset, line = include_line(workspace.store.ask(head, path), path, other)
+    return (Edit(Span(offset, offset), line),)
 
 
 def _definition(workspace: Workspace, path: str, kind: Kind, name: str) -> Definition | None:

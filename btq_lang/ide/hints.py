@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from btq_lang.btcpp.side_elements import said_in_xml
+from btq_lang.btcpp.side_elements import element_descriptions
 from btq_lang.btcpp.side_file import side_path
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.ide import describe
@@ -49,7 +49,7 @@ def inlay_hints(workspace: Workspace, path: str, within: Span) -> tuple[Hint, ..
     """The quality of each requirement that is only referred to, and the number that is written to a port for a
     quantity."""
     file = workspace.files[path]
-    found: list[Hint] = []
+    hints: list[Hint] = []
     for entry in file.parsed.entries:
         for mention in file.mentions_of(entry):
             span = mention.span.shifted(entry.start)
@@ -61,14 +61,14 @@ def inlay_hints(workspace: Workspace, path: str, within: Span) -> tuple[Hint, ..
                 item = place.symbol.target if place is not None and wanted.home else None
                 quality = quality_of(place) if place is not None else None
                 if isinstance(item, Requirement) and quality is not None:
-                    found.append(Hint(span.end, f": {quality.names[-1].text}", requirement_detail(item)))
+                    hints.append(Hint(span.end, f": {quality.names[-1].text}", requirement_detail(item)))
             elif mention.what is What.QUANTITY and mention.node is not None and mention.pair is not None:
                 port = port_of(workspace, path, mention.node, mention.pair.key.text)
                 unit = port.unit if port is not None else None
                 number = describe.in_unit(mention.name, unit)
                 if number is not None and mention.name.split() != [number, unit]:
-                    found.append(Hint(span.end, f"= {number}", describe.quantity(mention.name, unit) or ""))
-    return tuple(found)
+                    hints.append(Hint(span.end, f"= {number}", describe.quantity(mention.name, unit) or ""))
+    return tuple(hints)
 
 
 def code_lenses(
@@ -80,7 +80,7 @@ def code_lenses(
     As a reader counts: a requirement that is defined at a node is used there, and has a lens only if there are more
     uses; the `Root` that names the main tree does not call it.
     """
-    found: list[Lens] = []
+    lenses: list[Lens] = []
     for place in workspace.files[path].defined:
         kind = place.symbol.kind
         if kind not in _COUNTED or workspace.scope(path).find(kind, place.symbol.name) != place:
@@ -97,7 +97,7 @@ def code_lenses(
             titles = ["main tree"] if is_main_tree else []
             if others or not is_main_tree:
                 titles.append(counted(len(others), "call"))
-            found.append(Lens(place.span, ", ".join(titles), others))
+            lenses.append(Lens(place.span, ", ".join(titles), others))
             continue
         is_in_place = not isinstance(place.entry.item, Requirement)
         uses = (own, *others) if is_in_place and others else others
@@ -107,16 +107,16 @@ def code_lenses(
             missions = missions_of(workspace, path)
             of_missions = [workspace.store.ask(_by_subject, each) for each in missions[:MOST_MISSIONS]]
             defined = place.symbol.name, place.path
-            nodes = tuple(dict.fromkeys(at for each in of_missions for at in each.get(defined, ())))
+            nodes = tuple(dict.fromkeys(node for each in of_missions for node in each.get(defined, ())))
             more = " or more" if len(missions) > MOST_MISSIONS else ""
             holds = [f"holds for {counted(len(nodes), 'node')}{more}"] if nodes else []
             titles = [*(titles if uses or not nodes else ()), *holds]
         if uses or nodes or not is_in_place:
-            found.append(Lens(place.span, ", ".join(titles), tuple(dict.fromkeys((*uses, *nodes)))))
-    return (*found, *_seen(workspace, path, evidence), *_built(workspace, path, side))
+            lenses.append(Lens(place.span, ", ".join(titles), tuple(dict.fromkeys((*uses, *nodes)))))
+    return (*lenses, *_verdict_lenses(workspace, path, evidence), *_build_lenses(workspace, path, side))
 
 
-def _seen(workspace: Workspace, path: str, evidence: ProjectVerdicts | None) -> Iterator[Lens]:
+def _verdict_lenses(workspace: Workspace, path: str, evidence: ProjectVerdicts | None) -> Iterator[Lens]:
     """The worst verdict on each requirement."""
     if evidence is None:
         return
@@ -125,13 +125,13 @@ def _seen(workspace: Workspace, path: str, evidence: ProjectVerdicts | None) -> 
     yield from (Lens(*title) for title in verdict_titles(workspace, path, evidence))
 
 
-def _built(workspace: Workspace, path: str, side: str | None) -> Iterator[Lens]:
+def _build_lenses(workspace: Workspace, path: str, side: str | None) -> Iterator[Lens]:
     """How many requirements and qualities each element of XML has by its build; what is wrong with its side file."""
     file = workspace.files[path]
-    said = said_in_xml(workspace, path, side)
-    if said.problem:
-        yield Lens(Span(0, 0), f"{side_path(path.rpartition('/')[2])} {said.problem}", ())
-    for tag, lines in sorted(said.lines.items()):
+    built = element_descriptions(workspace, path, side)
+    if built.problem:
+        yield Lens(Span(0, 0), f"{side_path(path.rpartition('/')[2])} {built.problem}", ())
+    for tag, lines in sorted(built.lines.items()):
         qualities = sum(line.startswith("satisfices ") for line in lines)
         counts = (counted(len(lines) - qualities, "requirement"), counted(qualities, "quality", "qualities"))
         start = file.from_disk(tag)
@@ -148,12 +148,12 @@ def _by_subject(store: Store[Workspace], mission: str) -> dict[tuple[str, str], 
     """The nodes that the claims of requirements name, by name and file, for all of a mission: they are resolved
     together."""
     workspace = store.ask(everything, mission)
-    found: dict[tuple[str, str], dict[tuple[str, Span], None]] = {}
+    by_requirement: dict[tuple[str, str], dict[tuple[str, Span], None]] = {}
     for applied in requirements(workspace, mission).applied:
         if applied.how == "subject":
             defined_in = applied.requirement.place.path
             assert defined_in is not None, "a definition is in a file"
-            nodes = found.setdefault((applied.requirement.name, defined_in), {})
+            nodes = by_requirement.setdefault((applied.requirement.name, defined_in), {})
             for source in applied.nodes:
                 nodes[source.path, workspace.files[source.path].span_of(source.place)] = None
-    return {key: tuple(nodes) for key, nodes in found.items()}
+    return {key: tuple(nodes) for key, nodes in by_requirement.items()}

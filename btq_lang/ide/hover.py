@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from btq_lang.btcpp.side_elements import said_in_xml
+from btq_lang.btcpp.side_elements import element_descriptions
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.language import phrase_at
 from btq_lang.ide import describe
@@ -36,33 +36,33 @@ def hover(
     """The hover at a place: a node with its ports and semantics, a requirement with its text and its nodes, a quality
     with its definition, an entry with its readers and writers, a quantity in SI units, a rule's page, a word of the
     language."""
-    found = at(workspace, path, offset)
-    if found is None:
+    reference = at(workspace, path, offset)
+    if reference is None:
         return _word_of_the_language(workspace.files[path], offset)
-    wanted = subject(workspace, found)
-    markdown = _explained(workspace, found, wanted) or ""
-    seen = ""
+    wanted = subject(workspace, reference)
+    markdown = _explained(workspace, reference, wanted) or ""
+    verdicts = ""
     if evidence is not None and wanted.what is What.REQUIREMENT:
         from btq_lang.ide.verdicts import verdict_table  # few projects have logs
 
-        seen = verdict_table(workspace, path, wanted, evidence)
-    said = _built(workspace, found, side) if found.mention.what in (What.NODE, What.TREE) else ""
-    both = "\n\n".join(filter(None, (markdown, seen, said)))
-    return Hover(found.span, both) if both else None
+        verdicts = verdict_table(workspace, path, wanted, evidence)
+    built = _written_by_build(workspace, reference, side) if reference.mention.what in (What.NODE, What.TREE) else ""
+    text = "\n\n".join(filter(None, (markdown, verdicts, built)))
+    return Hover(reference.span, text) if text else None
 
 
-def _built(workspace: Workspace, found: ReferenceAt, side: str | None) -> str:
+def _written_by_build(workspace: Workspace, reference: ReferenceAt, side: str | None) -> str:
     """The requirements and qualities of an element of XML by its build."""
-    file = workspace.files[found.path]
+    file = workspace.files[reference.path]
     if not file.is_foreign:
         return ""
-    tag = file.source.rfind("<", 0, file.on_disk(found.span).start) + 1
-    lines = said_in_xml(workspace, found.path, side).lines.get(tag, ())
+    tag = file.source.rfind("<", 0, file.on_disk(reference.span).start) + 1
+    lines = element_descriptions(workspace, reference.path, side).lines.get(tag, ())
     return "\n".join(("Written by `btq build`:\n", *(f"* {line}" for line in lines))) if lines else ""
 
 
-def _explained(workspace: Workspace, found: ReferenceAt, wanted: Subject) -> str | None:
-    path, mention = found.path, found.mention
+def _explained(workspace: Workspace, reference: ReferenceAt, wanted: Subject) -> str | None:
+    path, mention = reference.path, reference.mention
     node = mention.node
     if wanted.what is What.NODE:
         children = len(node.nodes) if node is not None else None
@@ -76,9 +76,10 @@ def _explained(workspace: Workspace, found: ReferenceAt, wanted: Subject) -> str
         match = quality_match(workspace, path, mention.name)
         if match.quality is not None:
             return describe.quality(workspace, path, match.quality, match.explanation)
-        meant = ", ".join(f"`{one.id}`" for one in match.candidates) or ", ".join(f"`{one}`" for one in match.near)
+        names = [one.id for one in match.candidates] or match.near
+        suggestions = ", ".join(f"`{name}`" for name in names)
         return f"`{mention.name}`: {match.explanation or 'unknown quality'}" + (
-            f"\n\nDid you mean {meant}?" if meant else ""
+            f"\n\nDid you mean {suggestions}?" if suggestions else ""
         )
     if wanted.what is What.REQUIREMENT:
         place = definition(workspace, path, wanted)
@@ -87,9 +88,9 @@ def _explained(workspace: Workspace, found: ReferenceAt, wanted: Subject) -> str
         place = definition(workspace, path, wanted)
         return describe.declared(workspace, place) if place else None
     if wanted.what is What.KEY:
-        return (_port(workspace, found) if mention.what is What.PORT else None) or _key(workspace, wanted)
+        return (_port(workspace, reference) if mention.what is What.PORT else None) or _key(workspace, wanted)
     if wanted.what is What.PORT:
-        return _port(workspace, found)
+        return _port(workspace, reference)
     if wanted.what is What.ATTRIBUTE:
         kind = RESERVED_ATTRIBUTES.get(wanted.name)
         return f"`{kind.name}`: {kind.doc}" if kind is not None else None
@@ -111,11 +112,11 @@ def _word_of_the_language(file: File, offset: int) -> Hover | None:
     if not any(token.kind == NAME and token.start <= offset <= token.end for token in item_tokens(file, offset)):
         return None
     start = file.text.rfind("\n", 0, offset) + 1
-    found = phrase_at(file.text[start:].partition("\n")[0], offset - start)
-    markdown = describe.words(found[1]) if found is not None else None
-    if found is None or markdown is None:
+    phrase = phrase_at(file.text[start:].partition("\n")[0], offset - start)
+    markdown = describe.words(phrase[1]) if phrase is not None else None
+    if phrase is None or markdown is None:
         return None
-    return Hover(Span(start + found[0], start + found[0] + len(found[1])), markdown)
+    return Hover(Span(start + phrase[0], start + phrase[0] + len(phrase[1])), markdown)
 
 
 def _key(workspace: Workspace, wanted: Subject) -> str:
@@ -124,12 +125,12 @@ def _key(workspace: Workspace, wanted: Subject) -> str:
     return describe.key(workspace, wanted, writing, [one for one in places if one not in writing])
 
 
-def _port(workspace: Workspace, found: ReferenceAt) -> str | None:
-    node = found.mention.node
-    port = port_of(workspace, found.path, node, found.mention.name) if node is not None else None
+def _port(workspace: Workspace, reference: ReferenceAt) -> str | None:
+    node = reference.mention.node
+    port = port_of(workspace, reference.path, node, reference.mention.name) if node is not None else None
     if node is None or port is None:
         return None
-    link = cpp_link(workspace, found.path, node.id.text, port.name) if node.id is not None else ""
+    link = cpp_link(workspace, reference.path, node.id.text, port.name) if node.id is not None else ""
     return "\n\n".join(filter(None, (describe.port(port), link)))
 
 

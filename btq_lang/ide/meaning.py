@@ -81,9 +81,9 @@ def entry_at(workspace: Workspace, path: str, offset: int) -> Entry | None:
     return entries[index - 1] if index else None
 
 
-def subject(workspace: Workspace, found: ReferenceAt) -> Subject:
+def subject(workspace: Workspace, reference: ReferenceAt) -> Subject:
     """What a reference means."""
-    path, entry, mention = found.path, found.entry, found.mention
+    path, entry, mention = reference.path, reference.entry, reference.mention
     if mention.what in (What.RULE, What.EDITION, What.TAG, What.QUANTITY, What.UNIT, What.ATTRIBUTE) or entry is None:
         return Subject(mention.what, mention.name)
     if mention.what is What.INCLUDE:
@@ -104,7 +104,7 @@ def subject(workspace: Workspace, found: ReferenceAt) -> Subject:
     if mention.what is What.PLACE:
         return _place(workspace, path, mention.name)
     if mention.what is What.PORT:
-        return _port(workspace, found)
+        return _port(workspace, reference)
     if mention.what is What.KEY:
         return Subject(What.KEY, mention.name, _blackboard(workspace, path, entry, mention.root))
     return Subject(mention.what, mention.name, f"{path}:{entry.start}")
@@ -115,16 +115,16 @@ def definition(workspace: Workspace, path: str, wanted: Subject) -> Definition |
     kind = KIND_OF.get(wanted.what)
     if kind is None or wanted.home in (ENGINE, STANDARD):
         return None
-    found = workspace.find(path, kind, wanted.name)
-    if found is not None and home_of(found) == wanted.home:
-        return found
+    in_scope = workspace.find(path, kind, wanted.name)
+    if in_scope is not None and home_of(in_scope) == wanted.home:
+        return in_scope
     anywhere = workspace.defined_anywhere(kind, wanted.name)
     return next((one for one in anywhere if not wanted.home or home_of(one) == wanted.home), None)
 
 
-def home_of(found: Definition) -> str:
+def home_of(place: Definition) -> str:
     """The home of a definition, as in its subject."""
-    return f"{found.path}:{found.span.start}"
+    return f"{place.path}:{place.span.start}"
 
 
 def everywhere(workspace: Workspace, wanted: Subject, paths: tuple[str, ...] | None = None) -> Iterator[ReferenceAt]:
@@ -135,17 +135,17 @@ def everywhere(workspace: Workspace, wanted: Subject, paths: tuple[str, ...] | N
         if words and not any(word in file.text for word in words):
             continue  # that is known without parsing it
         if words:
-            found = [ReferenceAt(path, *one) for word in words for one in file.mentioned(word)]
+            references = [ReferenceAt(path, *mentioned) for word in words for mentioned in file.mentioned(word)]
             if len(words) > 1:
-                found.sort(key=lambda one: one.span)
+                references.sort(key=lambda reference: reference.span)
         else:
-            found = [
-                ReferenceAt(path, entry, one)
+            references = [
+                ReferenceAt(path, entry, mention)
                 for entry in file.parsed.entries
-                for one in file.mentions_of(entry)
-                if _may_mean(wanted, one)
+                for mention in file.mentions_of(entry)
+                if _may_mean(wanted, mention)
             ]
-        yield from (one for one in found if subject(workspace, one) == wanted)
+        yield from (reference for reference in references if subject(workspace, reference) == wanted)
 
 
 def _paths(workspace: Workspace, wanted: Subject) -> list[str]:
@@ -202,8 +202,8 @@ def match_of(name: str, edition: str) -> QualityMatch:
 
 
 def _defined(workspace: Workspace, path: str, what: What, name: str) -> Subject:
-    found = workspace.find(path, KIND_OF[what], name)
-    return Subject(what, name, home_of(found) if found else "")
+    place = workspace.find(path, KIND_OF[what], name)
+    return Subject(what, name, home_of(place) if place else "")
 
 
 def _node(workspace: Workspace, path: str, mention: Mention) -> Subject:
@@ -253,9 +253,9 @@ def _value(workspace: Workspace, path: str, entry: Entry, mention: Mention) -> S
         home = _defined(workspace, path, What.REQUIREMENT, owner.name.text).home if owner.name else ""
         return Subject(What.PARAMETER, mention.name, home or f"{path}:{entry.start}")
     for what in (What.CONTEXT, What.SIGNAL):
-        known = _defined(workspace, path, what, mention.name)
-        if known.home:
-            return known
+        declared = _defined(workspace, path, what, mention.name)
+        if declared.home:
+            return declared
     place = _place(workspace, path, mention.name)
     return place if place.home else Subject(What.SIGNAL, mention.name)
 
@@ -265,9 +265,9 @@ def _place(workspace: Workspace, path: str, name: str) -> Subject:
     if builtin is not None:
         return Subject(What.NODE, builtin.tag, ENGINE)
     for what in (What.NODE, What.TREE):
-        known = _defined(workspace, path, what, name)
-        if known.home:
-            return known
+        declared = _defined(workspace, path, what, name)
+        if declared.home:
+            return declared
     label = ""
     for other in workspace.scope(path).paths:
         file = workspace.files[other]
@@ -279,28 +279,28 @@ def _place(workspace: Workspace, path: str, name: str) -> Subject:
     return Subject(What.INSTANCE, name, label) if label else Subject(What.NODE, name)
 
 
-def _port(workspace: Workspace, found: ReferenceAt) -> Subject:
-    mention = found.mention
+def _port(workspace: Workspace, reference: ReferenceAt) -> Subject:
+    mention = reference.mention
     if mention.defines:
-        if (tree := _modelled_tree(workspace, found.path, mention)) is not None:
+        if (tree := _modelled_tree(workspace, reference.path, mention)) is not None:
             return Subject(What.KEY, mention.name, _blackboard(workspace, tree.path, tree.entry, False))
         name = mention.owner.name if isinstance(mention.owner, Model) else None
-        model = _defined(workspace, found.path, What.NODE, name.text if name else "")
-        return Subject(What.PORT, mention.name, model.home or found.path)
+        model = _defined(workspace, reference.path, What.NODE, name.text if name else "")
+        return Subject(What.PORT, mention.name, model.home or reference.path)
     node = mention.node
     assert node is not None, "a port that is not declared is used at a node"
     name = called(node)
     if name is not None:
-        tree = workspace.find(found.path, Kind.TREE, name.text)
+        tree = workspace.find(reference.path, Kind.TREE, name.text)
         if tree is not None:
             return Subject(What.KEY, mention.name, _blackboard(workspace, tree.path, tree.entry, False))
         return Subject(What.PORT, mention.name, f"tree {name.text}")
     if node.id is None:
         return Subject(What.PORT, mention.name)
-    kind = meaning_of(node, lambda name: workspace.store.ask(inputs.declared, found.path, name)).kind
+    kind = meaning_of(node, lambda name: workspace.store.ask(inputs.declared, reference.path, name)).kind
     if kind is not None:
         return Subject(What.PORT, mention.name, f"{ENGINE} {kind.tag}")
-    owner = _defined(workspace, found.path, What.NODE, node.id.text)
+    owner = _defined(workspace, reference.path, What.NODE, node.id.text)
     return Subject(What.PORT, mention.name, owner.home or f"node {node.id.text}")
 
 

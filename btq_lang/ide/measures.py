@@ -29,8 +29,8 @@ class MeasuredValue(Record):
         """Whether a value in a unit may be meant; one without a unit may."""
         if self.unit is None or not unit:
             return True
-        wanted, given = parse_unit(self.unit), parse_unit(unit)
-        return self.unit == unit if wanted is None or given is None else wanted.dimension == given.dimension
+        own, other = parse_unit(self.unit), parse_unit(unit)
+        return self.unit == unit if own is None or other is None else own.dimension == other.dimension
 
 
 def measured_at(workspace: Workspace, path: str, place: CursorPlace) -> MeasuredValue:
@@ -59,25 +59,25 @@ def parameters_at(place: CursorPlace) -> dict[str, str]:
     texts = [word.text for word in line]
     opened = texts.index("(") + 1 if "(" in texts else len(texts)
     closed = texts.index(")", opened) if ")" in texts[opened:] else len(texts)
-    found: dict[str, str] = {}
+    units: dict[str, str] = {}
     for parameter in "".join(texts[opened:closed]).split(","):
-        name, colon, rest = parameter.partition(":")
+        name, colon, remainder = parameter.partition(":")
         if colon and is_name(name):
-            found[name] = rest.partition("=")[0]
-    return found
+            units[name] = remainder.partition("=")[0]
+    return units
 
 
 def _of_argument(workspace: Workspace, path: str, place: CursorPlace) -> str | None:
     """The unit of the parameter whose argument or default is being written."""
     words = [word.text for word in place.group] if place.callee else []
-    at = last_index(words, "=")
-    if at < 1 or next((word for word in reversed(words[at:]) if word in ("if", "else", ",")), "") == "if":
+    equals = last_index(words, "=")
+    if equals < 1 or next((word for word in reversed(words[equals:]) if word in ("if", "else", ",")), "") == "if":
         return None  # operands of a condition are not arguments
     if place.is_of_parameters:
-        return parameters_at(place).get(words[last_index(words[:at], ":") - 1])
+        return parameters_at(place).get(words[last_index(words[:equals], ":") - 1])
     item = workspace.scope(path).target(Kind.REQUIREMENT, place.callee)
     parameters = item.parameters if isinstance(item, Requirement) else ()
-    return next((one.unit.text for one in parameters if one.unit and one.name.text == words[at - 1]), None)
+    return next((one.unit.text for one in parameters if one.unit and one.name.text == words[equals - 1]), None)
 
 
 def _of_first_value(workspace: Workspace, path: str, place: CursorPlace) -> str | None:

@@ -42,6 +42,6 @@ def _after(path: str, moves: Mapping[str, str]) -> str:
 
 def include_name(workspace: Workspace, path: str, target: str) -> str:
     """A file as an include in another one names it: relative to an include path if one leads there."""
-    ways = [posixpath.relpath(target, posixpath.dirname(path) or ".")]
-    ways += [posixpath.relpath(target, folder) for folder in workspace.project.include_paths]
-    return min(ways, key=lambda way: (way.startswith(".."), len(way)))
+    names = [posixpath.relpath(target, posixpath.dirname(path) or ".")]
+    names += [posixpath.relpath(target, folder) for folder in workspace.project.include_paths]
+    return min(names, key=lambda name: (name.startswith(".."), len(name)))

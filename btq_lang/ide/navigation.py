@@ -1,4 +1,4 @@
-"""From the word at a place to its definition, its type, its uses and its path."""
+"""From the word at a place to its definition, its type, its uses and its path; from a tree to its callers."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from btq_lang.ide.meaning import (
     definition,
     entry_at,
     everywhere,
+    home_of,
     own_quality,
     quality_of,
     subject,
@@ -54,38 +55,38 @@ def goto_definition(workspace: Workspace, path: str, offset: int) -> tuple[Navig
     A node and its ports are defined in the C++ that registers it, if that is known, and else in a model.  A blackboard
     entry is defined where its tree declares it as a port, or else where it is first written.
     """
-    found = at(workspace, path, offset)
-    if found is None:
+    reference = at(workspace, path, offset)
+    if reference is None:
         return ()
-    wanted = subject(workspace, found)
+    wanted = subject(workspace, reference)
     if wanted.what is What.INCLUDE:
         target = wanted.name
-        return (NavigationTarget(target, Span(0, 0), Span(0, 0), found.span),) if target in workspace.files else ()
+        return (NavigationTarget(target, Span(0, 0), Span(0, 0), reference.span),) if target in workspace.files else ()
     place = definition(workspace, path, wanted)
-    in_cpp = _in_cpp(workspace, found, wanted, place)
+    in_cpp = _in_cpp(workspace, reference, wanted, place)
     if in_cpp is not None:
-        return (NavigationTarget(*in_cpp, in_cpp[1], found.span),)
+        return (NavigationTarget(*in_cpp, in_cpp[1], reference.span),)
     if place is not None:
-        return (NavigationTarget(place.path, place.whole, place.span, found.span),)
+        return (NavigationTarget(place.path, place.whole, place.span, reference.span),)
     if wanted.what in (What.KEY, What.PORT, What.PARAMETER, What.INSTANCE):
         places = list(everywhere(workspace, wanted))
         first = next((one for one in places if one.mention.defines), None)
         if first is None and wanted.what is What.KEY:
             first = next((one for one in places if writes(workspace, one)), None)
-        return (NavigationTarget(first.path, first.span, first.span, found.span),) if first else ()
+        return (NavigationTarget(first.path, first.span, first.span, reference.span),) if first else ()
     return ()
 
 
 def _in_cpp(
-    workspace: Workspace, found: ReferenceAt, wanted: Subject, place: Definition | None
+    workspace: Workspace, reference: ReferenceAt, wanted: Subject, place: Definition | None
 ) -> tuple[str, Span] | None:
     """Where in C++ a node or its port is, whatever models of it there are beside the code."""
     if place is not None and isinstance(place.symbol.target, Model):
-        places = (cpp_place(workspace, each, place.symbol.name) for each in (found.path, place.path))
+        places = (cpp_place(workspace, each, place.symbol.name) for each in (reference.path, place.path))
         return next(filter(None, places), None)
-    node, owner = found.mention.node, found.mention.owner
+    node, owner = reference.mention.node, reference.mention.owner
     name = owner.name if isinstance(owner, Model) else node.id if node is not None else None
-    return cpp_place(workspace, found.path, name.text, wanted.name) if wanted.what is What.PORT and name else None
+    return cpp_place(workspace, reference.path, name.text, wanted.name) if wanted.what is What.PORT and name else None
 
 
 def find_references(
@@ -103,23 +104,23 @@ def highlights(workspace: Workspace, path: str, offset: int) -> tuple[Highlight,
 
 
 def _references(workspace: Workspace, path: str, offset: int, paths: tuple[str, ...] | None) -> Iterable[ReferenceAt]:
-    found = at(workspace, path, offset)
-    if found is None or found.entry is None or found.mention.what in _WITHOUT_REFERENCES:
+    reference = at(workspace, path, offset)
+    if reference is None or reference.entry is None or reference.mention.what in _WITHOUT_REFERENCES:
         return ()
-    return everywhere(workspace, subject(workspace, found), paths)
+    return everywhere(workspace, subject(workspace, reference), paths)
 
 
-def is_definition(workspace: Workspace, found: ReferenceAt) -> bool:
+def is_definition(workspace: Workspace, reference: ReferenceAt) -> bool:
     """Whether a reference is the definition that counts, and not one of the repetitions of classic files."""
-    if not found.mention.defines:
+    if not reference.mention.defines:
         return False
-    place = definition(workspace, found.path, subject(workspace, found))
-    return place is None or (place.path, place.span) == (found.path, found.span)
+    place = definition(workspace, reference.path, subject(workspace, reference))
+    return place is None or (place.path, place.span) == (reference.path, reference.span)
 
 
-def writes(workspace: Workspace, found: ReferenceAt) -> bool:
+def writes(workspace: Workspace, reference: ReferenceAt) -> bool:
     """Whether the blackboard entry named here gets its value here."""
-    mention = found.mention
+    mention = reference.mention
     if mention.what not in (What.KEY, What.PORT):
         return False
     if mention.writes:
@@ -127,33 +128,33 @@ def writes(workspace: Workspace, found: ReferenceAt) -> bool:
     node, pair = mention.node, mention.pair
     if node is None or pair is None or pair.key.text.startswith("_"):
         return False
-    port = port_of(workspace, found.path, node, pair.key.text)
+    port = port_of(workspace, reference.path, node, pair.key.text)
     return port is not None and port.direction != "input"
 
 
 def goto_implementation(workspace: Workspace, path: str, offset: int) -> tuple[NavigationTarget, ...]:
     """The nodes that refer to the requirement at a place; for everything else, the definition."""
-    found = at(workspace, path, offset)
-    wanted = subject(workspace, found) if found is not None else None
-    if found is None or wanted is None or wanted.what is not What.REQUIREMENT:
+    reference = at(workspace, path, offset)
+    wanted = subject(workspace, reference) if reference is not None else None
+    if reference is None or wanted is None or wanted.what is not What.REQUIREMENT:
         return goto_definition(workspace, path, offset)
     targets = {}
-    for one in everywhere(workspace, wanted):
-        node = one.mention.node
-        if node is not None and one.entry is not None:
-            name = node.head.span.shifted(one.entry.start)
-            whole = Span(node.start, node.block_end).shifted(one.entry.start)
-            targets[one.path, name] = NavigationTarget(one.path, whole, name, found.span)
+    for use in everywhere(workspace, wanted):
+        node = use.mention.node
+        if node is not None and use.entry is not None:
+            name = node.head.span.shifted(use.entry.start)
+            whole = Span(node.start, node.block_end).shifted(use.entry.start)
+            targets[use.path, name] = NavigationTarget(use.path, whole, name, reference.span)
     return tuple(targets.values())
 
 
 def goto_type(workspace: Workspace, path: str, offset: int) -> tuple[NavigationTarget, ...]:
     """The model or the tree of a named node; the declaration of a requirement's custom quality."""
-    found = at(workspace, path, offset)
-    if found is None:
+    reference = at(workspace, path, offset)
+    if reference is None:
         return ()
     place: Definition | None = None
-    wanted = subject(workspace, found)
+    wanted = subject(workspace, reference)
     if wanted.what is What.INSTANCE:
         node = next((one.mention.node for one in everywhere(workspace, wanted) if one.mention.node is not None), None)
         if node is not None and node.id is not None:
@@ -164,7 +165,7 @@ def goto_type(workspace: Workspace, path: str, offset: int) -> tuple[NavigationT
         place = own_quality(workspace, requirement.path, quality.names[-1].text) if quality is not None else None
     if place is None:
         return ()
-    return (NavigationTarget(place.path, place.whole, place.span, found.span),)
+    return (NavigationTarget(place.path, place.whole, place.span, reference.span),)
 
 
 def node_path(workspace: Workspace, path: str, offset: int) -> str | None:
@@ -177,6 +178,74 @@ def node_path(workspace: Workspace, path: str, offset: int) -> str | None:
     words = [entry.item.name, *(node.name or node.id for node in line)]
     names = [word.text for word in words if word is not None and (word.quoted or is_name(word.text))]
     return "/".join(map(written, names))
+
+
+# ---- the call hierarchy of trees ----
+
+
+class TreeItem(Record):
+    """A tree; `name_span` is the span to select."""
+
+    name: str
+    path: str
+    span: Span
+    name_span: Span
+
+
+class TreeCall(Record):
+    """A tree that runs another, or is run by one.  places: the SubTrees, in the caller's file."""
+
+    tree: TreeItem
+    path: str
+    places: tuple[Span, ...]
+
+
+def prepare_calls(workspace: Workspace, path: str, offset: int) -> TreeItem | None:
+    """The tree named at a place, or the tree around the node there."""
+    reference = at(workspace, path, offset)
+    if reference is not None:
+        wanted = subject(workspace, reference)
+        place = definition(workspace, path, wanted) if wanted.what is What.TREE else None
+        if place is not None:
+            return _item(place)
+    return None
+
+
+def callers(workspace: Workspace, tree: TreeItem) -> tuple[TreeCall, ...]:
+    """The trees that run a tree."""
+    wanted = Subject(What.TREE, tree.name, f"{tree.path}:{tree.name_span.start}")
+    by_caller: dict[tuple[str, int], list[ReferenceAt]] = {}
+    for reference in everywhere(workspace, wanted):
+        if reference.mention.node is not None and reference.entry is not None:
+            by_caller.setdefault((reference.path, reference.entry.start), []).append(reference)
+    calls = []
+    for places in by_caller.values():
+        defined = workspace.files[places[0].path].defined
+        trees = (tree for tree in defined if tree.symbol.kind is Kind.TREE and tree.entry is places[0].entry)
+        caller = next(trees, None)
+        if caller is not None:
+            calls.append(TreeCall(_item(caller), caller.path, tuple(reference.span for reference in places)))
+    return tuple(calls)
+
+
+def called(workspace: Workspace, tree: TreeItem) -> tuple[TreeCall, ...]:
+    """The trees that a tree runs, in the order of their first call."""
+    start = tree.name_span.start
+    entry = entry_at(workspace, tree.path, start) if tree.path in workspace.files else None
+    item = entry.item if entry is not None else None
+    if entry is None or not isinstance(item, Tree) or item.name is None or entry.start + item.name.start != start:
+        return ()
+    callees: dict[str, tuple[Definition, list[Span]]] = {}
+    for mention in workspace.files[tree.path].mentions_of(entry):
+        is_run = mention.what is What.TREE and mention.node is not None
+        place = workspace.scope(tree.path).find(Kind.TREE, mention.name) if is_run else None
+        if place is not None:
+            callees.setdefault(home_of(place), (place, []))[1].append(mention.span.shifted(entry.start))
+    return tuple(TreeCall(_item(place), tree.path, tuple(spans)) for place, spans in callees.values())
+
+
+def _item(place: Definition) -> TreeItem:
+    return TreeItem(place.symbol.name, place.path, place.whole, place.span)
 
 
 _WITHOUT_REFERENCES = frozenset((What.QUANTITY, What.UNIT, What.ATTRIBUTE, What.EDITION, What.RULE))

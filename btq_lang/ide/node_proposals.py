@@ -21,11 +21,11 @@ from btq_lang.workspace.workspace import Workspace
 def nodes(workspace: Workspace, path: str) -> Iterator[Proposal]:
     """What a node may be: models, custom nodes in use, built-ins by symbol and name, SubTree."""
     seen: set[str] = set()
-    for found, include in defined(workspace, path, Kind.MODEL):
-        item = found.symbol.target
+    for definition, include in defined(workspace, path, Kind.MODEL):
+        item = definition.symbol.target
         if isinstance(item, Model) and item.category.raw != "SubTree":
-            seen.add(found.symbol.name)
-            yield _model(workspace, found, item, include)
+            seen.add(definition.symbol.name)
+            yield _model(workspace, definition, item, include)
     for name in unknown(workspace, workspace.scope(path).paths):
         if name not in seen:
             yield Proposal(name, "node", "custom node", written(name), None, "", name)
@@ -40,10 +40,10 @@ def of_category(workspace: Workspace, path: str, category: str) -> Iterator[Prop
     if category == "SubTree":
         yield from trees(workspace, path)
         return
-    for found, include in defined(workspace, path, Kind.MODEL):
-        item = found.symbol.target
+    for definition, include in defined(workspace, path, Kind.MODEL):
+        item = definition.symbol.target
         if isinstance(item, Model) and item.category.raw == category:
-            yield _model(workspace, found, item, include)
+            yield _model(workspace, definition, item, include)
     scope = workspace.scope(path)
     for name in unknown(workspace, scope.paths):
         if scope.find(Kind.MODEL, name) is None:
@@ -51,11 +51,11 @@ def of_category(workspace: Workspace, path: str, category: str) -> Iterator[Prop
 
 
 def trees(workspace: Workspace, path: str) -> Iterator[Proposal]:
-    for found, include in defined(workspace, path, Kind.TREE):
-        name = found.symbol.name
-        ports = declared_ports(found.symbol.target)
-        if not ports and workspace.scope(found.path).defines(Kind.MODEL, name):
-            ports = ports_of_tree(workspace, found.path, name)
+    for definition, include in defined(workspace, path, Kind.TREE):
+        name = definition.symbol.name
+        ports = declared_ports(definition.symbol.target)
+        if not ports and workspace.scope(definition.path).defines(Kind.MODEL, name):
+            ports = ports_of_tree(workspace, definition.path, name)
         head = written(name)
         snippet = _with_ports(head, [port for port in ports if port.required]) if ports else None
         yield Proposal(name, "tree", f"{len(ports)} ports" if ports else "", head, snippet, "", name, include)
@@ -75,9 +75,9 @@ def ports_of_line(workspace: Workspace, path: str, node: LineNode) -> tuple[Port
     return of_tree or ports_of_kind(workspace, path, node.name, node.quoted)
 
 
-def ports(known: tuple[PortKind, ...], given: tuple[str, ...], node: LineNode) -> Iterator[Proposal]:
+def ports(port_kinds: tuple[PortKind, ...], given: tuple[str, ...], node: LineNode) -> Iterator[Proposal]:
     """The ports that have no value yet, those that need one first."""
-    for port in sorted((one for one in known if one.name not in given), key=lambda one: not one.required):
+    for port in sorted((one for one in port_kinds if one.name not in given), key=lambda one: not one.required):
         default = f" = {port.default}" if port.default else ""
         detail = f"{port.direction}{f' : {port.type}' if port.type else ''}{default}"
         snippet = f"{escaped(written(port.name))} = {hole(0, port)}"
@@ -118,8 +118,8 @@ def port_values(workspace: Workspace, path: str, entry: Entry | None, port: Port
     if port is not None and port.type == "bool":
         yield from words(("true", "false"), "enum")
     if port is not None and port.type.endswith("NodeStatus"):
-        said = [word for word in port.doc.replace(",", " ").split() if word in _STATUSES]  # from the engine's table
-        yield from words(said if port.type.startswith("BT::") and said else _STATUSES, "enum")
+        statuses = [word for word in port.doc.replace(",", " ").split() if word in _STATUSES]  # from the engine's table
+        yield from words(statuses if port.type.startswith("BT::") and statuses else _STATUSES, "enum")
 
 
 def in_script(workspace: Workspace, path: str, entry: Entry, before: str) -> tuple[int, tuple[Proposal, ...]]:
@@ -141,22 +141,22 @@ def is_script(workspace: Workspace, path: str, node: LineNode | None, key: str) 
     attribute = RESERVED_ATTRIBUTES.get(key)
     if attribute is not None:
         return attribute.is_script
-    known = ports_of_kind(workspace, path, node.name, node.quoted) if node is not None else ()
-    return any(port.name == key and port.content == "script" for port in known)
+    port_kinds = ports_of_kind(workspace, path, node.name, node.quoted) if node is not None else ()
+    return any(port.name == key and port.content == "script" for port in port_kinds)
 
 
 def port_unit(workspace: Workspace, path: str, node: LineNode, key: str) -> str | None:
     """The unit of a number in a port."""
-    known = ports_of_kind(workspace, path, node.name, node.quoted)
-    return next((port.unit for port in known if port.name == key), None)
+    port_kinds = ports_of_kind(workspace, path, node.name, node.quoted)
+    return next((port.unit for port in port_kinds if port.name == key), None)
 
 
 # ---- parts of the above ----
 
 
-def _model(workspace: Workspace, found: Definition, item: Model, include: str) -> Proposal:
-    name = found.symbol.name
-    needed = [port for port in ports_of_kind(workspace, found.path, name) if port.required]
+def _model(workspace: Workspace, definition: Definition, item: Model, include: str) -> Proposal:
+    name = definition.symbol.name
+    needed = [port for port in ports_of_kind(workspace, definition.path, name) if port.required]
     text = item.text.text if item.text else ""
     detail = f"{item.category.raw}{f': {text}' if text else ''}"
     return Proposal(name, "node", detail, written(name), _with_ports(written(name), needed), "", name, include)

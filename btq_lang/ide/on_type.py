@@ -56,10 +56,10 @@ def on_type(workspace: Workspace, path: str, offset: int, typed: str) -> tuple[E
 def linked_ranges(workspace: Workspace, path: str, offset: int) -> tuple[Span, ...]:
     """The places that change together with the name at a place, if all of them are near: the parameter of a requirement
     in its clauses, an entry of a tree's blackboard, an instance name and the paths that name it."""
-    found = at(workspace, path, offset)
-    if found is None:
+    reference = at(workspace, path, offset)
+    if reference is None:
         return ()
-    wanted = subject(workspace, found)
+    wanted = subject(workspace, reference)
     if wanted.what not in (What.PARAMETER, What.KEY, What.INSTANCE) or wanted.home.startswith("@"):
         return ()
     places = tuple(everywhere(workspace, wanted))

@@ -46,7 +46,7 @@ def document_symbols(workspace: Workspace, path: str) -> tuple[Outline, ...]:
 
     The items in the block of a Root are its children.
     """
-    found: list[Outline] = []
+    symbols: list[Outline] = []
     root: tuple[int, Outline] | None = None
     inside: list[Outline] = []
     for entry in workspace.files[path].parsed.entries:
@@ -55,37 +55,37 @@ def document_symbols(workspace: Workspace, path: str) -> tuple[Outline, ...]:
                 inside.append(outline)
                 continue
             if isinstance(entry.item, syntax.Root):
-                root = len(found), outline
-            found.append(outline)
+                root = len(symbols), outline
+            symbols.append(outline)
     if root is not None and inside:
-        at, mission = root
+        index, mission = root
         whole = Span(mission.span.start, max(mission.span.end, inside[-1].span.end))
-        found[at] = Outline(mission.name, mission.kind, mission.detail, whole, mission.name_span, tuple(inside))
-    return tuple(found)
+        symbols[index] = Outline(mission.name, mission.kind, mission.detail, whole, mission.name_span, tuple(inside))
+    return tuple(symbols)
 
 
 def workspace_symbols(workspace: Workspace, query: str, limit: int = 500) -> tuple[Match, ...]:
     """The names in all files whose letters contain those of the query in order, whatever their case; the shortest and
     those that begin with it first."""
     wanted = query.casefold()
-    found: list[Match] = []
+    matches: list[Match] = []
     for path, file in workspace.files.items():
-        for each in file.defined:
-            if _contains(each.symbol.name, wanted):
-                kind = each.symbol.kind.value.removeprefix("node ")
-                found.append(Match(each.symbol.name, kind, path, each.span, path))
+        for definition in file.defined:
+            if _contains(definition.symbol.name, wanted):
+                kind = definition.symbol.kind.value.removeprefix("node ")
+                matches.append(Match(definition.symbol.name, kind, path, definition.span, path))
         for tree in file.of_type(syntax.Tree) if wanted else ():
             for node in tree.walk():
                 name = node.name
                 if name is not None and _contains(name.text, wanted):
                     span, within = name.span.shifted(file.start_of(tree)), tree.name.text if tree.name else ""
-                    found.append(Match(name.text, _category(workspace, path, node), path, span, within))
+                    matches.append(Match(name.text, _category(workspace, path, node), path, span, within))
 
     def rank(match: Match) -> tuple[bool, int, str, str, int]:
         folded = match.name.casefold()
         return not folded.startswith(wanted), len(folded), folded, match.path, match.span.start
 
-    return tuple(sorted(found, key=rank)[:limit])
+    return tuple(sorted(matches, key=rank)[:limit])
 
 
 def _contains(name: str, wanted: str) -> bool:

@@ -169,13 +169,13 @@ def place_at(workspace: Workspace, path: str, offset: int) -> CursorPlace:
 def item_tokens(file: File, offset: int) -> Sequence[Token]:
     """The tokens that the place of an offset depends on: those of the item around it or before it; of a tree only the
     lines of the nodes around it, and all from the last node before it up to the next one."""
-    found: list[Token] = []
+    tokens: list[Token] = []
     for start, end in _stretches(file, offset):
-        if found:
-            found.append(Token(NEWLINE, start, ""))  # a line without a line end, as in open brackets, ends all the same
+        if tokens:
+            tokens.append(Token(NEWLINE, start, ""))  # a line without a line end, as in open brackets, ends here too
         cut = tokens_of(file.text[start:end])
-        found += [Token(token.kind, token.start + start, token.text) for token in cut] if start else cut
-    return found
+        tokens += [Token(token.kind, token.start + start, token.text) for token in cut] if start else cut
+    return tokens
 
 
 def _stretches(file: File, offset: int) -> list[Span]:
@@ -184,7 +184,7 @@ def _stretches(file: File, offset: int) -> list[Span]:
     index = bisect_right(entries, offset, key=lambda entry: entry.start)
     start = base = entries[index - 1].start if index else 0
     end = entries[index].start if index < len(entries) else len(file.text)
-    found: list[Span] = []
+    spans: list[Span] = []
     around: Item | Node | None = entries[index - 1].item if index else None
     while isinstance(around, Tree | Node) and around.children:
         index = bisect_right(around.children, offset - base, key=lambda child: child.start)
@@ -192,11 +192,11 @@ def _stretches(file: File, offset: int) -> list[Span]:
             end = base + around.children[index].start
         if index == 0:
             break
-        found.append(Span(start, line_start(file.text, start, base + around.children[0].start)))
+        spans.append(Span(start, line_start(file.text, start, base + around.children[0].start)))
         last = around.children[index - 1]
         start = line_start(file.text, start, base + last.start)
         around = last if isinstance(last, Node) else None
-    return [*found, Span(start, end)]
+    return [*spans, Span(start, end)]
 
 
 def word_text(token: Token) -> str:
@@ -210,12 +210,12 @@ def _is_closed(raw: str) -> bool:
 
 def words_before(tokens: Sequence[Token], index: int) -> tuple[Token, ...]:
     """The words of the logical line up to a token."""
-    found: list[Token] = []
+    words: list[Token] = []
     while index >= 0 and tokens[index].kind != NEWLINE:
         if tokens[index].kind not in _NO_WORDS and tokens[index].text:
-            found.append(tokens[index])
+            words.append(tokens[index])
         index -= 1
-    return tuple(reversed(found))
+    return tuple(reversed(words))
 
 
 def _innermost(words: tuple[Token, ...]) -> tuple[tuple[Token, ...], int]:
@@ -247,7 +247,7 @@ def _length(words: tuple[Token, ...]) -> int:
 
 def _parents(text: str, tokens: Sequence[Token], start: int, blanks: str) -> list[tuple[Token, ...]]:
     """The lines in whose blocks a line is, the nearest first."""
-    found: list[tuple[Token, ...]] = []
+    lines: list[tuple[Token, ...]] = []
     width = len(blanks.expandtabs(4))
     index = bisect_left(tokens, start, key=lambda token: token.start) - 1
     while index >= 0 and width > 0:
@@ -258,9 +258,9 @@ def _parents(text: str, tokens: Sequence[Token], start: int, blanks: str) -> lis
         if line:
             column = len(blanks_before(text, line[0].start).expandtabs(4))
             if column < width:
-                found.append(line)
+                lines.append(line)
                 width = column
-    return found
+    return lines
 
 
 def _block(parents: list[tuple[Token, ...]]) -> tuple[str, tuple[Token, ...]]:

@@ -61,14 +61,15 @@ def cpp_place(workspace: Workspace, path: str, node: str, port: str = "") -> tup
     the scope of the file registers it."""
     models = workspace.scope(path).all(Kind.MODEL, node)
     registered = (workspace.files[model.path].cpp_nodes for model in models)
-    found = next((nodes[node] for nodes in registered if node in nodes), None)
-    if found is None:
+    registration = next((nodes[node] for nodes in registered if node in nodes), None)
+    if registration is None:
         return None
-    place = next((each.place for each in found.ports if each.name == port), None) if port else found.class_place
+    places = (each.place for each in registration.ports if each.name == port)
+    place = next(places, None) if port else registration.class_place
     if place is None:
         return None
     if place.path not in workspace.files or not workspace.files[place.path].is_cpp:
-        place = found.place  # the class is not in a file of this factory
+        place = registration.place  # the class is not in a file of this factory
     file = workspace.files[place.path]
     return place.path, file.after_models(place.span_in(file.source_lines))
 

@@ -52,11 +52,11 @@ class Proposal(Record):
     include: str = ""
 
 
-def words(found: Iterable[str], kind: str) -> Iterator[Proposal]:
+def words(texts: Iterable[str], kind: str) -> Iterator[Proposal]:
     """Words of the language; the cursor goes into the quotes, brackets and braces in them."""
-    for word in found:
-        at = next((word.index(pair) + 1 for pair in ('""', "()", "{}") if pair in word), None)
-        snippet = f"{escaped(word[:at])}$0{escaped(word[at:])}" if at is not None else None
+    for word in texts:
+        offset = next((word.index(pair) + 1 for pair in ('""', "()", "{}") if pair in word), None)
+        snippet = f"{escaped(word[:offset])}$0{escaped(word[offset:])}" if offset is not None else None
         yield Proposal(word, kind, "", word, snippet)
 
 
@@ -109,12 +109,12 @@ def types() -> Iterator[Proposal]:
     yield from words(_TYPES, "enum")
 
 
-def clauses(given: tuple[str, ...]) -> Iterator[Proposal]:
+def clauses(present: tuple[str, ...]) -> Iterator[Proposal]:
     """Verbs and heads of clauses, in the order in which a requirement is written; those that may occur once and do are
     left out."""
     for word, snippet in _CLAUSES:
         head = word.split()[0]
-        if head not in _ONCE or head not in given:
+        if head not in _ONCE or head not in present:
             yield keyword(word, snippet)
 
 
@@ -123,48 +123,48 @@ def clauses(given: tuple[str, ...]) -> Iterator[Proposal]:
 
 def requirements(workspace: Workspace, path: str) -> Iterator[Proposal]:
     """Requirements of every file, those in scope first; one out of scope comes with its include."""
-    for found, include in defined(workspace, path, Kind.REQUIREMENT):
-        item = found.symbol.target
+    for definition, include in defined(workspace, path, Kind.REQUIREMENT):
+        item = definition.symbol.target
         text = requirement_detail(item) if isinstance(item, Requirement) else ""
         parameters = item.parameters if isinstance(item, Requirement) else ()
-        name = written(found.symbol.name)
+        name = written(definition.symbol.name)
         needed = [one.name.text for one in parameters if one.default is None]
         fill = ", ".join(f"{key} = ${{{index}:{key}}}" for index, key in enumerate(needed, 1))
         snippet = f"{escaped(name)}({fill})" if needed else None
-        yield Proposal(found.symbol.name, "requirement", text, name, snippet, "", found.symbol.name, include)
+        yield Proposal(definition.symbol.name, "requirement", text, name, snippet, "", definition.symbol.name, include)
 
 
 def undeclared(workspace: Workspace, path: str, kind: Kind, what: What) -> Iterator[Proposal]:
     """The names that the file or a linked one refers to and that no file declares yet."""
-    found: set[str] = set()
+    names: set[str] = set()
     for other in workspace.linked(path):
         file = workspace.files[other]
         if what is not What.VALUE and all(
-            workspace.files_defining(of, name) for of, name in file.used_names if of is kind
+            workspace.files_defining(used_kind, name) for used_kind, name in file.used_names if used_kind is kind
         ):
             continue
         for entry in file.parsed.entries:
             named = (one for one in file.mentions_of(entry) if one.what is what and not one.defines)
-            found.update(one.name for one in named if not subject(workspace, ReferenceAt(other, entry, one)).home)
-    for name in sorted(found):
+            names.update(one.name for one in named if not subject(workspace, ReferenceAt(other, entry, one)).home)
+    for name in sorted(names):
         if is_name(name) and not workspace.defined_anywhere(kind, name):
             yield Proposal(name, kind.value, "not declared yet", name)
 
 
 def signals(workspace: Workspace, path: str) -> Iterator[Proposal]:
-    for found, include in defined(workspace, path, Kind.SIGNAL):
-        item = found.symbol.target
+    for definition, include in defined(workspace, path, Kind.SIGNAL):
+        item, name = definition.symbol.target, definition.symbol.name
         unit = item.unit.text if isinstance(item, Signal) and item.unit else ""
-        yield Proposal(found.symbol.name, "signal", unit, found.symbol.name, None, "", found.symbol.name, include)
+        yield Proposal(name, "signal", unit, name, None, "", name, include)
 
 
 def _contexts(workspace: Workspace, path: str) -> Iterator[Proposal]:
-    for found, include in defined(workspace, path, Kind.CONTEXT):
-        item = found.symbol.target
+    for definition, include in defined(workspace, path, Kind.CONTEXT):
+        item, name = definition.symbol.target, definition.symbol.name
         shown = ""
         if isinstance(item, Context) and item.condition is not None:
-            shown = workspace.files[found.path].on_one_line(found.entry, item.condition)
-        yield Proposal(found.symbol.name, "context", shown, found.symbol.name, None, "", found.symbol.name, include)
+            shown = workspace.files[definition.path].on_one_line(definition.entry, item.condition)
+        yield Proposal(name, "context", shown, name, None, "", name, include)
 
 
 def operands(
@@ -173,21 +173,22 @@ def operands(
     """Operands of a comparison: the requirement's parameters, contexts, signals; those that measure what is wanted come
     first and, if that is certain, alone."""
     named = parameters_at(place)
-    found = [Proposal(name, "parameter", "parameter", name) for name in named]
-    found += _contexts(workspace, path) if contexts else ()
-    found += signals(workspace, path)
-    fits = [wanted.fits(named.get(one.label, one.detail)) for one in found]
-    yield from (one for one, fit in zip(found, fits, strict=True) if fit)
+    proposals = [Proposal(name, "parameter", "parameter", name) for name in named]
+    proposals += _contexts(workspace, path) if contexts else ()
+    proposals += signals(workspace, path)
+    fits = [wanted.fits(named.get(one.label, one.detail)) for one in proposals]
+    yield from (one for one, fit in zip(proposals, fits, strict=True) if fit)
     if not wanted.is_certain:
-        yield from (one for one, fit in zip(found, fits, strict=True) if not fit)
+        yield from (one for one, fit in zip(proposals, fits, strict=True) if not fit)
 
 
 def parameters(workspace: Workspace, path: str, requirement: str) -> Iterator[Proposal]:
     """The parameters of a requirement, as arguments."""
     item = workspace.scope(path).target(Kind.REQUIREMENT, requirement)
-    for one in item.parameters if isinstance(item, Requirement) else ():
-        unit = one.unit.text if one.unit is not None else ""
-        yield Proposal(one.name.text, "parameter", unit, f"{one.name.text} = ", f"{one.name.text} = ${{0:1 {unit}}}")
+    for parameter in item.parameters if isinstance(item, Requirement) else ():
+        unit = parameter.unit.text if parameter.unit is not None else ""
+        name = parameter.name.text
+        yield Proposal(name, "parameter", unit, f"{name} = ", f"{name} = ${{0:1 {unit}}}")
 
 
 def tags(workspace: Workspace, path: str) -> Iterator[Proposal]:
@@ -215,10 +216,10 @@ def node_names(workspace: Workspace, path: str) -> Iterator[Proposal]:
 
 def kinds(workspace: Workspace, path: str) -> Iterator[Proposal]:
     """What may follow `every`: kinds of nodes, even if only declared; a tree whose name is one."""
-    known = workspace.store.ask(nodes_in_scope, path)
-    names = [one for one in node_names(workspace, path) if one.kind == "node" or known.every(one.label)]
+    nodes = workspace.store.ask(nodes_in_scope, path)
+    names = [one for one in node_names(workspace, path) if one.kind == "node" or nodes.every(one.label)]
     yield from (one for one in names if one.kind != "tree")
-    used = {node.kind.tag: node.kind for node in known.all if node.kind is not None}
+    used = {node.kind.tag: node.kind for node in nodes.all if node.kind is not None}
     for tag in sorted(used):
         yield Proposal(tag, "node", used[tag].doc, tag, None, "", tag)
     yield from (one for one in names if one.kind == "tree")
@@ -245,13 +246,13 @@ def keys(workspace: Workspace, path: str, entry: Entry, root: bool) -> Iterator[
 
 
 def _keys_of_root(workspace: Workspace, path: str) -> list[str]:
-    found: set[str] = set()
+    names: set[str] = set()
     for other in workspace.scope(path).paths:
         for entry in workspace.files[other].parsed.entries:
             of_main = is_main(workspace, other, entry)
             mentions = workspace.files[other].mentions_of(entry)
-            found.update(one.name for one in mentions if one.what is What.KEY and (one.root or of_main))
-    return sorted(found)
+            names.update(one.name for one in mentions if one.what is What.KEY and (one.root or of_main))
+    return sorted(names)
 
 
 def includes(workspace: Workspace, path: str, quoted: bool) -> Iterator[Proposal]:
@@ -259,9 +260,9 @@ def includes(workspace: Workspace, path: str, quoted: bool) -> Iterator[Proposal
     for other in sorted(workspace.files):
         if other == path:
             continue
-        shown = include_name(workspace, path, other)
-        if workspace.included(path, shown) == other:
-            yield Proposal(shown, "file", "", quote(shown) if quoted else shown)
+        name = include_name(workspace, path, other)
+        if workspace.included(path, name) == other:
+            yield Proposal(name, "file", "", quote(name) if quoted else name)
 
 
 # ---- knowledge ----
@@ -276,22 +277,22 @@ def qualities(workspace: Workspace, path: str, place: CursorPlace) -> Iterator[P
     chosen = EDITIONS[workspace.edition(path)]
     if place.last == ".":
         whole = find_quality((word_text(place.group[-2]),), chosen).quality if len(place.group) > 1 else None
-        for one in quality_parts(whole.id, chosen) if whole else ():
-            part = one.id.rpartition(".")[2]
-            names = dict.fromkeys((part, part.replace("behaviour", "behavior"), one.name))
-            yield Proposal(part, "quality", one.name, part, None, " ".join(names), one.id)
+        for standard in quality_parts(whole.id, chosen) if whole else ():
+            part = standard.id.rpartition(".")[2]
+            names = dict.fromkeys((part, part.replace("behaviour", "behavior"), standard.name))
+            yield Proposal(part, "quality", standard.name, part, None, " ".join(names), standard.id)
         return
-    for found, include in defined(workspace, path, Kind.QUALITY):
-        item = found.symbol.target
+    for definition, include in defined(workspace, path, Kind.QUALITY):
+        item = definition.symbol.target
         text = item.text.text if isinstance(item, QualityDecl) and item.text else ""
-        name = found.symbol.name
+        name = definition.symbol.name
         yield Proposal(name, "quality", text, written(name), None, "", name, include)
-    for one in sorted(standard_qualities(chosen), key=lambda quality: "." in quality.id):
-        part = one.id.rpartition(".")[2]
-        names = dict.fromkeys((one.id, part, one.id.replace("behaviour", "behavior"), one.name))
+    for standard in sorted(standard_qualities(chosen), key=lambda quality: "." in quality.id):
+        part = standard.id.rpartition(".")[2]
+        names = dict.fromkeys((standard.id, part, standard.id.replace("behaviour", "behavior"), standard.name))
         typed = place.prefix.lower()
         both = " ".join(sorted(names, key=lambda name: not name.lower().startswith(typed)))
-        yield Proposal(one.id, "quality", one.name, one.id, None, both, one.id)
+        yield Proposal(standard.id, "quality", standard.name, standard.id, None, both, standard.id)
         yield from _short_names(part, workspace.edition(path))
 
 
@@ -300,19 +301,19 @@ def _short_names(part: str, chosen: str) -> Iterator[Proposal]:
     words = part.split("-")
     for count in range(1, len(words)):
         name = "-".join(words[:count])
-        if (known := match_of(name, chosen).quality) is not None:
-            yield Proposal(name, "quality", known.name, name, None, "", known.id)
+        if (quality := match_of(name, chosen).quality) is not None:
+            yield Proposal(name, "quality", quality.name, name, None, "", quality.id)
 
 
 def units(wanted: MeasuredValue) -> Iterator[Proposal]:
     """Units; those that measure what is wanted come first, beginning with the one that is spelt the same; if that is
     certain, they come alone."""
     compounds = dict.fromkeys((*_COMPOUNDS, wanted.unit or "1"))
-    known = [*symbols(), *(unit for text in compounds if text != "1" and (unit := parse_unit(text)) is not None)]
-    known = list({unit.symbol: unit for unit in known}.values())
-    fitting = {unit.symbol for unit in known if wanted.fits(unit.symbol)}
-    known.sort(key=lambda unit: (unit.symbol not in fitting, unit.symbol != wanted.unit))
-    for unit in known:
+    candidates = [*symbols(), *(unit for text in compounds if text != "1" and (unit := parse_unit(text)) is not None)]
+    candidates = list({unit.symbol: unit for unit in candidates}.values())
+    fitting = {unit.symbol for unit in candidates if wanted.fits(unit.symbol)}
+    candidates.sort(key=lambda unit: (unit.symbol not in fitting, unit.symbol != wanted.unit))
+    for unit in candidates:
         if unit.symbol in fitting or not wanted.is_certain:
             yield Proposal(unit.symbol, "unit", dimension_name(unit), unit.symbol)
 
@@ -336,8 +337,8 @@ def defined(workspace: Workspace, path: str, kind: Kind) -> Iterator[tuple[Defin
     it duplicates a definition or makes a circle."""
     scope = workspace.scope(path)
     for name in scope.names(kind):
-        if (found := scope.find(kind, name)) is not None:
-            yield found, ""
+        if (definition := scope.find(kind, name)) is not None:
+            yield definition, ""
     seen = set(scope.names(kind))
     for other in sorted(workspace.files.keys() - scope.paths):
         names = workspace.files[other].names_of(kind)
@@ -346,20 +347,20 @@ def defined(workspace: Workspace, path: str, kind: Kind) -> Iterator[tuple[Defin
         new = set(names) - seen
         if not _clashes(workspace, path, other):
             seen |= new
-            found_there = (one for one in workspace.files[other].defined if one.symbol.kind is kind)
-            yield from ((one, other) for one in found_there if one.symbol.name in new)
+            definitions = (one for one in workspace.files[other].defined if one.symbol.kind is kind)
+            yield from ((one, other) for one in definitions if one.symbol.name in new)
 
 
 def _clashes(workspace: Workspace, path: str, other: str) -> bool:
     """Whether a file, or one that it includes, redefines what is in scope, or includes this file."""
     scope = workspace.scope(path)
-    brought = workspace.closure(other)
-    known = [workspace.files[each].defined_names for each in scope.paths]
-    return path in brought or any(
+    closure = workspace.closure(other)
+    names_in_scope = [workspace.files[each].defined_names for each in scope.paths]
+    return path in closure or any(
         not _is_same_model(workspace, path, file, *name)
-        for file in brought
+        for file in closure
         if file not in scope.paths
-        for names in known
+        for names in names_in_scope
         for name in names & workspace.files[file].defined_names
     )
 

@@ -20,9 +20,9 @@ def getting_ready(workspace: Workspace, path: str) -> Iterator[None]:
         import_module(f"{__package__}.{name}")
         yield
     file = workspace.files[path]
-    for done, facts in enumerate(file.facts.values(), 1):
+    for count, facts in enumerate(file.facts.values(), 1):
         _ = facts.kinds
-        if done % _A_STEP == 0:
+        if count % _A_STEP == 0:
             yield
     from btq_lang.ide.completion import complete  # imported already when this runs
     from btq_lang.ide.hover import hover

@@ -99,22 +99,22 @@ def _extract(workspace: Workspace, path: str, entry: Entry, node: Node) -> Itera
     arguments = " ".join(f"{written(key)} = {{=}}" for key in keys)
     call = f"SubTree {written(name)}{f' ({arguments})' if arguments else ''}"
     end = line_end(file.text, entry.start + tree.block_end)
-    made = (Edit(block.span, call), Edit(Span(end, end), "\n\n" + "\n".join(lines)))
-    yield Action(f"Extract into the tree `{name}`", "refactor.extract", {path: made})
+    edits = (Edit(block.span, call), Edit(Span(end, end), "\n\n" + "\n".join(lines)))
+    yield Action(f"Extract into the tree `{name}`", "refactor.extract", {path: edits})
 
 
 def _keys_in(workspace: Workspace, path: str, entry: Entry, top: Node) -> dict[str, str] | None:
     """The entries of the tree's blackboard that the nodes below one use, each with input, output or inout; None if one
     cannot be passed on under its name."""
     nodes = {id(node) for node in top.walk()}
-    found: dict[str, set[str]] = {}
+    directions: dict[str, set[str]] = {}
     for mention in workspace.files[path].mentions_of(entry):
         if mention.what is not What.KEY or mention.root or mention.node is None or id(mention.node) not in nodes:
             continue
         if not is_name(mention.name) or mention.node.attribute("_autoremap") is not None:
             return None
-        found.setdefault(mention.name, set()).add(_way(workspace, path, mention))
-    return {key: ways.pop() if len(ways) == 1 else "inout" for key, ways in found.items()}
+        directions.setdefault(mention.name, set()).add(_way(workspace, path, mention))
+    return {key: ways.pop() if len(ways) == 1 else "inout" for key, ways in directions.items()}
 
 
 def _way(workspace: Workspace, path: str, mention: Mention) -> str:
@@ -146,11 +146,11 @@ def _free_name(workspace: Workspace, path: str, node: Node) -> str:
 
 def names_of_nodes(file: File) -> set[str]:
     """The IDs of a file's nodes, of the trees that it runs, and of its placeholders."""
-    found = {name for kind, name in file.used_names if kind in (Kind.MODEL, Kind.TREE)}
-    if not found.isdisjoint(PLACEHOLDERS):  # else the tree is not requested: it may have been released
+    names = {name for kind, name in file.used_names if kind in (Kind.MODEL, Kind.TREE)}
+    if not names.isdisjoint(PLACEHOLDERS):  # else the tree is not requested: it may have been released
         nodes = (node for tree in file.of_type(Tree) for node in tree.walk() if is_placeholder(node))
-        found |= {legal_name(node.name.text) for node in nodes if node.name is not None}
-    return found
+        names |= {legal_name(node.name.text) for node in nodes if node.name is not None}
+    return names
 
 
 def _parts_a_time(workspace: Workspace, path: str, top: Node) -> bool:
@@ -179,25 +179,25 @@ def _has_span(file: File) -> bool:
 def _inline(workspace: Workspace, path: str, entry: Entry, node: Node) -> Iterator[Action]:
     if node.category is None or node.category.raw != "SubTree" or node.id is None or node.clauses or node.name:
         return
-    found = workspace.scope(path).find(Kind.TREE, node.id.text)
-    tree = found.symbol.target if found is not None else None
-    if found is None or not isinstance(tree, Tree) or tree.clauses or len(tree.children) != 1:
+    definition = workspace.scope(path).find(Kind.TREE, node.id.text)
+    tree = definition.symbol.target if definition is not None else None
+    if definition is None or not isinstance(tree, Tree) or tree.clauses or len(tree.children) != 1:
         return
     top = tree.children[0]
-    source = workspace.files[found.path]
-    given = {pair.key.text: pair.value for pair in node.attributes if pair.key.text != "ID"}
-    if not isinstance(top, Node) or source.is_foreign or any(key.startswith("_") for key in given):
+    source = workspace.files[definition.path]
+    arguments = {pair.key.text: pair.value for pair in node.attributes if pair.key.text != "ID"}
+    if not isinstance(top, Node) or source.is_foreign or any(key.startswith("_") for key in arguments):
         return
-    if found.path == path and found.entry is entry:
+    if definition.path == path and definition.entry is entry:
         return
     own = {one.name for one in workspace.files[path].mentions_of(entry) if one.what is What.KEY and not one.root}
     defaults = {port.name.text for port in tree.ports if port.name is not None and port.default is not None}
     edits: list[Edit] = []
-    for mention in source.mentions_of(found.entry):
+    for mention in source.mentions_of(definition.entry):
         if mention.what is not What.KEY or mention.root or mention.defines:
             continue
-        value = given.get(mention.name)
-        start = found.entry.start
+        value = arguments.get(mention.name)
+        start = definition.entry.start
         if value is None:
             if mention.name in own or mention.name in defaults:
                 return  # another entry of the same name, or one that would have had a value
@@ -215,13 +215,13 @@ def _inline(workspace: Workspace, path: str, entry: Entry, node: Node) -> Iterat
             edits.append(Edit(mention.span.shifted(start), passed))
         else:
             edits.append(Edit(mention.word.span.shifted(start), value.raw))
-    block = block_of(source, found.entry, top)
-    after = File(found.path, apply_edits(source.text, edits))
+    block = block_of(source, definition.entry, top)
+    after = File(definition.path, apply_edits(source.text, edits))
     grown = len(after.text) - len(source.text)
     changed = type(block)(Span(block.span.start, block.span.end + grown), block.blanks)
     inlined = moved(after, changed, block_of(workspace.files[path], entry, node).blanks)
-    made = (Edit(node.span.shifted(entry.start), inlined),)
-    yield Action(f"Inline the tree `{found.symbol.name}`", "refactor.inline", {path: made})
+    replacement = (Edit(node.span.shifted(entry.start), inlined),)
+    yield Action(f"Inline the tree `{definition.symbol.name}`", "refactor.inline", {path: replacement})
 
 
 # ---- wrap and unwrap a node ----
@@ -280,18 +280,20 @@ def _lift(workspace: Workspace, path: str, entry: Entry, offset: int) -> Iterato
             start = entry.start + tree.start
             margin = blanks_before(file.text, start)  # in a Root block, items are indented
             item = _item(file, entry, requirement, quality.path if quality else None, margin)
-            put = Edit(Span(start, start), f"{item}\n\n{margin}")
+            insertion = Edit(Span(start, start), f"{item}\n\n{margin}")
             if quality is None:
-                refer = Edit(Span(requirement.start, requirement.end).shifted(entry.start), name)
+                reference = Edit(Span(requirement.start, requirement.end).shifted(entry.start), name)
             else:
                 opened = file.text.rfind("(", 0, entry.start + requirement.start)
                 closed = file.text.find(")", entry.start + requirement.end)
                 between = file.text[opened + 1 : entry.start + requirement.start]
                 if len(quality.requirements) > 1 or opened < 0 or closed < 0 or between.strip():
                     continue
-                refer = Edit(Span(opened, closed + 1), f"satisfies {name}")
+                reference = Edit(Span(opened, closed + 1), f"satisfies {name}")
             yield Action(
-                f"Move `{requirement.name.text}` to the top level of the file", "refactor.extract", {path: (put, refer)}
+                f"Move `{requirement.name.text}` to the top level of the file",
+                "refactor.extract",
+                {path: (insertion, reference)},
             )
 
 

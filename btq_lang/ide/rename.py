@@ -47,28 +47,32 @@ class Renaming(Record):
 
 def prepare_rename(workspace: Workspace, path: str, offset: int) -> Renamable | RenameRefusal:
     """Whether the word at a place can be renamed."""
-    found = at(workspace, path, offset)
-    if found is None:
+    reference = at(workspace, path, offset)
+    if reference is None:
         return RenameRefusal("nothing to rename here")
-    wanted = subject(workspace, found)
-    reason = _refusal(workspace, wanted, found)
-    return RenameRefusal(reason) if reason else Renamable(found.span, found.mention.name)
+    wanted = subject(workspace, reference)
+    reason = _refusal(workspace, wanted, reference)
+    return RenameRefusal(reason) if reason else Renamable(reference.span, reference.mention.name)
 
 
 def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming | RenameRefusal:
     """The edits that rename what the word at a place means; the new name gets quotes where needed."""
-    found = at(workspace, path, offset)
-    if found is None:
+    reference = at(workspace, path, offset)
+    if reference is None:
         return RenameRefusal("nothing to rename here")
-    wanted = subject(workspace, found)
-    reason = _refusal(workspace, wanted, found) or _unfit(wanted, name) or _is_the_other(workspace, path, wanted, name)
+    wanted = subject(workspace, reference)
+    reason = (
+        _refusal(workspace, wanted, reference) or _unfit(wanted, name) or _is_the_other(workspace, path, wanted, name)
+    )
     if reason:
         return RenameRefusal(reason)
     places = tuple(everywhere(workspace, wanted))
-    kept = next(((place.path, why) for place in places if (why := _is_kept(workspace.files[place.path]))), None)
-    if kept is not None:  # a node without a model is the same in unrelated files
+    uneditable = next(
+        ((place.path, why) for place in places if (why := _why_uneditable(workspace.files[place.path]))), None
+    )
+    if uneditable is not None:  # a node without a model is the same in unrelated files
         return RenameRefusal(
-            f"cannot rename `{wanted.name}`: {workspace.project.shown(kept[0])}, {kept[1]}, also uses it"
+            f"cannot rename `{wanted.name}`: {workspace.project.shown(uneditable[0])}, {uneditable[1]}, also uses it"
         )
     if not (name.isascii() and name.isidentifier()) and any(_is_in_script(place.mention) for place in places):
         return RenameRefusal("a name in a script may contain only the letters A to Z, digits and `_`")
@@ -81,10 +85,10 @@ def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming 
     for in_quotes in (False, True):  # a word of the language is a name if it is quoted
         edits: dict[str, tuple[Edit, ...]] = {}
         for place in places:
-            made = _edits(place, wanted, name, in_quotes, both)
-            edits[place.path] = (*edits.get(place.path, ()), *respelt(workspace.files[place.path], made))
-        edits = {changed: tuple(sorted(made, key=lambda edit: edit.span)) for changed, made in edits.items()}
-        reasons.append(_changes_meaning(workspace, path, found, places, edits, name))
+            renaming = _edits(place, wanted, name, in_quotes, both)
+            edits[place.path] = (*edits.get(place.path, ()), *respelt(workspace.files[place.path], renaming))
+        edits = {changed: tuple(sorted(changes, key=lambda edit: edit.span)) for changed, changes in edits.items()}
+        reasons.append(_changes_meaning(workspace, path, reference, places, edits, name))
         if not reasons[-1]:
             return Renaming(edits)
         if wanted.what in _PLAIN or wanted.what is What.KEY:
@@ -92,7 +96,7 @@ def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming 
     return RenameRefusal(reasons[0])
 
 
-def _is_kept(file: File) -> str:
+def _why_uneditable(file: File) -> str:
     """Why a file cannot be edited; empty if it can: missions and XML can."""
     if not file.is_foreign:
         return "" if file.is_btq else "which is not a .btq file"
@@ -103,20 +107,20 @@ def _is_kept(file: File) -> str:
     return "" if file.is_understood else "which cannot be read"
 
 
-def _refusal(workspace: Workspace, wanted: Subject, found: ReferenceAt) -> str:
+def _refusal(workspace: Workspace, wanted: Subject, reference: ReferenceAt) -> str:
     """Why a subject cannot be renamed; empty if it can."""
-    mention = found.mention
+    mention = reference.mention
     if wanted.what in _FIXED:
         return f"cannot rename {_FIXED[wanted.what]}"
     if wanted.home == STANDARD:
         return f"cannot rename `{wanted.name}`: the quality model defines it"
     if wanted.home.startswith(ENGINE):
         return f"cannot rename `{wanted.name}`: the engine defines it"
-    place, shown = definition(workspace, found.path, wanted), workspace.project.shown
+    place, shown = definition(workspace, reference.path, wanted), workspace.project.shown
     where = place.path if place is not None else wanted.home.rpartition(":")[0]  # a port is in the model of its node
     if where in PACKAGED.values():
         return f"cannot rename `{wanted.name}`: Nav2 defines it"
-    if where in workspace.files and (why := _is_kept(workspace.files[where])):
+    if where in workspace.files and (why := _why_uneditable(workspace.files[where])):
         return f"cannot rename `{wanted.name}`: its definition is in {shown(where)}, {why}"
     if place is not None and not wanted.home:
         return (
@@ -126,8 +130,8 @@ def _refusal(workspace: Workspace, wanted: Subject, found: ReferenceAt) -> str:
         return f"cannot rename `{wanted.name}`: it is not defined"
     if wanted.what is What.KEY and mention.node is not None and mention.node.attribute("_autoremap") is not None:
         return "cannot rename: `_autoremap` passes every entry under its own name"
-    for path in workspace.scope(found.path).paths:
-        if (why := _is_kept(workspace.files[path])) and wanted.name in workspace.files[path].source:
+    for path in workspace.scope(reference.path).paths:
+        if (why := _why_uneditable(workspace.files[path])) and wanted.name in workspace.files[path].source:
             return f"cannot rename `{wanted.name}`: {shown(path)}, {why}, may also use it"
     return ""
 
@@ -189,24 +193,24 @@ def _edits(place: ReferenceAt, wanted: Subject, name: str, in_quotes: bool, both
 def _changes_meaning(
     workspace: Workspace,
     path: str,
-    found: ReferenceAt,
+    reference: ReferenceAt,
     places: tuple[ReferenceAt, ...],
     edits: dict[str, tuple[Edit, ...]],
     name: str,
 ) -> str:
     """Why the texts after the edits have another meaning; empty if they do not."""
     after = workspace
-    for changed, made in edits.items():
-        after = with_source(after, changed, apply_edits(workspace.files[changed].source, made))
-        if why := _is_kept(after.files[changed]):
+    for changed, file_edits in edits.items():
+        after = with_source(after, changed, apply_edits(workspace.files[changed].source, file_edits))
+        if why := _why_uneditable(after.files[changed]):
             return f"`{name}` cannot be written in {workspace.project.shown(changed)}, {why} then"
-    moved = after.files[path].from_disk(_after(_start(workspace, found), edits[path]))
-    now = at(after, path, moved) if moved is not None else None
-    if now is None or not _is_called(now.mention, name):
+    moved = after.files[path].from_disk(_after(_start(workspace, reference), edits[path]))
+    renamed = at(after, path, moved) if moved is not None else None
+    if renamed is None or not _is_called(renamed.mention, name):
         return f"`{name}` would have another meaning here"
-    meant = subject(after, now)
+    meaning = subject(after, renamed)
     expected = {(one.path, _after(_start(workspace, one), edits[one.path])) for one in places}
-    reached = {(one.path, _start(after, one)) for one in everywhere(after, meant)}
+    reached = {(one.path, _start(after, one)) for one in everywhere(after, meaning)}
     for taken, start in sorted(reached - expected):
         line = after.files[taken].source_lines.position(start).line + 1
         return f"`{name}` is already in use: {taken}, line {line}"
@@ -215,9 +219,9 @@ def _changes_meaning(
     return ""
 
 
-def _start(workspace: Workspace, found: ReferenceAt) -> int:
+def _start(workspace: Workspace, reference: ReferenceAt) -> int:
     """Where a reference begins in its file on the disk."""
-    return workspace.files[found.path].on_disk(found.span).start
+    return workspace.files[reference.path].on_disk(reference.span).start
 
 
 def _is_called(mention: Mention, name: str) -> bool:

@@ -43,16 +43,16 @@ def runs_to_show(workspace: Workspace, path: str, evidence: ProjectVerdicts) -> 
     if mission is None:
         return []
     written = evidence.missions[mission]
-    last = max((each for each in written.sources if each.runs), key=lambda each: each.end)
-    found = {last.first_run + last.runs - 1: ["the last one"]}
+    last = max((source for source in written.sources if source.runs), key=lambda source: source.end)
+    labels = {last.first_run + last.runs - 1: ["the last one"]}
     for requirement in written.requirements:
         for clause in requirement.clauses:
             if clause.verdict == VIOLATED and clause.violations:
                 worst = clause.worst
                 run = worst.run if worst is not None and worst.run is not None else clause.violations[0].run
-                said = f"the worst of {requirement.id}" + (f", {worst.text}" if worst is not None else "")
-                found.setdefault(run, []).append(said)
-    return [(run, "; ".join(dict.fromkeys(words))) for run, words in found.items()]
+                label = f"the worst of {requirement.id}" + (f", {worst.text}" if worst is not None else "")
+                labels.setdefault(run, []).append(label)
+    return [(run, "; ".join(dict.fromkeys(words))) for run, words in labels.items()]
 
 
 def logged_run(workspace: Workspace, path: str, evidence: ProjectVerdicts, number: int) -> LoggedRun | None:
@@ -68,7 +68,9 @@ def logged_run(workspace: Workspace, path: str, evidence: ProjectVerdicts, numbe
     return None
 
 
-def run_on_picture(workspace: Workspace, path: str, run: LoggedRun, found: Mapping[str, Any]) -> dict[str, Any] | None:
+def run_on_picture(
+    workspace: Workspace, path: str, run: LoggedRun, printed: Mapping[str, Any]
+) -> dict[str, Any] | None:
     """A run for the page that draws a file's trees: each step with the key of its node, if that is drawn; None if the
     trees have changed since.
 
@@ -76,7 +78,7 @@ def run_on_picture(workspace: Workspace, path: str, run: LoggedRun, found: Mappi
         found: the run as `btq verify --run` prints it.
     """
     of_mission = requirements(workspace, run.mission)
-    if outline(of_mission) != found["outline"]:
+    if outline(of_mission) != printed["outline"]:
         return None
     numbers = {id(node.node): number for number, node in enumerate(of_mission.nodes.all)}
     keys = {numbers[id(node.node)]: key for key, node in keyed(workspace, path) if id(node.node) in numbers}
@@ -85,15 +87,15 @@ def run_on_picture(workspace: Workspace, path: str, run: LoggedRun, found: Mappi
             "key": keys.get(step["node"]),
             "state": step["state"],
             "time": step["took"],
-            "said": f"{duration(step['at'])}: {step['path']} {_said(step)}",
+            "said": f"{duration(step['at'])}: {step['path']} {_state(step)}",
         }
-        for step in found["steps"]
+        for step in printed["steps"]
     ]
-    title = f"Run {run.number} of {run.log.rpartition('/')[2]}: {found['outcome']}"
-    return {"title": title, "steps": steps, "leftOut": found["left_out"]}
+    title = f"Run {run.number} of {run.log.rpartition('/')[2]}: {printed['outcome']}"
+    return {"title": title, "steps": steps, "leftOut": printed["left_out"]}
 
 
-def _said(step: Mapping[str, Any]) -> str:
+def _state(step: Mapping[str, Any]) -> str:
     if step["state"] == "running":
         return "starts"
     return f"{step['state']}, {step['took']}" if step["took"] else str(step["state"])

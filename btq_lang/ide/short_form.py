@@ -21,7 +21,7 @@ _Rewrites: TypeAlias = Mapping[int, tuple[Edit, ...]]
 
 
 def short_form(
-    workspace: Workspace, path: str, offset: int, found: Sequence[Diagnostic] | None = None
+    workspace: Workspace, path: str, offset: int, diagnostics: Sequence[Diagnostic] | None = None
 ) -> Iterator[Action]:
     """The refactorings of the node at a place, and of the whole file, to the short form, unless they have it
     already."""
@@ -29,7 +29,7 @@ def short_form(
     entry = entry_at(workspace, path, offset)
     if entry is None or file.is_foreign:
         return
-    rewrites = _placeholders(workspace, path, found)
+    rewrites = _placeholders(workspace, path, diagnostics)
     line = nodes_at(file, entry, offset)
     if line and (edits := tuple(_of_node(file, entry, line[-1], rewrites))):
         yield Action("Write the node in the short form", "refactor.rewrite", {path: edits})
@@ -39,14 +39,14 @@ def short_form(
         yield Action("Write the file in the short form", "refactor.rewrite", {path: whole})
 
 
-def _placeholders(workspace: Workspace, path: str, found: Sequence[Diagnostic] | None) -> _Rewrites:
+def _placeholders(workspace: Workspace, path: str, diagnostics: Sequence[Diagnostic] | None) -> _Rewrites:
     """The rewrites of classic placeholders, as their rule offers them, by start."""
     if not any(word in workspace.files[path].text for word in PLACEHOLDERS):
         return {}
     return {
-        one.span.start: tuple(Edit(change.place.span, change.text) for change in one.fixes[0].changes)
-        for one in (check(workspace, path) if found is None else found)
-        if one.rule == "classic-placeholder" and one.fixes
+        diagnostic.span.start: tuple(Edit(change.place.span, change.text) for change in diagnostic.fixes[0].changes)
+        for diagnostic in (check(workspace, path) if diagnostics is None else diagnostics)
+        if diagnostic.rule == "classic-placeholder" and diagnostic.fixes
     }
 
 
@@ -103,9 +103,9 @@ def _head(file: File, entry: Entry, node: Node) -> Iterator[Edit]:
             return
     for pair in moved:
         start, end = pair.span.shifted(entry.start)
-        rest = text[end:].lstrip(" \t")
-        rest = rest[1:].lstrip(" \t") if rest.startswith(",") else rest
-        yield Edit(Span(start, len(text) - len(rest)), "")
+        following = text[end:].lstrip(" \t")
+        following = following[1:].lstrip(" \t") if following.startswith(",") else following
+        yield Edit(Span(start, len(text) - len(following)), "")
 
 
 def _closing(file: File, opened: int) -> int | None:
@@ -125,6 +125,6 @@ def _qualities(file: File, entry: Entry, clause: Satisfices) -> Iterator[Edit]:
     for quality in clause.qualities:
         start = entry.start + quality.path.span.start
         head = file.text[entry.start + clause.start : start]
-        at = head.rstrip().removesuffix("=").rstrip()
-        if not quality.requirements and head.rstrip().endswith("=") and at.endswith("Quality"):
-            yield Edit(Span(entry.start + clause.start + len(at) - len("Quality"), start), "")
+        before = head.rstrip().removesuffix("=").rstrip()
+        if not quality.requirements and head.rstrip().endswith("=") and before.endswith("Quality"):
+            yield Edit(Span(entry.start + clause.start + len(before) - len("Quality"), start), "")

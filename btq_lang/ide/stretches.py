@@ -48,16 +48,16 @@ def encoded(
     words = _Words(store, path)
     if item is not None:
         report(item.item, words)
-    words.found.sort()
+    words.tokens.sort()
     tokens: list[Token] = []
-    at = 0
-    for token in words.found:
+    offset = 0
+    for token in words.tokens:
         start, end, _ = token
-        if start >= at:
-            tokens += _between(text, at, start)
+        if start >= offset:
+            tokens += _between(text, offset, start)
             tokens.append(token)
-            at = end
-    tokens += _between(text, at, len(text))
+            offset = end
+    tokens += _between(text, offset, len(text))
     return encode(text, tokens, encoding)
 
 
@@ -66,7 +66,7 @@ class _Words(ReferenceListener):
 
     def __init__(self, store: Store[Workspace], path: str) -> None:
         super().__init__()
-        self.found: list[Token] = []
+        self.tokens: list[Token] = []
         self._store = store
         self._path = path
 
@@ -83,15 +83,15 @@ class _Words(ReferenceListener):
             appearance = (DEFINED if defines else USED).get(what)
             if appearance is None:
                 appearance = self._appearance(what, word, word.text, defines, owner)
-            self.found.append((word.start, word.start + len(raw), appearance))
+            self.tokens.append((word.start, word.start + len(raw), appearance))
 
     def words(self, what: What, words: tuple[Word, ...], span: Span, node: Node | None = None) -> None:
         appearance = self._appearance(what, words[-1], ".".join([word.text for word in words]), False, None)
         for word in words:
-            self.found.append((word.start, word.start + len(word.raw), appearance))
+            self.tokens.append((word.start, word.start + len(word.raw), appearance))
 
     def value(self, word: Word) -> None:
-        self.found.append((word.start, word.start + len(word.raw), PLAIN.get(word.kind, TEXT)))
+        self.tokens.append((word.start, word.start + len(word.raw), PLAIN.get(word.kind, TEXT)))
 
     def part(self, mention: Mention) -> None:
         """Split the word around a reference, if it was the previous one."""
@@ -101,16 +101,16 @@ class _Words(ReferenceListener):
         appearance = WRITTEN if mention.writes else (DEFINED if mention.defines else USED).get(mention.what)
         if appearance is None:
             appearance = self._appearance(mention.what, mention.word, mention.name, mention.defines, mention.owner)
-        found = self.found
-        if found and found[-1][0] <= begin and end <= found[-1][1]:
-            start, stop, around = found.pop()
+        tokens = self.tokens
+        if tokens and tokens[-1][0] <= begin and end <= tokens[-1][1]:
+            start, stop, around = tokens.pop()
             if start < begin:
-                found.append((start, begin, around))
-            found.append((begin, end, appearance))
+                tokens.append((start, begin, around))
+            tokens.append((begin, end, appearance))
             if end < stop:
-                found.append((end, stop, around))
+                tokens.append((end, stop, around))
         else:
-            found.append((begin, end, appearance))
+            tokens.append((begin, end, appearance))
 
     def _appearance(self, what: What, word: Word, name: str, defines: bool, owner: Owner) -> str:
         """The appearance of a word that can be several things."""
@@ -137,30 +137,30 @@ def _between(text: str, start: int, end: int) -> list[Token]:
     between = text[start:end]
     if "#" not in between and "//" not in between:
         return _tokens_of(between, start)
-    found: list[Token] = []
+    tokens: list[Token] = []
     while commented := _COMMENTED.match(text, start, end):
-        found += _tokens_of(commented[1], start)
-        found.append((*commented.span(2), PLAIN[COMMENT]))
+        tokens += _tokens_of(commented[1], start)
+        tokens.append((*commented.span(2), PLAIN[COMMENT]))
         start = commented.end()
-    return [*found, *_tokens_of(text[start:end], start)]
+    return [*tokens, *_tokens_of(text[start:end], start)]
 
 
 def _tokens_of(text: str, by: int) -> list[Token]:
-    found = _lexed(text)
-    return [(start + by, end + by, appearance) for start, end, appearance in found] if found else found
+    tokens = _lexed(text)
+    return [(start + by, end + by, appearance) for start, end, appearance in tokens] if tokens else tokens
 
 
 @lru_cache(2_000)
 def _lexed(text: str) -> list[Token]:
-    found: list[Token] = []
+    tokens: list[Token] = []
     before = ""
     for kind, start, raw in pieces(text):
         appearance = plain_appearance(kind, raw, before)
         if appearance is not None:
-            found.append((start, start + len(raw), appearance))
+            tokens.append((start, start + len(raw), appearance))
         if kind <= OPERATOR:
             before = raw
-    return found
+    return tokens
 
 
 def encode(text: str, tokens: list[Token], encoding: Encoding) -> tuple[list[str], int]:
@@ -171,34 +171,34 @@ def encode(text: str, tokens: list[Token], encoding: Encoding) -> tuple[list[str
         tokens: in the order of the text; one that crosses a line end becomes one on each line.
     """
     begins = [*(each.end() for each in LINE_END.finditer(text)), len(text) + 1]  # of the lines after each line
-    found: list[str] = []
+    integers: list[str] = []
     line = column = 0  # of the last token
-    at = begin = 0  # the line of the next one, and where it begins
+    next_line = begin = 0  # the line of the next one, and where it begins
     waiting = tokens[::-1]
     while waiting:
         start, stop, appearance = waiting.pop()
-        while begins[at] <= start:
-            begin = begins[at]
-            at += 1
-        if stop >= begins[at]:
+        while begins[next_line] <= start:
+            begin = begins[next_line]
+            next_line += 1
+        if stop >= begins[next_line]:
             waiting += [(first, last, appearance) for first, last in reversed(_lines(text, start, stop))]
             continue
         place, length = width_of(text[begin:start], encoding), width_of(text[start:stop], encoding)
-        found.append(f"{at - line},{place - column if at == line else place},{length}{appearance}")
-        line, column = at, place
-    return found, line
+        integers.append(f"{next_line - line},{place - column if next_line == line else place},{length}{appearance}")
+        line, column = next_line, place
+    return integers, line
 
 
 def _lines(text: str, start: int, end: int) -> list[tuple[int, int]]:
     """The start and end of each line of a token that has text."""
-    found: list[tuple[int, int]] = []
+    lines: list[tuple[int, int]] = []
     for line in LINE_END.finditer(text, start, end):
         if line.start() > start:
-            found.append((start, line.start()))
+            lines.append((start, line.start()))
         start = line.end()
     if start < end:
-        found.append((start, end))
-    return found
+        lines.append((start, end))
+    return lines
 
 
 # A comment to the end of its line.  Before it is nothing that may continue after a line end, or that a comment must not

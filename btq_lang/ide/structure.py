@@ -30,7 +30,7 @@ def folding_ranges(workspace: Workspace, path: str) -> tuple[Fold, ...]:
     """Blocks, brackets over several lines, runs of comment lines, and the includes at the top."""
     file = workspace.files[path]
     text = file.text
-    found: list[Fold] = []
+    folds: list[Fold] = []
     blocks: list[int] = []  # where the line above each open block begins
     line = end = 0  # where the current logical line begins, and where its last word ends
     at_start = True
@@ -39,20 +39,20 @@ def folding_ranges(workspace: Workspace, path: str) -> tuple[Fold, ...]:
             blocks.append(line)
         elif token.kind == DEDENT:
             if blocks:
-                found.append(Fold(Span(blocks.pop(), end), "block"))
+                folds.append(Fold(Span(blocks.pop(), end), "block"))
         elif token.kind == NEWLINE:
             at_start = True
         elif token.kind not in (BLANK, COMMENT):
             if at_start:
                 line, at_start = token.start, False
             end = token.end
-    found += [Fold(span, "brackets") for span in _brackets(workspace, path)]
-    found += _comment_runs(workspace, path)
+    folds += [Fold(span, "brackets") for span in _brackets(workspace, path)]
+    folds += _comment_runs(workspace, path)
     includes = [entry for entry in file.parsed.entries if isinstance(entry.item, Include)]
     if len(includes) > 1:
         first, last = includes[0], includes[-1]
-        found.append(Fold(Span(first.start + first.item.start, last.start + last.item.end), "includes"))
-    several_lines = (fold for fold in found if "\n" in text[slice(*fold.span)] or "\r" in text[slice(*fold.span)])
+        folds.append(Fold(Span(first.start + first.item.start, last.start + last.item.end), "includes"))
+    several_lines = (fold for fold in folds if "\n" in text[slice(*fold.span)] or "\r" in text[slice(*fold.span)])
     return tuple(sorted(several_lines, key=lambda fold: fold.span))
 
 
@@ -87,9 +87,9 @@ def selection_range(workspace: Workspace, path: str, offset: int) -> tuple[Span,
             spans.add(Span(token.start, token.end))
             if token.kind == STRING and token.start < offset < token.end:
                 spans.add(Span(token.start + 1, max(token.end - 1, token.start + 1)))
-    found = at(workspace, path, offset)
-    if found is not None:
-        spans.add(found.span)
+    reference = at(workspace, path, offset)
+    if reference is not None:
+        spans.add(reference.span)
     entry = entry_at(workspace, path, offset)
     if entry is not None:
         item = entry.item
@@ -123,10 +123,10 @@ def _brackets(workspace: Workspace, path: str) -> Iterator[Span]:
 def document_links(workspace: Workspace, path: str) -> tuple[FileLink, ...]:
     """The paths of includes."""
     file = workspace.files[path]
-    found = []
+    links = []
     for include in file.includes:
         if include.path is not None:
             span = include.path.span.shifted(file.start_of(include))
             inside = Span(span.start + 1, max(span.end - 1, span.start + 1)) if include.path.quoted else span
-            found.append(FileLink(inside, workspace.included_by(path, include)))
-    return tuple(found)
+            links.append(FileLink(inside, workspace.included_by(path, include)))
+    return tuple(links)

@@ -69,18 +69,18 @@ def _needless_includes(store: Store[Workspace], path: str) -> tuple[NeedlessIncl
     if file.is_foreign or not includes:
         return ()
     duplicates = _duplicates(workspace, path, includes)
-    found = [*duplicates]
+    needless = [*duplicates]
     is_mission = path not in workspace.included_files and workspace.main_tree(path) is not None
     if is_mission and workspace.store.ask(is_read, path):
         for include in reversed(includes):
-            rest = [other for other in includes if other is not include and not _is_among(other, found)]
-            gone = _brought_by(workspace, path, include, rest) if not _is_among(include, found) else set()
-            if gone and not _uses(workspace, path, gone) and _changes_nothing(workspace, path, [*found, include]):
-                found.append(include)
+            others = [other for other in includes if other is not include and not _is_among(other, needless)]
+            gone = _brought_by(workspace, path, include, others) if not _is_among(include, needless) else set()
+            if gone and not _uses(workspace, path, gone) and _changes_nothing(workspace, path, [*needless, include]):
+                needless.append(include)
     return tuple(
         NeedlessInclude(_name(one), "duplicate" if _is_among(one, duplicates) else "unused", _span(file, one))
         for one in includes
-        if _is_among(one, found)
+        if _is_among(one, needless)
     )
 
 
@@ -88,23 +88,23 @@ def _duplicates(workspace: Workspace, path: str, includes: Sequence[Include]) ->
     """The includes of a file that an earlier one includes; empty where two trees or models have one name, because then
     the engine may run what it reads last."""
     seen: set[object] = set()
-    found = []
+    duplicates = []
     for include in includes:
         key = workspace.included_by(path, include) or _name(include), shape(include.attributes)
         if key in seen:
-            found.append(include)
+            duplicates.append(include)
         seen.add(key)
     scope = workspace.scope(path)
-    kinds = (Kind.TREE, Kind.MODEL) if found else ()
+    kinds = (Kind.TREE, Kind.MODEL) if duplicates else ()
     is_clear = not any(scope.is_repeated(kind, name) for kind in kinds for name in scope.names(kind))
-    return found if is_clear else []
+    return duplicates if is_clear else []
 
 
 def _brought_by(workspace: Workspace, path: str, include: Include, others: Sequence[Include]) -> set[str]:
     """The files that only one of the includes adds; empty if it is not found, or includes the mission."""
 
-    def closure(of: Include) -> set[str]:
-        target = workspace.included_by(path, of)
+    def closure(included: Include) -> set[str]:
+        target = workspace.included_by(path, included)
         return set(workspace.closure(target)) if target is not None else set()
 
     own = closure(include)
@@ -117,9 +117,9 @@ def _uses(workspace: Workspace, path: str, gone: set[str]) -> bool:
     defined = {name for each in gone for name in workspace.files[each].defined_names}
     if not scope.complete or any(kind in (Kind.REQUIREMENT, Kind.QUALITY) for kind, _ in defined):
         return True  # the overview lists requirements that no node satisfies; a quality has several spellings
-    rest = [workspace.files[each] for each in scope.paths if each not in gone]
-    named = {(kind, name) for file in rest for kind, name in file.used_names}
-    for file in rest:
+    remaining = [workspace.files[each] for each in scope.paths if each not in gone]
+    named = {(kind, name) for file in remaining for kind, name in file.used_names}
+    for file in remaining:
         nodes = names_of_nodes(file)
         named |= {(kind, name) for kind in (Kind.TREE, Kind.MODEL) for name in nodes}
         named |= {(kind, name) for kind in (Kind.SIGNAL, Kind.CONTEXT) for name in file.names_used("asked_for")}
@@ -141,7 +141,9 @@ def _changes_nothing(workspace: Workspace, path: str, removed: Sequence[Include]
     if len(requirements(workspace, path).applied) != len(requirements(after, path).applied):
         return False
     before = [each for each in check(workspace, path) if not any(span.contains(each.span) for span in spans)]
-    then, now = (Counter((each.rule, each.message) for each in found) for found in (before, check(after, path)))
+    then, now = (
+        Counter((each.rule, each.message) for each in diagnostics) for diagnostics in (before, check(after, path))
+    )
     return then == now
 
 
@@ -196,9 +198,9 @@ def _name(include: Include) -> str:
     return include.path.text if include.path is not None else ""
 
 
-def _is_among(one: Include, includes: Sequence[Include]) -> bool:
+def _is_among(include: Include, includes: Sequence[Include]) -> bool:
     """Whether it is one of them; two includes with the same text are equal, so `in` is not enough."""
-    return any(one is other for other in includes)
+    return any(include is other for other in includes)
 
 
 _BOM = "\ufeff"

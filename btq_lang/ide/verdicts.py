@@ -14,8 +14,8 @@ from weakref import ReferenceType, ref
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import RULES
 from btq_lang.evidence.boxes import measured_of
-from btq_lang.evidence.open_verdicts import open_clauses, open_reason
-from btq_lang.evidence.outline import Demand, outline
+from btq_lang.evidence.json_document import WrittenMission
+from btq_lang.evidence.outline import Demand, open_clauses, open_reason, outline
 from btq_lang.evidence.rejudging import Shown, shown_now
 from btq_lang.evidence.sentences import explained, result, worst_violation
 from btq_lang.evidence.verdicts import (
@@ -29,7 +29,6 @@ from btq_lang.evidence.verdicts import (
     ClauseVerdict,
     RequirementVerdict,
 )
-from btq_lang.evidence.written_verdicts import WrittenMission
 from btq_lang.graph.missions import MeasuredBy
 from btq_lang.ide.clause_enforcement import MOST_MISSIONS, missions_of
 from btq_lang.ide.meaning import Subject, definition
@@ -75,7 +74,7 @@ class ProjectVerdicts:
         self.root: Final = root
         self.missions: Final = missions
         self.reported: Final[dict[str, tuple[Reported, ...]]] = {}
-        self._known: dict[str, tuple[ReferenceType[Workspace], Judged]] = {}  # of the last text
+        self._judged: dict[str, tuple[ReferenceType[Workspace], Judged]] = {}  # of the last text
 
     def verdicts_of(self, mission: str) -> Sequence[RequirementVerdict]:
         """The verdicts on a mission as it was when the logs were judged."""
@@ -87,15 +86,15 @@ class ProjectVerdicts:
         written = self.missions.get(mission)
         if written is None:
             return None
-        known = self._known.get(mission)
-        if known is not None and known[0]() is workspace:
-            return known[1]
-        found = requirements(workspace, mission)
+        cached = self._judged.get(mission)
+        if cached is not None and cached[0]() is workspace:
+            return cached[1]
+        resolved = requirements(workspace, mission)
         is_whole = all(source.is_whole for source in written.sources)
-        is_earlier = not is_whole or outline(found) != written.outline
-        shown = tuple(shown_now(found, written.requirements))
-        judged = Judged(written, shown, tuple(each for each in found.all.values() if open_reason(each)), is_earlier)
-        self._known[mission] = ref(workspace), judged
+        is_earlier = not is_whole or outline(resolved) != written.outline
+        shown = tuple(shown_now(resolved, written.requirements))
+        judged = Judged(written, shown, tuple(each for each in resolved.all.values() if open_reason(each)), is_earlier)
+        self._judged[mission] = ref(workspace), judged
         return judged
 
 
@@ -105,16 +104,16 @@ def verdict_titles(
     """For each requirement in a file of whose mission there are logs: the place of its name, its worst verdict in a few
     words, and its nodes.
     """
-    found: dict[Place, list[tuple[Shown, Judged]]] = {}
+    by_place: dict[Place, list[tuple[Shown, Judged]]] = {}
     unseen: dict[Place, str] = {}
     for judged in _on_missions(workspace, path, evidence):
         for shown in judged.shown:
             if shown.demand.requirement.place.path == path:
-                found.setdefault(shown.demand.requirement.place, []).append((shown, judged))
+                by_place.setdefault(shown.demand.requirement.place, []).append((shown, judged))
         for requirement in judged.open:
             if requirement.place.path == path:
                 unseen[requirement.place] = f"{OPEN}: {open_reason(requirement)}"
-    for place, clauses in found.items():
+    for place, clauses in by_place.items():
         shown, judged = min(clauses, key=lambda each: _rank(each[0]))
         nodes = [node for each, _ in clauses for node in _nodes(each.demand)]
         places = [(node.path, workspace.files[node.path].span_of(node.place)) for node in nodes]
@@ -146,18 +145,18 @@ def verdict_table(workspace: Workspace, path: str, wanted: Subject, evidence: Pr
 
 def verdict_findings(workspace: Workspace, path: str, evidence: ProjectVerdicts) -> tuple[Reported, ...]:
     """Violated requirements and such that were never exercised, at their nodes in a file."""
-    found: dict[int, tuple[ResolvedNode, dict[tuple[str, str], Diagnostic]]] = {}
+    by_node: dict[int, tuple[ResolvedNode, dict[tuple[str, str], Diagnostic]]] = {}
     for judged in _on_missions(workspace, path, evidence):
         for shown in judged.shown:
             node = next(iter(_nodes(shown.demand)), None)
             if node is not None and node.path == path and (diagnostic := _finding(shown, node, judged, evidence.root)):
-                of_item = found.setdefault(id(node.item), (node, {}))[1]
+                of_item = by_node.setdefault(id(node.item), (node, {}))[1]
                 of_item.setdefault((diagnostic.message, str(diagnostic.span)), diagnostic)
     before = evidence.reported.get(path, ())
     reported: list[Reported] = []
-    for node, of_item in found.values():
-        now = Reported(configured(workspace.project, path, of_item.values()), (path, node.item))
-        reported.append(next((each for each in before if each == now), now))  # it has its text for the editor
+    for node, of_item in by_node.values():
+        current = Reported(configured(workspace.project, path, of_item.values()), (path, node.item))
+        reported.append(next((each for each in before if each == current), current))  # it has its text for the editor
     evidence.reported[path] = tuple(reported)
     return evidence.reported[path]
 
@@ -218,15 +217,15 @@ def _rank(shown: Shown) -> int:
 def _row(shown: Shown) -> tuple[str, ...]:
     if shown.verdict is None:
         return "", code(shown.demand.claim.text), "not measured yet"
-    at = f" at {escaped(shown.verdict.path)}" if shown.verdict.path else ""
-    return shown.verdict.verdict, f"{code(shown.demand.claim.text)}{at}", escaped(_result(shown, shown.verdict))
+    place = f" at {escaped(shown.verdict.path)}" if shown.verdict.path else ""
+    return shown.verdict.verdict, f"{code(shown.demand.claim.text)}{place}", escaped(_result(shown, shown.verdict))
 
 
 def _result(shown: Shown, verdict: ClauseVerdict) -> str:
-    found = result(verdict)
+    text = result(verdict)
     if shown.least == verdict.violated or verdict.interval is not None:
-        return found
-    return f"{shown.least} to {found}"
+        return text
+    return f"{shown.least} to {text}"
 
 
 def _title(shown: Shown, judged: Judged) -> str:

@@ -37,23 +37,23 @@ def encoded_in_xml(workspace: Workspace, path: str, within: Span, encoding: Enco
 
 def _tokens(file: File) -> list[Token]:
     """The start, the end and the appearance of each, in the order of the XML."""
-    found: list[Token] = []
+    tokens: list[Token] = []
     for entry in file.parsed.entries:
         if isinstance(entry.item, Tree):
             for span, appearance in _coloured(file.mentions_of(entry)):
                 start, end = file.on_disk(span.shifted(entry.start))
-                found.append((start, end, appearance))
-    return sorted(found)
+                tokens.append((start, end, appearance))
+    return sorted(tokens)
 
 
 def _coloured(mentions: tuple[Mention, ...]) -> Iterator[tuple[Span, str]]:
     seen: set[int] = set()
-    for each in mentions:
-        if each.what is not What.KEY or each.pair is None or each.pair.value is not each.word:
+    for mention in mentions:
+        if mention.what is not What.KEY or mention.pair is None or mention.pair.value is not mention.word:
             continue
-        yield each.span, WRITTEN if each.writes else USED[What.KEY]
-        word = each.word
-        if id(word) not in seen and not word.text.startswith("{") and word.text != each.name:
+        yield mention.span, WRITTEN if mention.writes else USED[What.KEY]
+        word = mention.word
+        if id(word) not in seen and not word.text.startswith("{") and word.text != mention.name:
             seen.add(id(word))
             tokens = script.tokenize(word.text)
             begin = word.start + word.quoted

@@ -39,13 +39,13 @@ def complete_in_xml(workspace: Workspace, path: str, offset: int) -> tuple[Span,
         return tag.word, tuple(_closing(tag, xml))
     workspace, entry = _sound(workspace, path, tag)
     if tag.part == "tag":
-        found = _tags(workspace, path, tag)
+        proposals = _tags(workspace, path, tag)
     elif tag.part == "attribute":
-        found = _attributes(workspace, path, tag)
+        proposals = _attributes(workspace, path, tag)
     else:
         return _in_value(workspace, path, entry, tag, xml, offset)
     has_more = xml[tag.word.end : tag.word.end + 2].lstrip(" ").startswith("=")  # the value is there already
-    inserted = (replace(one, insert=one.label, snippet=None) if has_more else one for one in found)
+    inserted = (replace(one, insert=one.label, snippet=None) if has_more else one for one in proposals)
     return tag.word, _reachable(workspace, inserted)
 
 
@@ -62,10 +62,10 @@ def _sound(workspace: Workspace, path: str, tag: TypedTag) -> tuple[Workspace, E
     return workspace, None
 
 
-def _reachable(workspace: Workspace, found: Iterable[Proposal]) -> tuple[Proposal, ...]:
+def _reachable(workspace: Workspace, proposals: Iterable[Proposal]) -> tuple[Proposal, ...]:
     """Each once, without those for which another file would have to be included; other XML is found without that."""
-    known = {one.label: one for one in found if not one.include or one.include in workspace.foreign}
-    return tuple(replace(one, include="") for one in known.values())
+    by_label = {one.label: one for one in proposals if not one.include or one.include in workspace.foreign}
+    return tuple(replace(one, include="") for one in by_label.values())
 
 
 # ---- tags ----
@@ -82,7 +82,7 @@ def _tags(workspace: Workspace, path: str, tag: TypedTag) -> Iterator[Proposal]:
     above = tag.parents[-1] if tag.parents else ""
     if above in _CHILDREN:
         for name, doc in _CHILDREN[above].items():
-            given = " ".join(f'{key}="${{{at}}}"' for at, key in enumerate(_ATTRIBUTES.get(name, ())[:1], 1))
+            given = " ".join(f'{key}="${{{index}}}"' for index, key in enumerate(_ATTRIBUTES.get(name, ())[:1], 1))
             yield Proposal(name, "keyword", doc, name, f"{name} {given}" if given else name)
     elif tag.parents[-2:-1] == ("TreeNodesModel",):
         for name in ("input_port", "output_port", "inout_port"):
@@ -103,11 +103,11 @@ def _with_ports(workspace: Workspace, path: str, name: str) -> str:
     if name in CATEGORIES:
         return f'{name} ID="$1"'
     needed = [port for port in ports_of_kind(workspace, path, name, quoted=True) if port.required]
-    return " ".join([offer.escaped(name), *(_given(port, at) for at, port in enumerate(needed, 1))])
+    return " ".join([offer.escaped(name), *(_with_hole(port, index) for index, port in enumerate(needed, 1))])
 
 
-def _given(port: PortKind, at: int) -> str:
-    return f'{offer.escaped(port.name)}="{of_nodes.hole(at, port, in_xml=True)}"'
+def _with_hole(port: PortKind, index: int) -> str:
+    return f'{offer.escaped(port.name)}="{of_nodes.hole(index, port, in_xml=True)}"'
 
 
 # ---- attributes ----
@@ -116,8 +116,8 @@ def _given(port: PortKind, at: int) -> str:
 def _attributes(workspace: Workspace, path: str, tag: TypedTag) -> Iterator[Proposal]:
     """Those that a tag does not have yet, each with its quotes."""
     given = tuple(key for key, _ in tag.attributes)
-    known = [key for key in _ATTRIBUTES.get(tag.name, ()) if key not in given]
-    yield from (Proposal(key, "attribute", "", f'{key}=""', f'{key}="$0"') for key in known)
+    keys = [key for key in _ATTRIBUTES.get(tag.name, ()) if key not in given]
+    yield from (Proposal(key, "attribute", "", f'{key}=""', f'{key}="$0"') for key in keys)
     if "BehaviorTree" not in tag.parents:
         return
     node = _node(tag)
@@ -125,7 +125,7 @@ def _attributes(workspace: Workspace, path: str, tag: TypedTag) -> Iterator[Prop
     by_name = {port.name: port for port in ports}
     for one in (*of_nodes.ports(ports, given, node), *of_nodes.attributes(given, node)):
         port = by_name.get(one.label)
-        snippet = _given(port, 0) if port is not None else f'{one.label}="$0"'
+        snippet = _with_hole(port, 0) if port is not None else f'{one.label}="$0"'
         yield replace(one, insert=f'{one.label}=""', snippet=snippet)
 
 
@@ -147,15 +147,15 @@ def _in_value(
     if is_of_node and begun is not None and not is_script:
         keys = list(offer.keys(workspace, path, entry, begun.is_root)) if entry is not None else []
         same = () if begun.is_root else (of_nodes.SAME_ENTRY,)
-        found = tuple(replace(one, insert=f"{one.insert}{begun.closing}") for one in (*same, *keys))
-        return begun.span.shifted(tag.word.start), found
+        proposals = tuple(replace(one, insert=f"{one.insert}{begun.closing}") for one in (*same, *keys))
+        return begun.span.shifted(tag.word.start), proposals
     if is_script:
         before = xml[tag.word.start : offset]
-        typed, found = of_nodes.in_script(workspace, path, entry, before) if entry is not None else (0, ())
-        return Span(offset - typed, offset), found
-    found = tuple(_values(workspace, path, entry, tag, node))
-    plain = (unquote(one.insert) if one.insert[:1] in ('"', "'") else one.insert for one in found)
-    spelt = (replace(one, insert=escape(text), snippet=None) for one, text in zip(found, plain, strict=True))
+        typed, proposals = of_nodes.in_script(workspace, path, entry, before) if entry is not None else (0, ())
+        return Span(offset - typed, offset), proposals
+    proposals = tuple(_values(workspace, path, entry, tag, node))
+    plain = (unquote(one.insert) if one.insert[:1] in ('"', "'") else one.insert for one in proposals)
+    spelt = (replace(one, insert=escape(text), snippet=None) for one, text in zip(proposals, plain, strict=True))
     return tag.word, _reachable(workspace, spelt)
 
 
@@ -179,8 +179,8 @@ def _values(workspace: Workspace, path: str, entry: Entry | None, tag: TypedTag,
     elif tag.key in RESERVED_ATTRIBUTES:
         yield from of_nodes.attribute_values(tag.key)
     elif "BehaviorTree" in tag.parents and tag.key not in ("ID", "name"):
-        known = (port for port in of_nodes.ports_of_line(workspace, path, node) if port.name == tag.key)
-        yield from of_nodes.port_values(workspace, path, entry, next(known, None))
+        ports = (port for port in of_nodes.ports_of_line(workspace, path, node) if port.name == tag.key)
+        yield from of_nodes.port_values(workspace, path, entry, next(ports, None))
 
 
 _TAG = re.compile(r"[A-Za-z_][\w.-]*").fullmatch

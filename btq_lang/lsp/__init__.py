@@ -6,7 +6,8 @@ offsets and paths, call `ide`, and convert the result back.  Features are implem
     convert.py       positions, ranges, edits: between the protocol and btq
     protocol.py messages serialised by hand, for speed
     session.py the open files, and whose diagnostics an edit may have changed
-    editor.py one client: its session, its capabilities, and what is published when
+    editor.py one client: its session, its capabilities, and what is published
+    schedule.py when files are checked
     logs.py            the process that judges a project's logs, and its summary
     lifecycle.py, documents.py, commands.py, progress.py … the handlers, most of a few lines
 """
@@ -20,4 +21,5 @@ from btq_lang.lsp.editor import Server
 def register(server: Server) -> None:
     """Register all handlers with pygls."""
     for group in (lifecycle, documents, navigation, colours, acting, hints, commands, logs):
-        group.register(server)
+        group.handlers.register(server)
+    logs.watch_logs(server)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 from btq_lang import ide as features
-from btq_lang.lsp.editor import Server
+from btq_lang.lsp.editor import Handlers, Server
 from btq_lang.lsp.protocol import Plain
 
 if TYPE_CHECKING:
@@ -30,49 +30,56 @@ KINDS = [
 _ALL = types.FileOperationFilter(types.FileOperationPattern("**/*"), scheme="file")
 
 
-def register(server: Server) -> None:
-    convert = server.convert
+handlers = Handlers()
 
-    @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, types.CodeActionOptions(code_action_kinds=KINDS), [])
-    def actions(params: types.CodeActionParams) -> list[Plain]:
-        workspace, path = server.at(params.text_document, reads=True)
-        only = [str(getattr(kind, "value", kind)) for kind in params.context.only or ()]
-        found = features.actions.code_actions(
-            workspace, path, convert.span(workspace, path, params.range), only, server.session.diagnostics(path)
-        )
-        return [convert.action(workspace, path, action, server.versions_for_edits()) for action in found]
 
-    @server.feature(types.WORKSPACE_WILL_RENAME_FILES, types.FileOperationRegistrationOptions([_ALL]))
-    def will_rename(params: types.RenameFilesParams) -> types.WorkspaceEdit | None:
-        moves = {convert.path(file.old_uri): convert.path(file.new_uri) for file in params.files}
-        found = [(each, features.moves.moved_files(each, moves)) for each in server.session.workspaces()]
-        edits = [each for each in found if each[1]]
-        return convert.workspace_edit(server.versions_for_edits(), *edits) if edits else None
+@handlers.feature(types.TEXT_DOCUMENT_CODE_ACTION, types.CodeActionOptions(code_action_kinds=KINDS), [])
+def actions(server: Server, params: types.CodeActionParams) -> list[Plain]:
+    workspace, path = server.at(params.text_document, reads=True)
+    only = [str(getattr(kind, "value", kind)) for kind in params.context.only or ()]
+    code_actions = features.actions.code_actions(
+        workspace, path, server.convert.span(workspace, path, params.range), only, server.session.diagnostics(path)
+    )
+    return [server.convert.action(workspace, path, action, server.versions_for_edits()) for action in code_actions]
 
-    @server.feature(types.TEXT_DOCUMENT_ON_TYPE_FORMATTING, types.DocumentOnTypeFormattingOptions("\n", [")"]), [])
-    def typed(params: types.DocumentOnTypeFormattingParams) -> list[types.TextEdit]:
-        answer = server.ask(params, partial(features.on_type.on_type, typed=params.ch))
-        return convert.edits(*answer)
 
-    @server.feature(types.TEXT_DOCUMENT_LINKED_EDITING_RANGE)
-    def linked(params: types.LinkedEditingRangeParams) -> types.LinkedEditingRanges | None:
-        workspace, path, spans = server.ask(params, features.on_type.linked_ranges)
-        return types.LinkedEditingRanges([convert.range(workspace, path, span) for span in spans]) if spans else None
+@handlers.feature(types.WORKSPACE_WILL_RENAME_FILES, types.FileOperationRegistrationOptions([_ALL]))
+def will_rename(server: Server, params: types.RenameFilesParams) -> types.WorkspaceEdit | None:
+    moves = {server.convert.path(file.old_uri): server.convert.path(file.new_uri) for file in params.files}
+    by_workspace = [
+        (workspace, features.moves.moved_files(workspace, moves)) for workspace in server.session.workspaces()
+    ]
+    edits = [(workspace, changes) for workspace, changes in by_workspace if changes]
+    return server.convert.workspace_edit(server.versions_for_edits(), *edits) if edits else None
 
-    @server.feature(types.TEXT_DOCUMENT_FORMATTING)
-    @server.feature(types.TEXT_DOCUMENT_RANGE_FORMATTING)
-    def formatted(
-        params: types.DocumentFormattingParams | types.DocumentRangeFormattingParams,
-    ) -> list[types.TextEdit] | None:
-        place = server.at(params.text_document)
-        if _is_refused(server, *place):
-            return None
-        from btq_lang.formatter import format_range, format_text  # imported on use, like features
 
-        text = place[0].files[place[1]].text
-        if isinstance(params, types.DocumentFormattingParams):
-            return convert.edits(*place, format_text(text).edits)
-        return convert.edits(*place, format_range(text, *convert.span(*place, params.range)))
+@handlers.feature(types.TEXT_DOCUMENT_ON_TYPE_FORMATTING, types.DocumentOnTypeFormattingOptions("\n", [")"]), [])
+def typed(server: Server, params: types.DocumentOnTypeFormattingParams) -> list[types.TextEdit]:
+    answer = server.ask(params, partial(features.on_type.on_type, typed=params.ch))
+    return server.convert.edits(*answer)
+
+
+@handlers.feature(types.TEXT_DOCUMENT_LINKED_EDITING_RANGE)
+def linked(server: Server, params: types.LinkedEditingRangeParams) -> types.LinkedEditingRanges | None:
+    workspace, path, spans = server.ask(params, features.on_type.linked_ranges)
+    return types.LinkedEditingRanges([server.convert.range(workspace, path, span) for span in spans]) if spans else None
+
+
+@handlers.feature(types.TEXT_DOCUMENT_FORMATTING)
+@handlers.feature(types.TEXT_DOCUMENT_RANGE_FORMATTING)
+def formatted(
+    server: Server,
+    params: types.DocumentFormattingParams | types.DocumentRangeFormattingParams,
+) -> list[types.TextEdit] | None:
+    place = server.at(params.text_document)
+    if _is_refused(server, *place):
+        return None
+    from btq_lang.formatter import format_range, format_text  # imported on use, like features
+
+    text = place[0].files[place[1]].text
+    if isinstance(params, types.DocumentFormattingParams):
+        return server.convert.edits(*place, format_text(text).edits)
+    return server.convert.edits(*place, format_range(text, *server.convert.span(*place, params.range)))
 
 
 def _is_refused(server: Server, workspace: Workspace, path: str) -> bool:

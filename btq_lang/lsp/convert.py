@@ -121,52 +121,64 @@ class Converter:
         self, versions: Mapping[str, int] | None, *edits: tuple[Workspace, Mapping[str, Iterable[Edit]]]
     ) -> types.WorkspaceEdit:
         """A workspace edit of several files, with the versions of open ones, if the editor supports versions here."""
-        changes = {path: self.edits(of, path, made) for of, of_files in edits for path, made in of_files.items()}
+        changes = {
+            path: self.edits(workspace, path, file_edits)
+            for workspace, of_files in edits
+            for path, file_edits in of_files.items()
+        }
         if versions is None:
-            return types.WorkspaceEdit(changes={self.uri(path): made for path, made in changes.items()})
+            return types.WorkspaceEdit(changes={self.uri(path): file_edits for path, file_edits in changes.items()})
         documents = [
             types.TextDocumentEdit(
-                types.OptionalVersionedTextDocumentIdentifier(self.uri(path), versions.get(path)), [*made]
+                types.OptionalVersionedTextDocumentIdentifier(self.uri(path), versions.get(path)), [*file_edits]
             )
-            for path, made in changes.items()
+            for path, file_edits in changes.items()
         ]
         return types.WorkspaceEdit(document_changes=[*documents])
 
-    def findings(self, workspace: Workspace, path: str, found: FileFindings) -> Json:
+    def findings(self, workspace: Workspace, path: str, file_findings: FileFindings) -> Json:
         """All diagnostics of a file, as a JSON list.
 
-        All of them are sent after every keystroke, but most items are unchanged or only moved: what an item says is
+        All of them are sent after every keystroke, but most items are unchanged or only moved: the JSON of an item is
         cached with lines counted from those of the items, and if only these differ, they are filled in again.
         """
         files, encoding = workspace.files, self.encoding
         written: list[str] = []
-        for reported, starts in found.of_items:
-            begins = [files[at].item_places[id(item)] for at, item in reported.items]
-            ends = [files[at].source_lines.ends(span, encoding) for at, span in reported.fixed if at in files]
+        for reported, starts in file_findings.of_items:
+            begins = [files[place_path].item_places[id(item)] for place_path, item in reported.items]
+            ends = [
+                files[place_path].source_lines.ends(span, encoding)
+                for place_path, span in reported.fixed
+                if place_path in files
+            ]
             lines = [*(line for line, _ in begins), 0]
             where = self._spellings, [before for _, before in begins], ends
-            known: _Written | None = reported.written
-            if known is None or known.where != where:
+            cached: _Written | None = reported.written
+            if cached is None or cached.where != where:
                 template, ranges = self._diagnostics(workspace, path, reported.placed(starts))
-                known = _Written(where, template, list(zip(reported.counted_from(), ranges, strict=True)), lines)
+                cached = _Written(where, template, list(zip(reported.counted_from(), ranges, strict=True)), lines)
                 if reported.items:  # in files that are not edited it would only take memory
-                    reported.written = known
-            written.append(known.at(lines))
+                    reported.written = cached
+            written.append(cached.at(lines))
         return Json(f"[{', '.join(written)}]")
 
-    def problems(self, text: str, found: Iterable[LoadProblem]) -> Json:
+    def problems(self, text: str, load_problems: Iterable[LoadProblem]) -> Json:
         """The problems of a project file, as a JSON list of diagnostics."""
         from btq_lang.util.toml_places import word_end  # few files have problems
 
         lines = LineIndex(text)
         written: list[str] = []
-        for one in found:
-            start = lines.offset(one.position or Position(0, 0))
+        for problem in load_problems:
+            start = lines.offset(problem.position or Position(0, 0))
             range_ = self._range_as_json(lines, Span(start, word_end(text, start)))
-            written.append(f'{{"range": {range_}, "severity": 1, "source": "btq", "message": {as_json(one.message)}}}')
+            written.append(
+                f'{{"range": {range_}, "severity": 1, "source": "btq", "message": {as_json(problem.message)}}}'
+            )
         return Json(f"[{', '.join(written)}]")
 
-    def _diagnostics(self, workspace: Workspace, path: str, found: Iterable[Diagnostic]) -> tuple[str, list[Range]]:
+    def _diagnostics(
+        self, workspace: Workspace, path: str, diagnostics: Iterable[Diagnostic]
+    ) -> tuple[str, list[Range]]:
         """Diagnostics as JSON with `%d` in place of lines and columns, and these, of their spans and related places;
         their spans already refer to the original file.
         """
@@ -174,27 +186,40 @@ class Converter:
         ranges: list[Range] = []
         encoding, files = self.encoding, workspace.files
         ends = files[path].source_lines.ends
-        for one in found:
-            ranges.append(ends(one.span, encoding))
-            related: list[tuple[str, str]] = []
-            for each in one.related:
-                at = each.place.path or path
+        for diagnostic in diagnostics:
+            ranges.append(ends(diagnostic.span, encoding))
+            related_places: list[tuple[str, str]] = []
+            for related in diagnostic.related:
+                related_path = related.place.path or path
                 # The place in a log is its start: a log has no lines.
-                ranges.append(files[at].source_lines.ends(each.place.span, encoding) if at in files else (0, 0, 0, 0))
-                related.append((self.uri(at), each.message))
-            written.append(_template(one.rule, one.message, one.notes, one.severity, one.tags, tuple(related)))
+                ranges.append(
+                    files[related_path].source_lines.ends(related.place.span, encoding)
+                    if related_path in files
+                    else (0, 0, 0, 0)
+                )
+                related_places.append((self.uri(related_path), related.message))
+            written.append(
+                _template(
+                    diagnostic.rule,
+                    diagnostic.message,
+                    diagnostic.notes,
+                    diagnostic.severity,
+                    diagnostic.tags,
+                    tuple(related_places),
+                )
+            )
         return ", ".join(written), ranges
 
     def _range_as_json(self, lines: LineIndex, span: Span) -> str:
         return _RANGE % lines.ends(span, self.encoding)
 
     def action(self, workspace: Workspace, path: str, action: Action, versions: Mapping[str, int] | None) -> Plain:
-        preferred, found = {"isPreferred": True} if action.preferred else {}, {}
+        preferred, diagnostics = {"isPreferred": True} if action.preferred else {}, {}
         if action.diagnostic is not None:
             template, ranges = self._diagnostics(workspace, path, [action.diagnostic])
-            found = {"diagnostics": [json.loads(template % tuple(chain.from_iterable(ranges)))]}
+            diagnostics = {"diagnostics": [json.loads(template % tuple(chain.from_iterable(ranges)))]}
         edit = self.workspace_edit(versions, (workspace, action.edits))
-        return {"title": action.title, "kind": action.kind, **preferred, **found, "edit": edit}
+        return {"title": action.title, "kind": action.kind, **preferred, **diagnostics, "edit": edit}
 
     def outline(self, workspace: Workspace, path: str, outline: Outline) -> types.DocumentSymbol:
         children = [self.outline(workspace, path, child) for child in outline.children]
@@ -216,46 +241,47 @@ class Converter:
         return types.FoldingRange(range_.start.line, range_.end.line, kind=kind)
 
     def selection(self, workspace: Workspace, path: str, spans: tuple[Span, ...]) -> types.SelectionRange:
-        found: types.SelectionRange | None = None
+        selection: types.SelectionRange | None = None
         for span in reversed(spans):
-            found = types.SelectionRange(self.range(workspace, path, span), parent=found)
-        assert found is not None, "the whole file is around every place"
-        return found
+            selection = types.SelectionRange(self.range(workspace, path, span), parent=selection)
+        assert selection is not None, "the whole file is around every place"
+        return selection
 
-    def signature(self, found: Signature) -> types.SignatureHelp:
+    def signature(self, help: Signature) -> types.SignatureHelp:
         parameters = [
-            types.ParameterInformation(one.label, documentation=markdown(one.documentation)) for one in found.parameters
+            types.ParameterInformation(parameter.label, documentation=markdown(parameter.documentation))
+            for parameter in help.parameters
         ]
-        signature = types.SignatureInformation(found.label, parameters=parameters, active_parameter=found.active)
-        return types.SignatureHelp([signature], active_signature=0, active_parameter=found.active)
+        signature = types.SignatureInformation(help.label, parameters=parameters, active_parameter=help.active)
+        return types.SignatureHelp([signature], active_signature=0, active_parameter=help.active)
 
-    def hover(self, workspace: Workspace, path: str, found: Hover) -> Json:
+    def hover(self, workspace: Workspace, path: str, hover: Hover) -> Json:
         """A hover, as plain data: the first one made of lsprotocol's classes would compile a converter for each."""
         file = workspace.files[path]
-        contents = f'{{"kind": "markdown", "value": {as_json(found.markdown)}}}'
+        contents = f'{{"kind": "markdown", "value": {as_json(hover.markdown)}}}'
         return Json(
-            f'{{"contents": {contents}, "range": {self._range_as_json(file.source_lines, file.on_disk(found.span))}}}'
+            f'{{"contents": {contents}, "range": {self._range_as_json(file.source_lines, file.on_disk(hover.span))}}}'
         )
 
-    def completion(self, workspace: Workspace, path: str, found: Completion) -> Json:
+    def completion(self, workspace: Workspace, path: str, completion: Completion) -> Json:
         """Proposals as JSON: an editor waits, and they may be hundreds.  Their span counts in the XML, if it is XML."""
-        range_, of_path = self._range_as_json(workspace.files[path].source_lines, found.span), as_json(path)
+        range_, of_path = self._range_as_json(workspace.files[path].source_lines, completion.span), as_json(path)
         items = []
-        for number, one in enumerate(found.proposals):
-            label = as_json(one.label)
-            text = one.insert if one.snippet is None else one.snippet
-            written = label if text == one.label else as_json(text)
-            name = label if one.name == one.label else as_json(one.name)
-            more = f', "detail": {as_json(one.detail)}' if one.detail else ""
-            if one.filter:
-                more += f', "filterText": {as_json(one.filter)}'
-            if one.snippet is not None:
+        for number, proposal in enumerate(completion.proposals):
+            label = as_json(proposal.label)
+            text = proposal.insert if proposal.snippet is None else proposal.snippet
+            written = label if text == proposal.label else as_json(text)
+            name = label if proposal.name == proposal.label else as_json(proposal.name)
+            more = f', "detail": {as_json(proposal.detail)}' if proposal.detail else ""
+            if proposal.filter:
+                more += f', "filterText": {as_json(proposal.filter)}'
+            if proposal.snippet is not None:
                 more += f', "insertTextFormat": {_SNIPPET}'
             items.append(
-                f'{{"label": {label}, "kind": {_COMPLETION_KINDS[one.kind]}, '
+                f'{{"label": {label}, "kind": {_COMPLETION_KINDS[proposal.kind]}, '
                 f'"sortText": "{number:05}", "textEdit": {{"range": {range_}, "newText": {written}}}, '
-                f'"data": {{"path": {of_path}, "kind": "{one.kind}", "name": {name}, '
-                f'"include": {as_json(one.include)}}}{more}}}'
+                f'"data": {{"path": {of_path}, "kind": "{proposal.kind}", "name": {name}, '
+                f'"include": {as_json(proposal.include)}}}{more}}}'
             )
         return Json(f'{{"isIncomplete": false, "items": [{", ".join(items)}]}}')
 
@@ -274,7 +300,8 @@ class _Written:
         self.where = where
         self._template = template
         self._ranges = [
-            (at, (first - lines[at], start, last - lines[at], end)) for at, (first, start, last, end) in ranges
+            (index, (first - lines[index], start, last - lines[index], end))
+            for index, (first, start, last, end) in ranges
         ]
         self._lines: list[int] = []
         self._text = ""

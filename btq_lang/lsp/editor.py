@@ -12,7 +12,7 @@ import json
 import logging
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from itertools import chain
 from threading import Event, Timer
@@ -29,9 +29,9 @@ from pygls.lsp.server import LanguageServer
 from btq_lang import ide as features
 from btq_lang.lsp.convert import Converter
 from btq_lang.lsp.protocol import Json, Messages, OutgoingMessages, Protocol
+from btq_lang.lsp.schedule import CheckSchedule
 from btq_lang.projects import failures
 from btq_lang.util.version import __version__
-from btq_lang.workspace.queries import Cancelled
 
 if TYPE_CHECKING:
     from btq_lang.ide.colours import Colours
@@ -62,13 +62,40 @@ class UnknownDocument(Exception):  # not an error: there is nothing to answer
 NOT_JSON = json.JSONDecodeError, UnicodeDecodeError
 NO_ITEMS = Json("[]")
 EMPTY_REPORT = Json('{"kind": "full", "items": []}')
-TOGETHER = 0.001  # seconds, within which a request arrives that an editor sends together with an edit
-REQUEST_WINDOW = 0.01  # seconds, within which an editor sends requests about published diagnostics
-PAUSE = 0.1  # seconds, less than between most keystrokes
-LONG_CHECK = 0.2  # seconds; of a longer check, a single step may delay an answer noticeably
-MAX_REST = 0.5  # seconds, for which a long check is delayed after a keystroke
 POLL = 5  # seconds between checks that the editor's process still runs
 MAX_DETAILS = 500  # a parameter may contain a whole text
+
+
+class Handlers:
+    """What a module registers: functions whose first argument is the server."""
+
+    def __init__(self) -> None:
+        self._registrations: list[Callable[[Server], object]] = []
+
+    def feature(self, name: str, options: Any | None = None, otherwise: Any = None) -> Callable[[Handler], Handler]:
+        """Handle a request or a notification; the arguments are those of `Server.feature`."""
+
+        def add(handler: Handler) -> Handler:
+            self._registrations.append(
+                lambda server: server.feature(name, options, otherwise)(functools.partial(handler, server))
+            )
+            return handler
+
+        return add
+
+    def command(self, name: str) -> Callable[[Handler], Handler]:
+        """Handle a command, whose arguments pygls converts as the annotations say."""
+
+        def add(handler: Handler) -> Handler:
+            self._registrations.append(lambda server: server.command(name)(handler))
+            return handler
+
+        return add
+
+    def register(self, server: Server) -> None:
+        """Register all of them with pygls."""
+        for register in self._registrations:
+            register(server)
 
 
 class Traced(logging.Handler):
@@ -98,19 +125,16 @@ class Server(LanguageServer):
         self.versions: dict[str, int] = {}
         self.published: dict[str, tuple[int | None, int | None]] = {}  # hashes of what was published, and versions
         self.pulls_all = False  # the editor pulls workspace diagnostics
-        self.shown: set[str] = set()  # the files of which a pulling editor may still show diagnostics
+        self.shown: set[str] = set()  # files whose diagnostics a pulling editor may still show
         self.tokens: dict[str, tuple[str, Colours]] = {}
         self.count = 0
-        self.waiting: dict[str, None] = {}
-        self.last_keystroke = -MAX_REST  # the time of the last keystroke
-        self._pause: asyncio.Task[None] | None = None  # waits for a pause, and uses it
-        self.answering = 0  # how many requests are being answered in steps
+        self.schedule = CheckSchedule(self)
         self._ready: set[str] = set()  # the files prepared for first requests
-        self.task: asyncio.Task[None] | None = None
         self.scanned = asyncio.Event()  # the folders have been read; before, the set of files is unknown
         self._is_settled = False  # the first objects are frozen for the garbage collector
         self._failures: set[object] = set()  # the places of logged failures
         self.on_scanned: Callable[[], None] = lambda: None  # called when the folders have been read
+        self.on_saved: Callable[[str], None] = lambda path: None  # called when a file has been saved
         self.on_end: Callable[[], None] = lambda: None  # called when the server ends
         self.protocol.log_failure = self.log_failure
         self._watching: asyncio.Task[None] | None = None
@@ -274,7 +298,7 @@ class Server(LanguageServer):
                 requests have answers about XML.
 
         Raises:
-            Unknown: it is in no folder, or C++, or XML that is not the engine's or not to be read.
+            UnknownDocument: it is in no folder, or C++, or XML that is not the engine's or not to be read.
         """
         path = self.convert.path(document.uri)
         workspace = self.session.workspace_of(path)
@@ -290,7 +314,7 @@ class Server(LanguageServer):
         """The result of a feature at a position, and the workspace and path of its spans; `reads`: as in `at`.
 
         Raises:
-            Unknown: the document is, or no text is translated from this place of it.
+            UnknownDocument: the document is unknown, or no text is translated from this place of it.
         """
         workspace, path = self.at(place.text_document, reads=reads)
         offset = workspace.files[path].from_disk(self.convert.offset(workspace, path, place.position))
@@ -305,112 +329,54 @@ class Server(LanguageServer):
         if path in self.session.projects:
             return self.convert.problems(*self.session.projects[path])
         if path in self.session.parameters:
-            named, found = self.session.parameters[path]
-            return self.convert.findings(named, path, found)
+            named, diagnostics = self.session.parameters[path]
+            return self.convert.findings(named, path, diagnostics)
         workspace = self.session.workspace_of(path)
         if workspace is None or not self.session.knows(path):
             return None
         return self.convert.findings(workspace, path, self.session.findings(path))
 
-    def check_soon(self, paths: Iterable[str]) -> None:
-        """Schedule files, in their order, for checking and publishing, before those already waiting."""
-        self.waiting = dict.fromkeys((*paths, *self.waiting))
-        if self._pause is not None:
-            self._pause.cancel()
-        if self.task is None or self.task.done():
-            self.task = asyncio.ensure_future(self._check())
+    def announce_changes(self) -> None:
+        """Make an editor that pulls diagnostics ask for them again."""
+        self.publish_projects()
+        if self.can_refresh("diagnostics"):
+            self.workspace_diagnostic_refresh(None)
 
-    async def rest(self, path: str) -> None:
-        """Let requests go first: wait after the last keystroke as long as a long check takes."""
-        clock = asyncio.get_running_loop().time
-        while (check_seconds := self.session.check_seconds.get(path, 0)) > LONG_CHECK:
-            rest = self.last_keystroke + min(check_seconds, MAX_REST) - clock()
-            if rest <= 0:
-                break
-            await asyncio.sleep(rest)
-
-    async def check(self, path: str) -> None:
-        """Check a file for a request, after handling any message that comes meanwhile."""
-        while True:
-            await self.rest(path)
-            try:
-                self.session.check(path, self.has_message)
-                return
-            except Cancelled:
-                await asyncio.sleep(0)
-
-    async def _check(self) -> None:
-        """Check file by file: messages are handled first, then the edited file is checked, then the others, and those
-        that are not open only when no request is being answered.
-        """
-        await asyncio.sleep(TOGETHER)
-        if self.pulls:
-            self.waiting.clear()
-            self.publish_projects()
-            if self.can_refresh("diagnostics"):
-                self.workspace_diagnostic_refresh(None)
-        loop = asyncio.get_running_loop()
-        published_at = -REQUEST_WINDOW
-        while self.waiting:
-            path = next(iter(self.waiting))
-            is_open = path in self.session.open
-            if not is_open and (self.answering or loop.time() < published_at + REQUEST_WINDOW):
-                await asyncio.sleep(REQUEST_WINDOW / 10)
-                continue
-            await self.rest(path)
-            if path != next(iter(self.waiting)):  # another file was edited meanwhile
-                continue
-            del self.waiting[path]
-            try:
-                self.session.check(path, self.has_message)
-                self.publish(path)
-            except Cancelled:
-                self.waiting = {path: None, **self.waiting}
-                await asyncio.sleep(0)
-                continue
-            except Exception as error:  # a file that cannot be checked must not block the others
-                self.log_failure(error)
-            self.session.let_go()
-            published_at = loop.time() if is_open else published_at
-            await asyncio.sleep(0)
+    def publish_gone(self) -> None:
+        """Withdraw the diagnostics of files that are no longer known."""
         for path in [path for path in self.published if not self.session.knows(path)]:
             self.publish(path)
-        self._pause = asyncio.ensure_future(self._use_pause())
 
-    async def _use_pause(self) -> None:
-        """While the editor is idle, do pending maintenance, and prepare for the first requests about open files,
-        handling messages between steps; an edit ends it."""
+    def getting_ready(self) -> Iterator[None]:
+        """Do pending maintenance, and prepare for the first requests about open files, in steps."""
         if self.scanned.is_set() and not self._is_settled:
             gc.freeze()  # the first objects stay alive: scanning them would delay an answer
             self._is_settled = True
-        await asyncio.sleep(PAUSE)
-        while self.answering:
-            await asyncio.sleep(PAUSE)
+        yield
         self._ready.intersection_update(self.session.open)
         for path in [path for path in self.session.open if path not in self._ready]:
             with suppress(UnknownDocument):
                 place = self.at(types.TextDocumentIdentifier(self.convert.uri(path)))
                 has_tokens = self.supports("text_document.semantic_tokens")
                 tokens = features.colours.making(*place, self.convert.encoding) if has_tokens else ()
-                for _ in chain(self.protocol.getting_ready(), tokens, features.readiness.getting_ready(*place)):
-                    await asyncio.sleep(PAUSE if self.answering else 0)
+                yield from chain(self.protocol.getting_ready(), tokens, features.readiness.getting_ready(*place))
             self._ready.add(path)
 
     def publish(self, path: str) -> None:
         """Publish the diagnostics of a file, unless they are already published."""
         version = self.versions.get(path)
-        found = (
+        diagnostics = (
             self.diagnostics_of(path) if path in self.session.open or self.session.is_on("checkClosedFiles") else None
         )
-        if found is None:
+        if diagnostics is None:
             self.withdraw(path)
             self.session.forget(path)
             return
-        known = self.published.get(path)
-        now = self.published[path] = hash(found) if found != NO_ITEMS else None, version
-        if now != known and (found != NO_ITEMS or known is not None or path in self.session.open):
+        before = self.published.get(path)
+        current = self.published[path] = hash(diagnostics) if diagnostics != NO_ITEMS else None, version
+        if current != before and (diagnostics != NO_ITEMS or before is not None or path in self.session.open):
             name = json.dumps({"uri": self.convert.uri(path), **({"version": version} if version is not None else {})})
-            params = Json(f'{name[:-1]}, "diagnostics": {found}}}')
+            params = Json(f'{name[:-1]}, "diagnostics": {diagnostics}}}')
             self.protocol.notify_plain(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS, params)
 
     def publish_projects(self) -> None:
@@ -441,7 +407,7 @@ class Server(LanguageServer):
 
     def reload(self) -> None:
         """Read folders and projects again, and publish changes."""
-        self.check_soon(self.session.reload())
+        self.schedule.check_soon(self.session.reload())
         self.refresh()
 
     def refresh(self) -> None:

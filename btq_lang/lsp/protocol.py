@@ -183,8 +183,8 @@ class Messages:
         """One message; empty at the end of input."""
         length = 0
         while (line := self._stream.readline()).strip() or (line and not length):
-            found = _LENGTH.match(line)
-            length = int(found[1]) if found else length
+            match = _LENGTH.match(line)
+            length = int(match[1]) if match else length
         if length:
             self._body = self._stream.read(length)
         if length and len(self._body) == length:  # an editor that crashes may end within a message

@@ -110,10 +110,10 @@ class Session:
         if old.included_paths != after.files[path].included_paths or not is_pool_same:
             return (path, *self.reload())
         linked: set[str] = set()  # uses are known in both directions
-        for each in self._workspaces:
-            if path in each.files:
-                looking = {*each.xml} - self._pooled if each.project.pools else ()  # for what it lacks
-                linked.update(each.linked(path, *looking))
+        for other in self._workspaces:
+            if path in other.files:
+                looking = {*other.xml} - self._pooled if other.project.pools else ()  # for what it lacks
+                linked.update(other.linked(path, *looking))
         if renamed := old.defined_names ^ after.files[path].defined_names:
             linked.update(other for other in after.files if other != path and _lacks_definition(after, other, renamed))
         return path, *sorted(linked - {path}, key=lambda other: (other not in self.open, other))
@@ -141,39 +141,39 @@ class Session:
         groups, problems = self._files.groups((*self.folders, *missions), for_checks=True)
         self._read_projects(problems)
         self._read_parameters(severities)
-        before = {(each.factory, *each.files): each for each in (*self._aside, *self._workspaces)}
+        before = {(workspace.factory, *workspace.files): workspace for workspace in (*self._aside, *self._workspaces)}
         self._workspaces = []
         self._home = {}
         self._pooled = frozenset().union(*(group.pooled for group in groups))
-        given: set[str] = set()
+        registered: set[str] = set()
         for index, group in enumerate(groups):
             workspace = group.workspace
             if severities:
                 workspace = workspace.with_project(_with_severities(workspace.project, severities))
-            known = before.pop((workspace.factory, *workspace.files), None)
-            if known is not None and known is not workspace:
-                advance(known, workspace)
+            predecessor = before.pop((workspace.factory, *workspace.files), None)
+            if predecessor is not None and predecessor is not workspace:
+                advance(predecessor, workspace)
             self._workspaces.append(workspace)
             for path in workspace.files:
-                of = workspace.registered or group.given
-                if path in of and path not in given:
-                    given.add(path)
+                own_paths = workspace.registered or group.given
+                if path in own_paths and path not in registered:
+                    registered.add(path)
                     self._home[path] = index
                 self._home.setdefault(path, index)
         unread = [path for path in self.open if (home := self.workspace_of(path)) and home.files[path].last_read]
-        self._aside = [each for each in before.values() if not each.files.keys().isdisjoint(unread)]
+        self._aside = [workspace for workspace in before.values() if not workspace.files.keys().isdisjoint(unread)]
         return self.paths()
 
     def _read_projects(self, problems: Iterable[LoadProblem]) -> None:
         """Store the problems of project files, those of missions and open ones."""
-        found = {path: find_project(path, self.open) for path in self.open if is_project_file(path)}
-        of_open = [each for one in found.values() for each in one.problems]
-        by_path: dict[str, dict[LoadProblem, None]] = {path: {} for path in found}
+        homes = {path: find_project(path, self.open) for path in self.open if is_project_file(path)}
+        of_open = [problem for home in homes.values() for problem in home.problems]
+        by_path: dict[str, dict[LoadProblem, None]] = {path: {} for path in homes}
         for problem in (*problems, *of_open):
             if is_project_file(problem.path):
                 by_path.setdefault(problem.path, {})[problem] = None
         texts = {path: self.open[path] if path in self.open else read(path)[0] or "" for path in by_path}
-        self.projects = {path: (texts[path], tuple(found)) for path, found in by_path.items()}
+        self.projects = {path: (texts[path], tuple(of_file)) for path, of_file in by_path.items()}
 
     def _read_parameters(self, severities: Severities) -> None:
         """Store the findings in parameter files."""
@@ -182,11 +182,13 @@ class Session:
             return
         from btq_lang.projects.nav2_check import nav2_findings  # few projects are for Nav2
 
-        read = self._files.parameter_files
-        found, texts = nav2_findings(read, self._files, (), lambda project: _with_severities(project, severities))
+        files = self._files.parameter_files
+        all_findings, texts = nav2_findings(
+            files, self._files, (), lambda project: _with_severities(project, severities)
+        )
         workspace = Workspace.of(texts)
-        for file in read:
-            placed = (each.diagnostic for each in found if each.path == file.path)
+        for file in files:
+            placed = (finding.diagnostic for finding in all_findings if finding.path == file.path)
             self.parameters[file.path] = workspace, FileFindings.placed(placed)
 
     def with_code_of_nav2(self, workspace: Workspace) -> Workspace:
@@ -220,22 +222,22 @@ class Session:
             held = [path for path, file in workspace.files.items() if file.is_parsed]
             idle = [path for path in held if path not in active]
             if sum([len(workspace.files[path].text) for path in idle]) > _MOST_IDLE:
-                for each in self.workspaces():  # each of these keeps the replaced objects alive
-                    each.let_go(idle[:_AT_ONCE])
+                for other in self.workspaces():  # each of these keeps the replaced objects alive
+                    other.let_go(idle[:_AT_ONCE])
 
     def _active_files(self) -> set[str]:
         """The open files, those linked with them, and those in which linked XML finds what it lacks, in any workspace:
         workspaces may share files.
         """
-        found: set[str] = set()
+        active: set[str] = set()
         for workspace in self.workspaces():
             missions = {workspace.missions.get(path) for path in self.open} - {None}
             linked = [path for path, mission in workspace.missions.items() if mission in missions]
-            found.update(linked)
+            active.update(linked)
             for name in _lacking(workspace, linked):
                 for kind in (Kind.TREE, Kind.MODEL):
-                    found.update(workspace.files_defining(kind, name))
-        return found
+                    active.update(workspace.files_defining(kind, name))
+        return active
 
     # ---- queries ----
 
@@ -254,7 +256,7 @@ class Session:
         home = self.workspace_of(path)
         if home is None or home.factory is None or home.files[path].is_cpp:
             return () if home is None else (home,)
-        return tuple(each for each in self._workspaces if path in each.registered)
+        return tuple(workspace for workspace in self._workspaces if path in workspace.registered)
 
     def knows(self, path: str) -> bool:
         """Whether a path is that of a mission, a project file or a C++ source that is reported on."""
@@ -270,8 +272,8 @@ class Session:
 
     def paths(self) -> tuple[str, ...]:
         """All known files that are reported on, open ones first."""
-        known = {*(self._home.keys() - self._pooled), *self.projects, *self.parameters}
-        return tuple(sorted(known, key=lambda path: (path not in self.open, path)))
+        reported = {*(self._home.keys() - self._pooled), *self.projects, *self.parameters}
+        return tuple(sorted(reported, key=lambda path: (path not in self.open, path)))
 
     def unsent(self) -> tuple[str, ...]:
         """The files that are reported on and that an editor does not send: of projects, parameters, and C++ sources."""
@@ -284,7 +286,7 @@ class Session:
             return True
         cpp = [path for path in changed if path.endswith(CPP_SUFFIXES)]  # that a project may name: it may be new
         projects = [workspace.project for workspace in self._workspaces] if cpp else ()
-        return any(any(map(path_matcher(each.cpp_patterns, each.root), cpp)) for each in projects)
+        return any(any(map(path_matcher(project.cpp_patterns, project.root), cpp)) for project in projects)
 
     def is_side_file(self, path: str) -> bool:
         """Whether a path is that of a side file, on which only lenses and hovers depend."""
@@ -296,12 +298,12 @@ class Session:
 
     def places(self) -> set[str]:
         """All known files, and all folders above them."""
-        found: set[str] = set()
+        places: set[str] = set()
         for place in self.paths():
-            while place not in found:
-                found.add(place)
+            while place not in places:
+                places.add(place)
                 place = place.rpartition("/")[0]
-        return found
+        return places
 
     def check(self, path: str, is_cancelled: Callable[[], bool]) -> None:
         """Check an open file.
@@ -312,7 +314,7 @@ class Session:
         Raises:
             Cancelled: it is; results so far are cached.
         """
-        stores = [each.store for each in self.workspaces_of(path)] if path in self.open else []
+        stores = [workspace.store for workspace in self.workspaces_of(path)] if path in self.open else []
         for store in stores:
             store.is_cancelled = is_cancelled
         try:
@@ -327,29 +329,31 @@ class Session:
         workspaces = self.workspaces_of(path)
         if not workspaces:
             return FileFindings([])
-        known = self._checked.get(path)
-        if known is not None and [id(each()) for each in known[0]] == [*map(id, workspaces)]:
-            return known[1]
+        checked = self._checked.get(path)
+        if checked is not None and [id(each()) for each in checked[0]] == [*map(id, workspaces)]:
+            return checked[1]
         if path in self.open:
             begin = perf_counter()
             for workspace in workspaces:
                 keep(workspace, path)
-            of_each = [findings(each.store, path, self._seen(each, path)) for each in workspaces]
-            found = of_each[0]
+            of_each = [findings(workspace.store, path, self._seen(workspace, path)) for workspace in workspaces]
+            file_findings = of_each[0]
             if len(of_each) > 1:
-                found = self._merged(workspaces, [each.diagnostics for each in of_each])
+                file_findings = self._merged(workspaces, [each.diagnostics for each in of_each])
             self.check_seconds[path] = perf_counter() - begin
         else:  # placed: offsets that count from items would keep these alive
             of_closed = [
-                findings(each.store, path, seen).diagnostics if (seen := self._seen(each, path)) else check(each, path)
-                for each in workspaces
+                findings(workspace.store, path, seen).diagnostics
+                if (seen := self._seen(workspace, path))
+                else check(workspace, path)
+                for workspace in workspaces
             ]
-            found = self._merged(workspaces, of_closed)
-        self._checked[path] = tuple(map(ref, workspaces)), found
-        return found
+            file_findings = self._merged(workspaces, of_closed)
+        self._checked[path] = tuple(map(ref, workspaces)), file_findings
+        return file_findings
 
     def _seen(self, workspace: Workspace, path: str) -> tuple[Reported, ...]:
-        """What logs show of the requirements at the nodes of a file."""
+        """Findings about the requirements at the nodes of a file, by logs."""
         evidence = self.evidence(workspace)
         if evidence is None:
             return ()
@@ -358,18 +362,18 @@ class Session:
         return verdict_findings(workspace, path, evidence)
 
     def evidence(self, workspace: Workspace) -> ProjectVerdicts | None:
-        """What logs show of a project's requirements, if it names logs and these have been judged."""
+        """The verdicts on a project's requirements, if it names logs and these have been judged."""
         project = workspace.project
         return self._evidence.get(project.root) if project.evidence is not None and project.evidence.logs else None
 
     def show(self, root: str, evidence: ProjectVerdicts) -> None:
-        """Use what logs show of the requirements of the project in a folder."""
+        """Use these verdicts on the requirements of the project in a folder."""
         self._evidence[root] = evidence
         self._checked.clear()
 
-    def _merged(self, workspaces: Iterable[Workspace], found: Iterable[tuple[Diagnostic, ...]]) -> FileFindings:
-        """What is found in one file in each of its factories."""
-        of_each = [(workspace.factory, each) for workspace, each in zip(workspaces, found, strict=True)]
+    def _merged(self, workspaces: Iterable[Workspace], diagnostics: Iterable[tuple[Diagnostic, ...]]) -> FileFindings:
+        """The findings in one file, merged from those in each of its factories."""
+        of_each = [(workspace.factory, each) for workspace, each in zip(workspaces, diagnostics, strict=True)]
         return FileFindings.placed(merged(of_each))
 
     def diagnostics(self, path: str) -> tuple[Diagnostic, ...]:
@@ -388,7 +392,7 @@ class Session:
         return None if stamp(side) is None else read(side)[0] or ""
 
     def is_on(self, name: str) -> bool:
-        """Whether the user wants something, as long as nothing else is set."""
+        """Whether a setting is on, as all are unless the user switches them off."""
         return self.settings.get(name) is not False
 
 
@@ -401,7 +405,7 @@ def _with_severities(project: Project, severities: Severities) -> Project:
 
 def _is_xml_alike(old: File, new: File) -> bool:
     """Whether both texts of a file, or neither, look like XML, so that it has a pool."""
-    of_each = [each.is_foreign and each.source.lstrip()[:1] for each in (old, new)]
+    of_each = [file.is_foreign and file.source.lstrip()[:1] for file in (old, new)]
     return of_each[0] == of_each[1]
 
 

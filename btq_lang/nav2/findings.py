@@ -1,6 +1,6 @@
-"""What is wrong with a parameter file, and with what bt_navigator loads by it.
+"""The diagnostics of a parameter file and of the files that bt_navigator loads by it.
 
-One invariant: without a distribution nothing is said that depends on it.
+One invariant: without a distribution there is no diagnostic that depends on one.
 """
 
 from __future__ import annotations
@@ -13,12 +13,10 @@ from btq_lang.catalog.nav2.navigator import OWN_PACKAGE
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.nav2.libraries import NAMES, Libraries
+from btq_lang.nav2.libraries import NAMES, Libraries, own_libraries
 from btq_lang.nav2.loaded import Load, SkippedFile, file_with
-from btq_lang.nav2.names import parameter_findings
-from btq_lang.nav2.own_libraries import own_libraries
+from btq_lang.nav2.names import OwnCode, parameter_findings, unknown_parameters
 from btq_lang.nav2.parameters import Parameters
-from btq_lang.nav2.unknown import OwnCode, unknown_parameters
 from btq_lang.syntax.tree import Tree
 from btq_lang.util.record import Record, replace
 from btq_lang.util.spelling import did_you_mean, near
@@ -34,56 +32,56 @@ class NavigatorTree(Record):
 
 
 def findings(
-    parameters: Parameters, distribution: str, found: Iterable[NavigatorTree]
+    parameters: Parameters, distribution: str, trees: Iterable[NavigatorTree]
 ) -> Iterator[tuple[str | None, Diagnostic]]:
-    """All that is wrong, with the file that it is in; None: the parameter file."""
-    found = tuple(found)
-    libraries = Libraries(parameters, distribution, own_libraries(each.workspace for each in found))
-    all_found: list[tuple[str | None, Diagnostic]] = []
-    of_names = unknown_parameters(parameters, distribution, _own_code(parameters, libraries, found))
-    all_found += ((None, each) for each in (*parameter_findings(parameters, distribution), *of_names))
-    all_found += ((None, each) for each in libraries.findings())
-    for each in found:
-        all_found += ((None, one) for one in _unloaded(each, parameters, libraries))
-    for load, one in _of_loads(parameters, distribution, found):
-        all_found += [(goal.path, replace(one, span=goal.span)) for goal in load.goals] or [(None, one)]
-    yield from dict.fromkeys(all_found)
+    """All diagnostics, each with its file; None is the parameter file."""
+    trees = tuple(trees)
+    libraries = Libraries(parameters, distribution, own_libraries(tree.workspace for tree in trees))
+    results: list[tuple[str | None, Diagnostic]] = []
+    of_names = unknown_parameters(parameters, distribution, _own_code(parameters, libraries, trees))
+    results += ((None, diagnostic) for diagnostic in (*parameter_findings(parameters, distribution), *of_names))
+    results += ((None, diagnostic) for diagnostic in libraries.findings())
+    for tree in trees:
+        results += ((None, diagnostic) for diagnostic in _unloaded(tree, parameters, libraries))
+    for load, diagnostic in _of_loads(parameters, distribution, trees):
+        results += [(goal.path, replace(diagnostic, span=goal.span)) for goal in load.goals] or [(None, diagnostic)]
+    yield from dict.fromkeys(results)
 
 
-def _own_code(parameters: Parameters, libraries: Libraries, found: Iterable[NavigatorTree]) -> OwnCode:
-    files = {path: file.source for each in found for path, file in each.workspace.files.items() if file.is_cpp}
+def _own_code(parameters: Parameters, libraries: Libraries, trees: Iterable[NavigatorTree]) -> OwnCode:
+    files = {path: file.source for tree in trees for path, file in tree.workspace.files.items() if file.is_cpp}
     has_navigator = any(not plugin.text.startswith(OWN_PACKAGE) for _, plugin in parameters.plugins)
     return OwnCode(tuple(files.values()), has_navigator or not libraries.are_of_nav2)
 
 
 def wrong_goals(
-    parameters: Parameters, distribution: str, found: Iterable[NavigatorTree]
+    parameters: Parameters, distribution: str, trees: Iterable[NavigatorTree]
 ) -> Iterator[tuple[str, Diagnostic]]:
-    """What is wrong with the trees that goals name, by this name, wherever it is; without other files, which the trees
-    that name them need not have loaded."""
-    for load, one in _of_loads(parameters, distribution, found):
-        named = load.main or (load.tree.named if load.tree is not None else None)
-        if load.goals and named is not None:
-            yield named.text, replace(one, related=())
+    """The diagnostics of the trees that goals name, each with that name; without related places, as their files need
+    not be loaded."""
+    for load, diagnostic in _of_loads(parameters, distribution, trees):
+        tree_name = load.main or (load.tree.named if load.tree is not None else None)
+        if load.goals and tree_name is not None:
+            yield tree_name.text, replace(diagnostic, related=())
 
 
 def _of_loads(
-    parameters: Parameters, distribution: str, found: Iterable[NavigatorTree]
+    parameters: Parameters, distribution: str, trees: Iterable[NavigatorTree]
 ) -> Iterator[tuple[Load, Diagnostic]]:
     """What is wrong with the trees that bt_navigator creates and with the files that it registers for them."""
-    seen: set[str | None] = set()
-    for each in found:
-        of_load = [*_places(each), *_folders(each.load, parameters, seen)]
-        of_load += _without_main(each, parameters) if distribution != "lyrical" else ()
-        yield from ((each.load, one) for one in of_load)
+    reported_paths: set[str | None] = set()
+    for tree in trees:
+        of_load = [*_places(tree), *_folders(tree.load, parameters, reported_paths)]
+        of_load += _without_main(tree, parameters) if distribution != "lyrical" else ()
+        yield from ((tree.load, diagnostic) for diagnostic in of_load)
 
 
 # ---- trees and folders ----
 
 
-def _places(found: NavigatorTree) -> Iterator[Diagnostic]:
-    """What parameters or goals name, and is not there."""
-    load = found.load
+def _places(navigator_tree: NavigatorTree) -> Iterator[Diagnostic]:
+    """Files, folders and trees that parameters or goals name and that do not exist."""
+    load = navigator_tree.load
     for place in (load.tree, *(load.folders if not load.goals else ())):
         if place is None or not place.problem or place.named is None:
             continue
@@ -98,12 +96,12 @@ def _places(found: NavigatorTree) -> Iterator[Diagnostic]:
             refused = "bt_navigator refuses to start"
             notes = ("without this folder bt_navigator loads no tree at all",) if is_folder else (refused,)
         yield Diagnostic("missing-nav2-tree", place.named.span, message, notes=notes, severity=place.severity)
-    if load.main is not None and load.is_whole and not _defines(found.workspace, load.main.text):
-        if any(load.main.text in each.ids for each in load.skipped):
+    if load.main is not None and load.is_whole and not _defines(navigator_tree.workspace, load.main.text):
+        if any(load.main.text in skipped.ids for skipped in load.skipped):
             return  # which is reported
-        more = did_you_mean(near(load.main.text, _tree_names(found.workspace), 1))
+        more = did_you_mean(near(load.main.text, _tree_names(navigator_tree.workspace), 1))
         related: tuple[Related, ...] = ()
-        outside = file_with(load.main.text, found.workspace.project.root)
+        outside = file_with(load.main.text, navigator_tree.workspace.project.root)
         if outside is not None:
             more = f"; `{_name(outside)}` has one, but is in none of them"
             related = (Related(outside, "this file"),)
@@ -112,10 +110,9 @@ def _places(found: NavigatorTree) -> Iterator[Diagnostic]:
         yield Diagnostic("missing-nav2-tree", load.main.span, message, related, notes)
 
 
-def _without_main(found: NavigatorTree, parameters: Parameters) -> Iterator[Diagnostic]:
-    """A file with several trees, with those that it includes, none of which is the main one; Lyrical creates a tree by
-    its ID."""
-    load, workspace = found.load, found.workspace
+def _without_main(navigator_tree: NavigatorTree, parameters: Parameters) -> Iterator[Diagnostic]:
+    """A file that has several trees, with its includes, and names no main one.  Lyrical creates a tree by its ID."""
+    load, workspace = navigator_tree.load, navigator_tree.workspace
     top = workspace.files.get((load.tree.path if load.tree is not None else None) or "")
     listed = listed_trees(top.source) if top is not None else None
     if top is None or listed is None or listed[1] is not None:
@@ -134,10 +131,10 @@ def _without_main(found: NavigatorTree, parameters: Parameters) -> Iterator[Diag
         yield Diagnostic("refused-tree-file", _span(place, load, parameters), message, related, notes)
 
 
-def _folders(load: Load, parameters: Parameters, seen: set[str | None]) -> Iterator[Diagnostic]:
-    """The files that bt_navigator skips or refuses, except those that were seen before, to which these are added."""
+def _folders(load: Load, parameters: Parameters, reported_paths: set[str | None]) -> Iterator[Diagnostic]:
+    """The files that bt_navigator skips or refuses, except those already reported, to which these are added."""
     for place in load.refused:
-        if place.path not in seen:
+        if place.path not in reported_paths:
             name = _name(place)
             which = "nothing says which of its trees is the main one"
             message = f"`{name}` keeps bt_navigator from loading any tree: {which}"
@@ -145,15 +142,15 @@ def _folders(load: Load, parameters: Parameters, seen: set[str | None]) -> Itera
             span = _span(place, load, parameters)
             yield Diagnostic("refused-tree-file", span, message, (Related(place, "second tree"),), notes)
     for skipped in load.skipped:
-        if skipped.place.path not in seen:
+        if skipped.place.path not in reported_paths:
             yield _skipped(skipped, load, parameters)
-    seen.update(each.path for each in (*load.refused, *(skipped.place for skipped in load.skipped)))
+    reported_paths.update(place.path for place in (*load.refused, *(skipped.place for skipped in load.skipped)))
 
 
 def _skipped(skipped: SkippedFile, load: Load, parameters: Parameters) -> Diagnostic:
     name, other = _name(skipped.place), _name(skipped.other)
     if name == other:  # in two folders
-        name, other = (_name(each, 2) for each in (skipped.place, skipped.other))
+        name, other = (_name(place, 2) for place in (skipped.place, skipped.other))
     related: tuple[Related, ...] = (Related(skipped.place, "this file"),)
     message = f"bt_navigator skips `{name}`, which has no tree with an ID"
     notes: tuple[str, ...] = ()
@@ -170,7 +167,7 @@ def _skipped(skipped: SkippedFile, load: Load, parameters: Parameters) -> Diagno
 
 
 def _span(file: Place, load: Load, parameters: Parameters) -> Span:
-    """Where the parameters name a file, or the folder that it is in."""
+    """The span in the parameters that names a file or a folder around it."""
     path = file.path or ""
     for place in (load.tree, *load.folders):
         if place is None or place.path is None or place.named is None:
@@ -188,12 +185,12 @@ def _name(place: Place | None, parts: int = 1) -> str:
 # ---- nodes ----
 
 
-def _unloaded(found: NavigatorTree, parameters: Parameters, libraries: Libraries) -> Iterator[Diagnostic]:
+def _unloaded(navigator_tree: NavigatorTree, parameters: Parameters, libraries: Libraries) -> Iterator[Diagnostic]:
     """Nodes that nothing registers."""
     span = parameters.key(NAMES) or parameters.place or Span(0, 0)
     refused = ("while such a file is in a search directory, bt_navigator loads no tree at all",)
-    notes = refused if found.load.folders else ()  # as Lyrical does
-    for name, place in _strangers(found.workspace).items():
+    notes = refused if navigator_tree.load.folders else ()  # as Lyrical does
+    for name, place in _strangers(navigator_tree.workspace).items():
         if name in libraries.nodes:
             continue
         related = (Related(place, "used here"),)
@@ -208,7 +205,7 @@ def _unloaded(found: NavigatorTree, parameters: Parameters, libraries: Libraries
 
 def _strangers(workspace: Workspace) -> dict[str, Place]:
     """The nodes in registered files that are not the engine's, each with the place where it is first used."""
-    found: dict[str, Place] = {}
+    first_uses: dict[str, Place] = {}
     for path in workspace.registered:
         file = workspace.files[path]
         names = {
@@ -218,8 +215,8 @@ def _strangers(workspace: Workspace) -> dict[str, Place]:
         }
         for entry, use in file.uses if names else ():
             if use.kind is Kind.MODEL and use.name in names:
-                found.setdefault(use.name, Place(file.on_disk(use.span.shifted(entry.start)), path))
-    return found
+                first_uses.setdefault(use.name, Place(file.on_disk(use.span.shifted(entry.start)), path))
+    return first_uses
 
 
 def _defines(workspace: Workspace, tree: str) -> bool:

@@ -1,8 +1,8 @@
 """The trees that bt_navigator creates, and the files that it reads for them.
 
 One invariant: a file or folder that is not on this machine is an error only if the package that should have it is
-installed here, and a warning if its package is in the workspace, or a relative path leads to no file of the project:
-what a launch file or a build puts in its place is not known.
+installed here.  It is a warning if its package is in the workspace, or if a relative path leads to no file of the
+project, as a launch file or a build may put another one in its place.
 """
 
 from __future__ import annotations
@@ -36,10 +36,10 @@ class Located(Record):
     """A file or folder that parameters name.
 
     Attributes:
-        named: as it is written, and where; None: it counts because nothing is written in the parameters.
-        path: where it is; None if it is not here.
-        problem: why it is not here, for a message; empty if nothing is wrong with that.
-        severity: how sure it is that it is not on the robot either.
+        named: its name in the parameters, and where; None for the default.
+        path: None if it is not on this machine.
+        problem: the reason why it is not here, for a message; empty if that is no mistake.
+        severity: of the problem; an error if the robot certainly lacks it too.
     """
 
     named: ParameterText | None
@@ -54,7 +54,7 @@ class SkippedFile(Record):
     Attributes:
         place: of its first tree, or of the one that another file has too.
         id: of that tree, and where it is in the other file; None: no tree has an ID.
-        loses: whether that makes a difference: it has a tree that no other file has, or either file may be skipped.
+        loses: whether that has an effect: it has a tree that no other file has, or either file may be skipped.
         ids: of all its trees.
     """
 
@@ -73,7 +73,7 @@ class Load(Record):
         tree: the file with the tree; None if an ID names it.
         main: that ID.
         files: that it registers, in order.
-        skipped: files that it passes over, with why.
+        skipped: files that it passes over, with the reasons.
         refused: files that keep it from loading anything: nothing says which of their trees is the main one; the
             place is that of the second tree.
         folders: that it searches.
@@ -93,7 +93,7 @@ class Load(Record):
     def is_whole(self) -> bool:
         """Whether all that it reads is known."""
         places = (*self.folders, *([self.tree] if self.tree is not None else ()))
-        return all(each.path is not None for each in places)
+        return all(place.path is not None for place in places)
 
 
 class Loads:
@@ -157,21 +157,28 @@ class Loads:
             text = self._read(path) or ""
             listed = listed_trees(text)
             ids, main = listed or ((), None)
-            clash = next((each for each in ids if each in owners), None)
+            clash = next((tree_id for tree_id in ids if tree_id in owners), None)
             places = [Place(Span(*match.span()), path) for match in _TREE.finditer(text)] or [Place(Span(0, 0), path)]
             if listed is not None and not main and (len(ids) > 1 or (path == first and not ids)):
                 refused.append(places[min(1, len(places) - 1)])
             elif not ids:
                 skipped.append(SkippedFile(places[0], None, None, text.find("<BehaviorTree") >= 0))
             elif clash is not None:
-                at = next((each for each in places if f'"{clash}"' in text[each.span.start : each.span.end]), places[0])
+                place = next(
+                    (
+                        candidate
+                        for candidate in places
+                        if f'"{clash}"' in text[candidate.span.start : candidate.span.end]
+                    ),
+                    places[0],
+                )
                 is_certain = owners[clash].path == first  # else the other file may be the one that is skipped
                 skipped.append(
-                    SkippedFile(at, clash, owners[clash], not is_certain or not owners.keys() >= {*ids}, ids)
+                    SkippedFile(place, clash, owners[clash], not is_certain or not owners.keys() >= {*ids}, ids)
                 )
             else:
                 owners.update(zip(ids, [*places, *[places[-1]] * len(ids)], strict=False))
-        files = tuple(dict.fromkeys(each.path for each in owners.values() if each.path is not None))
+        files = tuple(dict.fromkeys(place.path for place in owners.values() if place.path is not None))
         return Load(label, tree, named, files, tuple(skipped), tuple(refused), self._folders)
 
 
@@ -209,22 +216,22 @@ def _located(named: ParameterText, find: FindPackage, root: str, is_folder: bool
         lacks = f"the package in {package} has no such {_KINDS[is_folder]}"
         if os.path.basename(os.path.dirname(package)) == "share":  # it is installed
             return Located(named, None, lacks, Severity.ERROR)
-        found = _inside(package, is_folder)
-        elsewhere = [each for each in found if os.path.basename(each) == os.path.basename(path)]
+        candidates = _inside(package, is_folder)
+        elsewhere = [candidate for candidate in candidates if os.path.basename(candidate) == os.path.basename(path)]
         if len(elsewhere) == 1:  # a build may install it elsewhere
             return Located(named, elsewhere[0])
-        if _stem(path) not in map(_stem, found):
-            likely = near(os.path.basename(path), map(os.path.basename, found), 1)
+        if _stem(path) not in map(_stem, candidates):
+            likely = near(os.path.basename(path), map(os.path.basename, candidates), 1)
             return Located(named, None, lacks + did_you_mean(likely), Severity.WARNING)
     return Located(named, None, f"this machine has no such {_KINDS[is_folder]}")
 
 
 def _folders(parameters: Parameters, find: FindPackage, root: str) -> Iterator[Located]:
-    given = parameters.texts("bt_search_directories")
-    if given is None:
+    directories = parameters.texts("bt_search_directories")
+    if directories is None:
         yield _of_nav2("behavior_trees", find)
-    for each in given or ():
-        yield _located(each, find, root, is_folder=True)
+    for directory in directories or ():
+        yield _located(directory, find, root, is_folder=True)
 
 
 def _of_nav2(inside: str, find: FindPackage) -> Located:
@@ -246,7 +253,7 @@ def file_with(tree: str, root: str) -> Place | None:
 def _inside(package: str, is_folder: bool) -> list[str]:
     """The files of a package that is not built, or the folders of its XML; XML may be built of a mission."""
     files, _ = collect((package,), Project(), (".xml",) if is_folder else (".xml", *SUFFIXES))
-    return sorted({os.path.dirname(each) if is_folder else each for each in files})
+    return sorted({os.path.dirname(path) if is_folder else path for path in files})
 
 
 def _stem(path: str) -> str:
@@ -255,7 +262,7 @@ def _stem(path: str) -> str:
 
 def goals_in(workspace: Workspace) -> Iterator[tuple[str, Place]]:
     """The trees that nodes of Nav2 name for the goals that they send, in the files that a program registers, each with
-    its place; what an entry names is not known, nor what scripts and other programs send."""
+    its place.  The names in entries, and the goals of scripts and other programs, are unknown."""
     for path in workspace.registered:
         file = workspace.files[path]
         for entry, use in file.uses if TREE_OF_GOAL in file.text else ():

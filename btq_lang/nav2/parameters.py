@@ -1,4 +1,4 @@
-"""What a parameter file says of bt_navigator, and of which distribution it is.
+"""The parameters of bt_navigator in a file, and the distribution that they are for.
 
 One invariant: a parameter is found as ROS 2 finds it: below `bt_navigator`, in a namespace or not, or below `/**`, as
 `a: b:` or as `a.b:`; the last one counts.
@@ -67,7 +67,7 @@ class Parameters(Record):
         if name not in self.values:
             return None
         _, value = self.values[name]
-        return tuple(ParameterText(each.text, each.span) for each in value.items if each.text is not None)
+        return tuple(ParameterText(item.text, item.span) for item in value.items if item.text is not None)
 
     def key(self, name: str) -> Span | None:
         """The place of a parameter's name."""
@@ -76,8 +76,8 @@ class Parameters(Record):
     @property
     def navigators(self) -> tuple[str, ...]:
         """The names of the navigators."""
-        given = self.texts("navigators")
-        return tuple(NAVIGATORS) if given is None else tuple(each.text for each in given)
+        names = self.texts("navigators")
+        return tuple(NAVIGATORS) if names is None else tuple(name.text for name in names)
 
     def unread(self, distribution: str) -> Iterator[tuple[str, str]]:
         """The parameters that a distribution does not read, each with its row in the table."""
@@ -92,7 +92,7 @@ class Parameters(Record):
     @property
     def distribution(self) -> str | None:
         """The only distribution that the parameters can be for, if there is one."""
-        letters = {each[0] for each in DISTRIBUTIONS}
+        letters = {distribution[0] for distribution in DISTRIBUTIONS}
         for name in self.values:
             row = self.row(name)
             letters &= {*PARAMETERS[row].of} or letters if row is not None else letters
@@ -103,14 +103,18 @@ class Parameters(Record):
             package = plugin.text[len(OWN_PACKAGE) :] if plugin.text.startswith(OWN_PACKAGE) else ""
             letters &= {*("i" if package.startswith("/") else "jkl" if package.startswith("::") else letters)}
         for library in self.texts("plugin_lib_names") or ():
-            _, known, loaded = LIBRARIES.get(library.text, ((), "", ""))
-            letters &= {*known} or letters
+            _, existing, loaded = LIBRARIES.get(library.text, ((), "", ""))
+            letters &= {*existing} or letters
             letters = letters - ({*loaded} & {*_ADDING}) or letters  # twice only by mistake
-        if any(each.text == "follow_object" for each in self.texts("error_code_name_prefixes") or ()):
+        if any(prefix.text == "follow_object" for prefix in self.texts("error_code_name_prefixes") or ()):
             letters &= {"l"}
         if self.has_client_nodes and "h" in letters:
             letters = {"h"}
-        return next(each for each in DISTRIBUTIONS if each[0] in letters) if len(letters) == 1 else None
+        return (
+            next(distribution for distribution in DISTRIBUTIONS if distribution[0] in letters)
+            if len(letters) == 1
+            else None
+        )
 
     @property
     def plugins(self) -> Iterator[tuple[str, ParameterText]]:
@@ -124,17 +128,17 @@ class Parameters(Record):
         is_of_navigator = distribution[0] == "l"
         renamed: dict[str, str] = {}
         for parameter, entry in RENAMED.items():
-            for name in (f"{each}.{parameter}" for each in NAVIGATORS) if is_of_navigator else (parameter,):
-                if (given := self.text(name)) is not None:
-                    renamed[entry] = given.text
+            for name in (f"{navigator}.{parameter}" for navigator in NAVIGATORS) if is_of_navigator else (parameter,):
+                if (text := self.text(name)) is not None:
+                    renamed[entry] = text.text
         codes = self.texts("error_code_names" if distribution[0] in "ij" else "error_code_name_prefixes")
-        return outside_entries(distribution, None if codes is None else tuple(each.text for each in codes), renamed)
+        return outside_entries(distribution, None if codes is None else tuple(code.text for code in codes), renamed)
 
     def row(self, name: str) -> str | None:
-        """The row of a parameter in the table; None: it is not one of Nav2."""
+        """The row of a parameter in the table; None if it is not one of Nav2."""
         navigator, _, rest = name.partition(".")
-        found = f"*.{rest}" if rest and navigator in (*NAVIGATORS, *self.navigators) else name
-        return found if found in PARAMETERS else None
+        row_name = f"*.{rest}" if rest and navigator in (*NAVIGATORS, *self.navigators) else name
+        return row_name if row_name in PARAMETERS else None
 
 
 def is_id(named: str) -> bool:
@@ -156,10 +160,10 @@ def read_parameters(text: str) -> Parameters:
     own: set[str] = set()
     goals: dict[ParameterText, None] = {}
     place = None
-    for key, node in sorted(nodes, key=lambda each: _last(each[0]) == NODE):  # what names the node counts most
+    for key, node in sorted(nodes, key=lambda entry: _last(entry[0]) == NODE):  # what names the node counts most
         if _last(key) in (NODE, "*", "**"):
             place = key.span if _last(key) == NODE else place
-            below = {".".join(each.text or "" for each in name): (name[-1], value) for name, value in _flat(node)}
+            below = {".".join(part.text or "" for part in name): (name[-1], value) for name, value in _flat(node)}
             values.update(below)
             own.update(below if _last(key) == NODE else ())
         named = node.get(SENDERS[_last(key)]) if _last(key) in SENDERS else None
@@ -171,7 +175,7 @@ def read_parameters(text: str) -> Parameters:
 
 
 def _nodes(top: YamlValue) -> Iterator[tuple[YamlValue, YamlValue]]:
-    """The names of nodes with their parameters, whatever the namespaces around them."""
+    """The names of nodes with their parameters, in any namespaces."""
     around = reached([top], lambda value: [below for _, below in value.entries if below.get(_PARAMETERS) is None])
     for key, below in (entry for value in around for entry in value.entries):
         if (parameters := below.get(_PARAMETERS)) is not None:
@@ -179,7 +183,7 @@ def _nodes(top: YamlValue) -> Iterator[tuple[YamlValue, YamlValue]]:
 
 
 def _misspelt(top: YamlValue, has_no_node: bool) -> Iterator[tuple[ParameterText, str]]:
-    """The keys that are nearly those around the parameters of bt_navigator, each with what is meant."""
+    """The misspelt keys around the parameters of bt_navigator, each with the right one."""
 
     def inside(value: YamlValue) -> list[YamlValue]:
         entries = [(key.text or "", below) for key, below in value.entries if below.get(_PARAMETERS) is None]
@@ -193,7 +197,7 @@ def _misspelt(top: YamlValue, has_no_node: bool) -> Iterator[tuple[ParameterText
 
 
 def _flat(node: YamlValue) -> Iterator[tuple[tuple[YamlValue, ...], YamlValue]]:
-    """The parameters of a node, and those one level below: there are no others that matter."""
+    """The parameters of a node, and those one level below; deeper ones do not matter."""
     for key, value in node.entries:
         yield (key,), value
         for name, below in value.entries:

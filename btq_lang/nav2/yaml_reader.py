@@ -18,7 +18,7 @@ class YamlValue:
     """A value: a scalar, a list or a mapping.
 
     Attributes:
-        span: without what a list or mapping in lines of its own is followed by.
+        span: of a list or mapping on lines of its own, up to the end of its last value.
         text: of a scalar; None for the others.
         is_plain: whether a scalar has no quotes, so that `true` and `1` are not strings.
         items: of a list.
@@ -40,7 +40,7 @@ class YamlValue:
 
 
 class YamlProblem(Exception):
-    """What makes a text no YAML, and where: an offset."""
+    """Why a text is not YAML, and the offset of the mistake."""
 
     def __init__(self, message: str, offset: int) -> None:
         super().__init__(message)
@@ -94,12 +94,12 @@ class _Builder:
     def document(self, events: Iterator[Any]) -> YamlValue | None:
         """The value of the first document."""
         for event in events:
-            done = self._value(event)
-            if done is None:
+            value = self._value(event)
+            if value is None:
                 continue
             if not self._open:
-                return done
-            self._open[-1][1].append(done)
+                return value
+            self._open[-1][1].append(value)
         return None
 
     def _value(self, event: Any) -> YamlValue | None:
@@ -123,21 +123,21 @@ class _Builder:
                 value.entries = self._merged(list(zip(children[::2], children[1::2], strict=True)))
             else:
                 value.items = children
-            last = max((each.span.end for each in children), default=0)
+            last = max((child.span.end for child in children), default=0)
             value.span = Span(value.span.start, max(last, span.end if span.end > span.start else 0))
             return self._anchored(value, anchor)
         return None
 
     def _merged(self, entries: list[tuple[YamlValue, YamlValue]]) -> list[tuple[YamlValue, YamlValue]]:
-        """The entries of a mapping after those that `<<` names, of which each key is kept once."""
-        found: dict[str | None, tuple[YamlValue, YamlValue]] = {}
-        for _, value in [each for each in entries if each[0].text == "<<" and each[0].is_plain]:
+        """The entries that `<<` names, each key once, and then the entries of the mapping itself."""
+        merged: dict[str | None, tuple[YamlValue, YamlValue]] = {}
+        for _, value in [entry for entry in entries if entry[0].text == "<<" and entry[0].is_plain]:
             for mapping in reversed(value.items or [value]):  # the first of several counts
-                found.update((name.text, (name, below)) for name, below in mapping.entries)
+                merged.update((name.text, (name, below)) for name, below in mapping.entries)
                 self._copied += len(mapping.entries)
                 if self._copied > _MOST_COPIED:
                     raise YamlProblem(f"more than {_MOST_COPIED} keys by `<<`", value.span.start)
-        return [*found.values(), *entries]
+        return [*merged.values(), *entries]
 
     def _anchored(self, value: YamlValue, anchor: str | None) -> YamlValue:
         if anchor is not None:

@@ -1,7 +1,7 @@
 """Projects: what is on the disk and belongs together.
 
 One invariant: which files there are, and which of them one program loads, is decided here alone; other packages read
-what is in them.  Nothing here knows of command lines but their options.
+their contents.  Of command lines, only options are known here.
 
     files.py         the files of a command line or a program, in their projects, cached until they change
     factory_files.py, nav2_factory.py   the files of each factory, those that parameter files of Nav2 name among them
@@ -9,9 +9,9 @@ what is in them.  Nothing here knows of command lines but their options.
     cpp_files.py     C++ sources as files with the models of their nodes; `node_writers.py` writes such models
     opening.py       a folder as a workspace
     building.py      a mission as XML, in memory, and what prevents a build
-    build_files.py, import_files.py   missions on the disk as XML, and XML as missions; `messages.py`: what they tell
-    nav2_check.py    what is wrong with parameter files, and with trees because of them
-    git.py, since.py   files of another revision, and those that a change since then concerns
+    build_files.py, import_files.py   missions on the disk as XML, and XML as missions; `messages.py`: their output
+    nav2_check.py    findings in parameter files, and in trees because of them
+    git.py, since.py   files of another revision, and those that a later change concerns
     options.py       the options that are needed without a parser of command lines
     failures.py      messages for exceptions that nothing expected
 """

@@ -29,7 +29,7 @@ from btq_lang.workspace.loader import LoadProblem, absolute, read, shown, write_
 
 
 class BuildOptions(Record):
-    """What is built, and how.
+    """The missions to build, and how.
 
     Attributes:
         paths: files and folders, or `-` for standard input.
@@ -41,7 +41,7 @@ class BuildOptions(Record):
         is_verbatim: exactly the content of the file, without repairs and additions.
         is_check: write nothing, compare.
         is_forced: overwrite XML that btq did not write.
-        is_verbose: tell of every clause whether and how it is enforced.
+        is_verbose: report for every clause whether and how it is enforced.
         report: the format of errors.
         is_coloured: errors are coloured.
     """
@@ -61,21 +61,19 @@ class BuildOptions(Record):
 
 
 class BuildResult(Record):
-    """What a build did.
+    """The result of a build.
 
     Attributes:
         code: the exit code.
         messages: what there is to print.
         watched: the files that another build depends on.
         files: those written, or already up to date.
-        text: the XML of standard input.
     """
 
     code: int
     messages: CommandOutput
     watched: tuple[str, ...]
     files: tuple[str, ...] = ()
-    text: str | None = None
 
 
 class _Target(Record):
@@ -118,13 +116,15 @@ def build_files(options: BuildOptions, files: Files) -> BuildResult:
         messages.remark("nothing was written")
         return BuildResult(1, messages, watched)
     for output in planned:
-        _remarks(output.done.export.repairs, "repaired", groups, messages)
-    _clauses([output.done for output in planned], groups, options.is_verbose, messages)
+        _add_remarks(output.done.export.repairs, "repaired", groups, messages)
+    _add_clauses([output.done for output in planned], groups, options.is_verbose, messages)
     if not options.is_check:
-        _guesses([output.done.export for output in planned], messages)
+        _add_guesses([output.done.export for output in planned], messages)
     if STDIN in options.paths:
-        text = next((output.text for output in planned if output.path == files.stdin), None)
-        return BuildResult(0, messages, watched, text=text)
+        for output in planned:
+            if output.path == files.stdin:
+                messages.add(output.text, "document")
+        return BuildResult(0, messages, watched)
     targets = [target for output in planned for target in _targets(output)]
     code = (_compare if options.is_check else _write)(targets, options, _stale(groups, options), messages)
     return BuildResult(code, messages, watched, tuple(target.path for target in targets if target.text is not None))
@@ -139,7 +139,7 @@ def _version_problem(groups: tuple[FileGroup, ...], options: BuildOptions) -> st
 def _planned(
     groups: tuple[FileGroup, ...], options: BuildOptions, messages: CommandOutput
 ) -> list[MissionOutput] | None:
-    """What is to be written; None: a message says why nothing is written."""
+    """The files to write; None: there are none, and a message says why."""
     empty = [path for group in groups for path in without_tree(group.workspace, group.given)]
     for path in empty:
         messages.remark(f"btq build: {shown(path)} has no tree to run")
@@ -147,7 +147,7 @@ def _planned(
         return None
     places = OutputPlaces(absolute(options.output) if options.output else None, _sources(groups))
     planned = [output for group in groups for output in _outputs(group, places, options)]
-    number = sum(_remarks(output.done.export.problems, "error", groups, messages) for output in planned)
+    number = sum(_add_remarks(output.done.export.problems, "error", groups, messages) for output in planned)
     clashes = [*_same_place(planned)]
     for clash in clashes:
         messages.remark(f"btq build: {clash}")
@@ -159,7 +159,7 @@ def _sources(groups: tuple[FileGroup, ...]) -> tuple[str, ...]:
 
 
 def _stale(groups: tuple[FileGroup, ...], options: BuildOptions) -> list[str]:
-    """What an earlier build left beside missions."""
+    """The files that an earlier build left beside missions."""
     return [] if options.output else stale_outputs(os.path.dirname(path) for path in _sources(groups))
 
 
@@ -195,8 +195,8 @@ def _has_errors(groups: tuple[FileGroup, ...], options: BuildOptions, messages: 
     return True
 
 
-def _remarks(remarks: Collection[Remark], word: str, groups: tuple[FileGroup, ...], messages: CommandOutput) -> int:
-    """Tell an export's remarks; returns how many."""
+def _add_remarks(remarks: Collection[Remark], word: str, groups: tuple[FileGroup, ...], messages: CommandOutput) -> int:
+    """Report an export's remarks; returns how many."""
     for remark in remarks:
         file = next(group.workspace.files[remark.path] for group in groups if remark.path in group.workspace.files)
         line, column = file.lines.position(remark.span.start)
@@ -207,43 +207,51 @@ def _remarks(remarks: Collection[Remark], word: str, groups: tuple[FileGroup, ..
     return len(remarks)
 
 
-def _clauses(
+def _add_clauses(
     planned: list[Enforcement], groups: tuple[FileGroup, ...], is_verbose: bool, messages: CommandOutput
 ) -> None:
-    """Tell how the clauses of requirements are covered, with a line for each one demanded to be enforced that is not,
-    or that has a remark.
+    """Report how the clauses of requirements are covered, with a line for each clause that has a remark, or that is
+    demanded to be enforced and is not.
     """
     clauses: dict[object, ClauseEnforcement] = {}
-    for each in (each for done in planned for applied in done.clauses for each in applied):
-        key = each.requirement, each.clause, each.place.path, each.place.span, id(each.node and each.node.node)
-        if key not in clauses or each.way == "enforced":  # one file may enforce what another cannot
-            clauses[key] = each
-    for each in clauses.values():
-        if not is_verbose and (not each.asked or (each.way == "enforced" and not each.why)):
+    for clause in (clause for enforcement in planned for applied in enforcement.clauses for clause in applied):
+        key = (
+            clause.requirement,
+            clause.clause,
+            clause.place.path,
+            clause.place.span,
+            id(clause.node and clause.node.node),
+        )
+        if key not in clauses or clause.way == "enforced":  # one file may enforce what another cannot
+            clauses[key] = clause
+    for clause in clauses.values():
+        if not is_verbose and (not clause.asked or (clause.way == "enforced" and not clause.why)):
             continue
-        where = f" at {each.subject}" if each.subject else ""
-        way = "not enforced, monitored" if each.asked and each.way == "monitored" else each.way
-        why = f": {each.why}" if each.why else ""
-        remark = Remark(*_absolute(each.place, groups), f"{each.requirement}, `{each.clause}`{where}{why}")
-        _remarks((remark,), way, groups, messages)
-    known = {(each.requirement, each.clause, each.place.path, each.place.span) for each in clauses.values()}
-    loose = {  # without those whose node another file has
-        found: Remark(*_absolute(claim.place, groups), f"{requirement.name}, `{claim.text}` applies to no node")
-        for done in planned
-        for requirement, claim in done.loose
-        if (found := (requirement.name, claim.text, claim.place.path, claim.place.span)) not in known
+        where = f" at {clause.subject}" if clause.subject else ""
+        way = "not enforced, monitored" if clause.asked and clause.way == "monitored" else clause.way
+        why = f": {clause.why}" if clause.why else ""
+        remark = Remark(*_absolute(clause.place, groups), f"{clause.requirement}, `{clause.clause}`{where}{why}")
+        _add_remarks((remark,), way, groups, messages)
+    with_nodes = {
+        (clause.requirement, clause.clause, clause.place.path, clause.place.span) for clause in clauses.values()
     }
-    _remarks(loose.values(), "not checked", groups, messages)
+    loose = {  # without those whose node another file has
+        clause_key: Remark(*_absolute(claim.place, groups), f"{requirement.name}, `{claim.text}` applies to no node")
+        for enforcement in planned
+        for requirement, claim in enforcement.loose
+        if (clause_key := (requirement.name, claim.text, claim.place.path, claim.place.span)) not in with_nodes
+    }
+    _add_remarks(loose.values(), "not checked", groups, messages)
     if clauses:
-        ways = [each.way for each in clauses.values()]
+        ways = [clause.way for clause in clauses.values()]
         counted = [f"{ways.count(way)} {way}" for way in ("enforced", "monitored", "reviewed") if way in ways]
         counted += [f"{len(loose)} without a node"] if loose else []
         messages.remark(f"clauses of requirements: {', '.join(counted)}")
 
 
-def _guesses(exports: list[Export], messages: CommandOutput) -> None:
-    """Tell which nodes got a guessed category in the models, because the mission does not declare it."""
-    guessed = {name: category for each in exports for name, category in each.guessed.items()}
+def _add_guesses(exports: list[Export], messages: CommandOutput) -> None:
+    """Report which nodes got a guessed category in the models, because the mission does not declare it."""
+    guessed = {name: category for export in exports for name, category in export.guessed.items()}
     shown = [f"{name} ({category})" for name, category in sorted(guessed.items())[:_GUESSES_SHOWN]]
     if len(guessed) > len(shown):
         shown.append(f"{len(guessed) - len(shown)} more")
@@ -261,9 +269,9 @@ def _absolute(place: Place, groups: tuple[FileGroup, ...]) -> tuple[str, Span]:
 
 def _same_place(planned: list[MissionOutput]) -> Iterator[str]:
     """Messages for two files that would be written to one place: `a.btq` and `a.qualitybtcpp`."""
-    known: dict[str, str] = {}
+    path_at: dict[str, str] = {}
     for output in planned:
-        other = known.setdefault(output.place, output.path)
+        other = path_at.setdefault(output.place, output.path)
         if other != output.path:
             yield f"{shown(other)} and {shown(output.path)} would both be written to {shown(output.place)}"
 
@@ -278,12 +286,12 @@ def _targets(output: MissionOutput) -> Iterator[_Target]:
 
 
 def _old_text(path: str) -> str | None:
-    """The text of a file, empty if it cannot be read: then it is not one that btq wrote."""
+    """The text of a file; empty: it cannot be read, so btq did not write it; None: there is no file."""
     return (read(path)[0] or "") if os.path.exists(path) else None
 
 
 def _compare(targets: list[_Target], options: BuildOptions, stale: list[str], messages: CommandOutput) -> int:
-    """`--check`: tell which files a build would change or remove."""
+    """`--check`: report which files a build would change or remove."""
     for path in stale:
         messages.result(f"stale: {shown(path)}")
     outdated = [target for target in targets if target.text != target.old]
@@ -317,7 +325,7 @@ def _put_all(targets: list[_Target], messages: CommandOutput) -> bool:
     """Write or remove all files, or none if that fails for one."""
     for number, target in enumerate(targets):
         try:
-            _put(target.path, target.text)
+            _write_or_remove(target.path, target.text)
         except OSError as error:
             what = "written" if target.text is not None else "removed"
             messages.problems([LoadProblem(target.path, f"cannot be {what}: {error.strerror}")])
@@ -326,7 +334,7 @@ def _put_all(targets: list[_Target], messages: CommandOutput) -> bool:
     return True
 
 
-def _put(path: str, text: str | None) -> None:
+def _write_or_remove(path: str, text: str | None) -> None:
     """Write a file, or remove it.
 
     Raises:
@@ -347,7 +355,7 @@ def _take_back(targets: list[_Target], messages: CommandOutput) -> None:
     """Restore the old contents of files, as far as possible."""
     for target in targets:
         try:
-            _put(target.path, target.old)
+            _write_or_remove(target.path, target.old)
         except OSError as error:
             messages.problems([LoadProblem(target.path, f"was changed and cannot be restored: {error.strerror}")])
 
@@ -357,17 +365,17 @@ def stale_outputs(folders: Iterable[str]) -> list[str]:
 
     Subfolders are not searched, nor are targets of `-o`, which have no missions beside them.
     """
-    found: list[str] = []
+    stale: list[str] = []
     for folder in sorted(set(folders)):
         for xml in sorted(glob.glob(os.path.join(glob.escape(folder), "*.xml"))):
             stem = os.path.splitext(xml)[0]
             if any(os.path.exists(stem + suffix) for suffix in SUFFIXES) or not is_generated(read(xml)[0] or ""):
                 continue
-            found.append(xml)
+            stale.append(xml)
             side = side_path(xml)
             if os.path.exists(side) and is_side_file(read(side)[0] or ""):
-                found.append(side)
-    return found
+                stale.append(side)
+    return stale
 
 
 _GUESSES_SHOWN: Final = 8

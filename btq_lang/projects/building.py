@@ -70,18 +70,18 @@ def build(
         raise ValueError(f"{path} is XML already; expected a .btq file")
     if target is not None:
         workspace = for_target(workspace, target)
-    found = errors(workspace, (path,), bundled=bundle)
-    problems = [Remark(file, each.span, each.message) for file, each in found]
-    problems += [Remark(each, Span(0, 0), "has no tree to run") for each in without_tree(workspace, (path,))]
+    diagnostics = errors(workspace, (path,), bundled=bundle)
+    problems = [Remark(file, diagnostic.span, diagnostic.message) for file, diagnostic in diagnostics]
+    problems += [Remark(empty, Span(0, 0), "has no tree to run") for empty in without_tree(workspace, (path,))]
     if problems:
         return Built({}, tuple(problems), ())
-    made = outputs(workspace, (path,), OutputPlaces(), bundled=bundle, enforce=enforce)
-    problems = [each for output in made for each in output.done.export.problems]
+    written = outputs(workspace, (path,), OutputPlaces(), bundled=bundle, enforce=enforce)
+    problems = [problem for output in written for problem in output.done.export.problems]
     if problems:
         return Built({}, tuple(problems), ())
-    texts = {output.place: output.text for output in made}
-    texts |= {side_path(output.place): output.side for output in made if output.side is not None}
-    return Built(texts, (), tuple(each for output in made for each in output.done.export.repairs))
+    texts = {output.place: output.text for output in written}
+    texts |= {side_path(output.place): output.side for output in written if output.side is not None}
+    return Built(texts, (), tuple(repair for output in written for repair in output.done.export.repairs))
 
 
 def for_target(workspace: Workspace, target: str) -> Workspace:
@@ -97,7 +97,7 @@ def for_target(workspace: Workspace, target: str) -> Workspace:
 
 def errors(
     workspace: Workspace,
-    given: Sequence[str],
+    requested: Sequence[str],
     *,
     bundled: bool = False,
     verbatim: bool = False,
@@ -106,18 +106,19 @@ def errors(
     """The diagnostics that prevent the build, each with its file.
 
     Args:
-        given: the requested files.
+        requested: the files to build.
         bundled: what is registered with a mission is in its file.
         verbatim: only syntax errors count.
         replaces: the XML is written beside the missions, so that existing XML there does not count.
     """
-    built = sources(workspace, given)
+    source_paths = sources(workspace, requested)
     with_it = workspace.registered_with if bundled else workspace.closure
-    included = dict.fromkeys(each for path in built for each in with_it(path) if each not in built)
-    made = missions(workspace, given) if bundled else built
-    replaced: Collection[str] = tuple(map(xml_name, made)) if replaces else ()
-    reported = {*built, *included}
-    for path in (*built, *(each for each in included if each not in replaced)):
-        for each in workspace.files[path].source_diagnostics if verbatim else check(workspace, path):
-            if each.effective_severity is Severity.ERROR and not is_reported_beside(each, reported):
-                yield path, each
+    included = dict.fromkeys(needed for path in source_paths for needed in with_it(path) if needed not in source_paths)
+    written = missions(workspace, requested) if bundled else source_paths
+    replaced: Collection[str] = tuple(map(xml_name, written)) if replaces else ()
+    reported = {*source_paths, *included}
+    for path in (*source_paths, *(needed for needed in included if needed not in replaced)):
+        file = workspace.files[path]
+        for diagnostic in file.source_diagnostics if verbatim else check(workspace, path):
+            if diagnostic.effective_severity is Severity.ERROR and not is_reported_beside(diagnostic, reported):
+                yield path, diagnostic

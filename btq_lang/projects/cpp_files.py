@@ -41,7 +41,7 @@ MISSING = "C++ is read with tree-sitter; install it with pip install 'btq-lang[c
 
 
 class ProjectSources(Record):
-    """A project with what was read from its C++ sources.
+    """A project with the nodes of its C++ sources.
 
     Attributes:
         project: its `node_files` with the C++ sources of the whole project.
@@ -71,11 +71,11 @@ class CppFiles:
         project, problems = home.project, []
         own: dict[str, None] = {}
         for pattern in project.cpp:
-            found = cpp_in_folder(pattern, project.root, matching)
-            own.update(dict.fromkeys(found))
-            if not found:
+            matched = cpp_in_folder(pattern, project.root, matching)
+            own.update(dict.fromkeys(matched))
+            if not matched:
                 problems.append(_problem(home, pattern, f"no C++ file matches `{pattern}`"))
-        paths = dict.fromkeys((*own, *(path for each in factories for path in each.cpp_files)))
+        paths = dict.fromkeys((*own, *(path for factory in factories for path in factory.cpp_files)))
         is_excluded = excluder(project)
         texts = {path: text for path in paths if not is_excluded(path) and (text := read(path)[0]) is not None}
         try:
@@ -83,13 +83,13 @@ class CppFiles:
         except GrammarMissing:
             nodes, files = None, {}
             problems.append(_problem(home, project.cpp_patterns[0], MISSING))
-        if nodes is not None and texts and not nodes.nodes and not any(each.hides_node for each in nodes.unseen):
+        if nodes is not None and texts and not nodes.nodes and not any(gap.hides_node for gap in nodes.unseen):
             message = nothing_registered({shown(path): text for path, text in texts.items()})
             problems.append(_problem(home, project.cpp_patterns[0], message))
         project = replace(
             project,
             node_files=(*project.node_files, *(path for path in own if path in files)),
-            hides_nodes=nodes is None or any(each.hides_node for each in nodes.unseen),
+            hides_nodes=nodes is None or any(gap.hides_node for gap in nodes.unseen),
         )
         return ProjectSources(project, files, tuple(problems))
 
@@ -118,12 +118,14 @@ class CppFiles:
         for node in nodes.nodes:
             of_path[node.place.path][node.name] = node
         for path, text in texts.items():
-            named = ((each, each.message.replace(home, "")) for each in wrong.get(path, ()))  # as people see files
-            found = tuple(replace(each, message=message) for each, message in named)
-            known = self._files.get(path)
-            kept = (known.source, known.cpp_nodes, known.source_diagnostics) if known is not None else None
-            if kept != (text, of_path[path], found):
-                self._files[path] = cpp_file(path, text, of_path[path], found, known)
+            named = (
+                (diagnostic, diagnostic.message.replace(home, "")) for diagnostic in wrong.get(path, ())
+            )  # as people see files
+            diagnostics = tuple(replace(diagnostic, message=message) for diagnostic, message in named)
+            file = self._files.get(path)
+            known = (file.source, file.cpp_nodes, file.source_diagnostics) if file is not None else None
+            if known != (text, of_path[path], diagnostics):
+                self._files[path] = cpp_file(path, text, of_path[path], diagnostics, file)
         return nodes, {path: self._files[path] for path in texts}
 
 
@@ -131,10 +133,14 @@ def distributions_of(project: Project) -> tuple[str, ...]:
     """The distributions of Nav2 that a project may be for: those whose nodes it names, else those with its engine."""
     of_factories = (PACKAGED.get(name, "") for factory in project.factories for name in factory.nodes)
     paths = {*project.node_files, *of_factories}
-    if named := tuple(each for each in DISTRIBUTIONS if FILES[each] in paths):
+    if named := tuple(distribution for distribution in DISTRIBUTIONS if FILES[distribution] in paths):
         return named
     is_old = is_before_4(project.target)
-    return tuple(each for each in DISTRIBUTIONS if not project.pinned or is_before_4(ENGINES[each]) == is_old)
+    return tuple(
+        distribution
+        for distribution in DISTRIBUTIONS
+        if not project.pinned or is_before_4(ENGINES[distribution]) == is_old
+    )
 
 
 def with_code_of_nav2(workspace: Workspace, cpp: CppFiles) -> Workspace:
@@ -187,7 +193,7 @@ def _text(texts: dict[str, str], path: str) -> str:
 
 
 def _certain(node: CppNode) -> CppNode:
-    """A node with an empty default for each input without which it is not seen to fail, and without types that only
+    """A node with an empty default for each input that it may do without, and without types that only
     other files say: `_error_code_type` is what ROS calls the type of a message's field, whatever it is."""
     needed = {name for name, without in node.without if without == "fails"}
     needed.update(port.name for port in node.ports if port.direction == "output" or port.default is not None)

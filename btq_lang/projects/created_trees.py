@@ -1,6 +1,6 @@
 """Trees of XML that C++ around it creates, as far as a string tells, also where no project file names that C++.
 
-One invariant: C++ is read only if XML has several trees and nothing in it says which is the main one.
+One invariant: C++ is read only if XML has several trees and does not name the main one.
 """
 
 from __future__ import annotations

@@ -16,13 +16,13 @@ from btq_lang.workspace.loader import absolute, matching, package_folder, read, 
 if TYPE_CHECKING:
 
     class Known(Protocol):
-        """What is known of XML files."""
+        """Knows which XML files are missions."""
 
         def is_mission(self, path: str) -> bool:
             """Whether an XML file is the engine's."""
 
         def source_of(self, path: str) -> str | None:
-            """The mission that an XML file was built of, if it is there."""
+            """The mission that an XML file was built of, if it exists."""
 
 
 PACKAGE: Final = "package://"
@@ -33,15 +33,15 @@ def resolved(
 ) -> Factory:
     """A factory with its files, and with the patterns that match none, as their package may not be here.
 
-    XML that was built of a mission that is there counts as that mission; XML that is not the engine's is left out.
+    XML that was built of an existing mission counts as that mission; XML that is not the engine's is left out.
     """
     lost: dict[str, None] = {}
 
     def matched(pattern: str) -> tuple[str, ...]:
-        found = (cpp_in_folder if pattern.endswith(CPP_SUFFIXES) else in_folder)(pattern, root, find)
-        if not found:
+        paths = (cpp_in_folder if pattern.endswith(CPP_SUFFIXES) else in_folder)(pattern, root, find)
+        if not paths:
             lost[pattern] = None
-        return found
+        return paths
 
     def files(patterns: tuple[str, ...]) -> Iterator[str]:
         for pattern in patterns:
@@ -70,16 +70,16 @@ def in_folder(pattern: str, root: str, find: Callable[[str, str], tuple[str, ...
 
 def cpp_in_folder(pattern: str, root: str, find: Callable[[str, str], tuple[str, ...]]) -> tuple[str, ...]:
     """As `in_folder`, for C++: `**` leaves out folders of tests, and those that are left out everywhere."""
-    found = in_folder(pattern, root, find)
+    paths = in_folder(pattern, root, find)
     above = _place(pattern, root)[0]
-    return without_tests(found, above, pattern.split("/")) if "**" in pattern and above is not None else found
+    return without_tests(paths, above, pattern.split("/")) if "**" in pattern and above is not None else paths
 
 
 def groot_projects(pools: Iterable[Iterable[str]], wanted: Container[str]) -> Iterator[Factory]:
     """The projects of Groot2 in some pools that register one of the wanted files, or are one, as factories."""
     for path in dict.fromkeys(path for pool in pools for path in pool if path.endswith(GROOT_SUFFIX)):
         folder = os.path.dirname(path)
-        included = (absolute(os.path.join(folder, each)) for each in included_in(read(path)[0] or ""))
+        included = (absolute(os.path.join(folder, name)) for name in included_in(read(path)[0] or ""))
         if path in wanted or any(each in wanted for each in included):
             yield Factory(os.path.basename(path), files=(path,))
 

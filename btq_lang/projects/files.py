@@ -105,7 +105,7 @@ class Files:
         overlay: texts that replace files on the disk, by path: standard input, an editor's buffers.
         stdin: the path assigned to standard input, once it was read.
         folders: the bases of paths that are shown: the current folder, or an editor's folders.
-        nav2_params: parameter files of Nav2 besides those that projects name.
+        nav2_params: more parameter files of Nav2 than those that projects name.
         project_files: those whose mistakes are requested, and not only reported with their missions.
         parameter_files: all parameter files that were read for the last request.
     """
@@ -116,9 +116,9 @@ class Files:
         self.parameter_files: list[ParameterFile] = []
         self.overlay: dict[str, str] = {}
         self.stdin: str | None = None
-        self._of_stdin: LoadProblem | None = None
+        self._stdin_problem: LoadProblem | None = None
         self.folders: tuple[str, ...] = (absolute("."),)
-        self._known: dict[str, File] = {}
+        self._parsed: dict[str, File] = {}
         self._sources: dict[str, ProjectSources] = {}  # the C++ of the last request, by the path of the project file
 
     def groups(
@@ -140,58 +140,48 @@ class Files:
                 project that define what requested XML lacks.
         """
         paths = tuple(paths)
-        problems: list[LoadProblem] = []
-        projects: dict[str, FoundProject] = {}
         self.parameter_files.clear()
         self._sources.clear()
-        governed: dict[str, FoundProject] = {}
-        members: dict[str, dict[str, str]] = {}  # each with the folder that was requested
+        projects = _Projects(self.overlay)
+        absolute_paths = (self._read_stdin(stdin_filename) if path == STDIN else absolute(path) for path in paths)
+        requested = self._requested(absolute_paths, projects, with_xml)
+        folders = [f"{path.rstrip('/')}/" for path in map(absolute, paths) if os.path.isdir(path)]
+        groups: list[FileGroup] = []
+        by_file = projects.by_file()
+        for project_file, tops in requested.items():
+            home = FoundProject(by_file[project_file], project_file or None)
+            of_project, problems = self._groups_of(tops, home, projects.of, for_checks)
+            groups += (_with_cpp(group, folders) for group in of_project)
+            projects.problems += problems
+        for path in (*self.nav2_params, *self.project_files):
+            projects.govern(path)
+        for project_file, home in projects.governing.items():
+            if project_file not in requested:  # no tree of it is checked, but its parameters of Nav2 may be
+                projects.problems += self._declared(home)[1]
+        return tuple(groups), tuple(dict.fromkeys(projects.problems))
 
-        def project_of(path: str) -> FoundProject:
-            folder = path if os.path.isdir(path) else os.path.dirname(path)
-            if folder not in projects:
-                projects[folder] = find_project(folder, self.overlay)
-            return projects[folder]
-
-        def governing(path: str) -> FoundProject:
-            """The project of something that is requested, which must be right; others may be of no concern."""
-            home = project_of(path)
-            governed[home.path or ""] = home
-            problems.extend(home.problems)
-            return home
-
-        for path in (self._read_stdin(stdin_filename) if path == STDIN else absolute(path) for path in paths):
-            if path == self.stdin and self._of_stdin is not None:
-                problems += [self._of_stdin] if self._of_stdin not in problems else []
+    def _requested(self, paths: Iterable[str], projects: _Projects, with_xml: bool) -> dict[str, dict[str, str]]:
+        """The files that absolute paths denote, by project file, each with the folder in which it was requested."""
+        requested: dict[str, dict[str, str]] = {}
+        suffixes = (*SUFFIXES, *XML_SUFFIXES) if with_xml else SUFFIXES
+        for path in paths:
+            if path == self.stdin and self._stdin_problem is not None:
+                projects.problems += [self._stdin_problem] if self._stdin_problem not in projects.problems else []
                 if path not in self.overlay:
                     continue
             if path in self.overlay:
-                members.setdefault(governing(path).path or "", {})[path] = os.path.dirname(path)
+                requested.setdefault(projects.govern(path).path or "", {})[path] = os.path.dirname(path)
                 continue
-            suffixes = (*SUFFIXES, *XML_SUFFIXES) if with_xml else SUFFIXES
-            found, unreachable = collect([path], governing(path).project, suffixes)
-            if with_xml and found != (path,):
-                found = self._missions(path, found)
-            problems += unreachable
-            for file in found:
-                home = governing(file)
+            files, unreachable = collect([path], projects.govern(path).project, suffixes)
+            if with_xml and files != (path,):
+                files = self._missions(path, files)
+            projects.problems += unreachable
+            for file in files:
+                home = projects.govern(file)
                 if file == path or not excluder(home.project)(file):
-                    members.setdefault(home.path or "", {})[file] = path if file != path else os.path.dirname(path)
-        by_path = {found.path or "": found.project for found in projects.values()}
-        groups: list[FileGroup] = []
-        folders = [f"{path.rstrip('/')}/" for path in map(absolute, paths) if os.path.isdir(path)]
-        for key, files in members.items():
-            found_groups, found_problems = self._groups_of(
-                files, FoundProject(by_path[key], key or None), project_of, for_checks
-            )
-            groups += (_with_cpp(group, folders) for group in found_groups)
-            problems += found_problems
-        for path in (*self.nav2_params, *self.project_files):
-            governing(path)
-        for key, home in governed.items():
-            if key not in members:  # no tree of it is checked, but its parameters of Nav2 may be
-                problems += self._declared(home)[1]
-        return tuple(groups), tuple(dict.fromkeys(problems))
+                    top = path if file != path else os.path.dirname(path)
+                    requested.setdefault(home.path or "", {})[file] = top
+        return requested
 
     def _groups_of(
         self, tops: Mapping[str, str], home: FoundProject, project_of: Callable[[str], FoundProject], for_checks: bool
@@ -204,17 +194,17 @@ class Files:
             from btq_lang.projects.factory_files import groot_projects  # many projects have no XML
 
             pools = self._pools(xml, home)
-            registered = {path for factory in factories for path in factory.files}
-            groot = tuple(groot_projects(pools.values(), xml.keys() - registered))
+            of_factories = {path for factory in factories for path in factory.files}
+            groot = tuple(groot_projects(pools.values(), xml.keys() - of_factories))
         group, unreadable = self._load(tuple(tops), home, factories + groot)
         problems += unreadable
-        lacking = [each for each in factories if not each.files]
-        problems += [LoadProblem(home.path or "", f"the factory `{each.name}` loads no file") for each in lacking]
+        empty = [factory for factory in factories if not factory.files]
+        problems += [LoadProblem(home.path or "", f"the factory `{factory.name}` loads no file") for factory in empty]
         groups: list[FileGroup] = []
-        for some in (factories, groot):  # what the project file says comes first
-            groups += _by_factory(group, some, for_checks)
-            known = {path for each in groups for path in each.given}
-            group = replace(group, given=tuple(path for path in group.given if path not in known))
+        for some_factories in (factories, groot):  # those of the project file come first
+            groups += _by_factory(group, some_factories, for_checks)
+            registered = {path for each in groups for path in each.given}
+            group = replace(group, given=tuple(path for path in group.given if path not in registered))
         if group.given or not groups:
             has_xml = any(group.workspace.files[path].is_foreign for path in group.given)
             if pools and has_xml:
@@ -229,14 +219,14 @@ class Files:
     def _pools(self, tops: Mapping[str, str], home: FoundProject) -> dict[str, tuple[str, ...]]:
         """The pools of XML files, each with all files in it that may be missions."""
         folders = {(os.path.dirname(path), top) for path, top in tops.items()}
-        pools = {home.project.root} if home.path else {pool_of(*each) for each in folders}
+        pools = {home.project.root} if home.path else {pool_of(*folder) for folder in folders}
         suffixes = (*SUFFIXES, *XML_SUFFIXES)
         return {pool: collect([pool], home.project, suffixes)[0] for pool in sorted(pools)}
 
     def _declared(self, home: FoundProject) -> tuple[tuple[Factory, ...], list[LoadProblem]]:
         """The factories of a project with their files and C++ sources."""
         factories, problems = self._factories(home)
-        if home.project.cpp or any(each.cpp_files for each in factories):
+        if home.project.cpp or any(factory.cpp_files for factory in factories):
             sources = self._sources[home.path or ""] = self.cpp.read(home, factories)
             factories = tuple(map(sources.declared_in, factories))
             problems += sources.problems
@@ -252,33 +242,33 @@ class Files:
         problems: list[LoadProblem] = []
         goals: tuple[tuple[str, Diagnostic], ...] = ()
         named = (*home.project.factories, *self._requested_factories(home))
-        every = [resolved(factory, home.project.root, self.xml) for factory in named]
-        others = tuple(each for each in every if not each.nav2)
-        for found in every:
-            if not found.nav2:
-                factories.append(found)
+        with_files = [resolved(factory, home.project.root, self.xml) for factory in named]
+        others = tuple(factory for factory in with_files if not factory.nav2)
+        for factory in with_files:
+            if not factory.nav2:
+                factories.append(factory)
                 continue
             from btq_lang.projects.nav2_factory import ParameterSources, parameter_file  # few projects are for Nav2
 
-            senders = others if len(others) == len(every) - 1 else ()  # of several robots, it is not known to which
+            senders = others if len(others) == len(with_files) - 1 else ()  # to which of several robots is unknown
             of_factory = partial(self.workspace_of, home=home)
             sources = ParameterSources(self.overlay.get, self.xml.source_of, of_factory, senders)
-            file, problem = parameter_file(found, home.project, home.path, sources)
+            file, problem = parameter_file(factory, home.project, home.path, sources)
             if problem is not None and file is None and home.path is not None:
-                problem = LoadProblem(home.path, f"`{found.nav2}` {problem.message}")  # where editors show it
+                problem = LoadProblem(home.path, f"`{factory.nav2}` {problem.message}")  # where editors show it
             problems += [problem] if problem is not None else []
             if file is not None:
                 self.parameter_files.append(file)
                 factories += file.distinct
                 goals = file.goals if senders else ()
-        return tuple(replace(each, goals=each.goals or goals) for each in factories), problems
+        return tuple(replace(factory, goals=factory.goals or goals) for factory in factories), problems
 
     def _requested_factories(self, home: FoundProject) -> Iterator[Factory]:
         """A factory for each requested parameter file that the project does not name."""
         from btq_lang.workspace.factories import Factory  # few projects have any
 
         root = home.project.root
-        named = {absolute(os.path.join(root, each.nav2)) for each in home.project.factories if each.nav2}
+        named = {absolute(os.path.join(root, factory.nav2)) for factory in home.project.factories if factory.nav2}
         for path in self.nav2_params:
             if path not in named:
                 yield Factory(os.path.basename(path), nav2=path)
@@ -290,7 +280,7 @@ class Files:
         return self._load((), home, (whole,))[0].workspace.of_factory(whole)
 
     def workspace_of_nodes(self, home: FoundProject) -> Workspace:
-        """The workspace of what a project of the last request declares of nodes, without missions."""
+        """The workspace of the nodes that a project of the last request declares, without missions."""
         return self._load((), home, ())[0].workspace
 
     def _with_pools(
@@ -301,9 +291,9 @@ class Files:
         project = replace(workspace.project, pools=tuple(pools))
         lacking = lacking_names(workspace, group.given)
         files = dict(workspace.files)
-        for pool, found in pools.items() if lacking else ():
-            wanted = tuple(path for path in found if path not in files and project_of(path).path == group.project_file)
-            for path in self._missions(pool, wanted):
+        for pool, paths in pools.items() if lacking else ():
+            others = tuple(path for path in paths if path not in files and project_of(path).path == group.project_file)
+            for path in self._missions(pool, others):
                 if self.xml.may_define(path, lacking):
                     text = self.overlay[path] if path in self.overlay else read(path)[0]
                     files.update({path: self._file(path, text)} if text is not None else {})
@@ -312,30 +302,30 @@ class Files:
 
     @cached_property
     def xml(self) -> XmlBelow:
-        """What is known of XML below folders."""
+        """The XML below folders."""
         from btq_lang.projects.xml_below import XmlBelow  # many projects have no XML
 
         return XmlBelow()
 
     @cached_property
     def cpp(self) -> CppFiles:
-        """What is known of C++ sources."""
+        """The C++ sources."""
         from btq_lang.projects.cpp_files import CppFiles  # few projects name any
 
         return CppFiles()
 
-    def _missions(self, folder: str, found: tuple[str, ...]) -> tuple[str, ...]:
+    def _missions(self, folder: str, paths: tuple[str, ...]) -> tuple[str, ...]:
         """Those of a folder's files that are missions."""
-        return found if all(path.endswith(SUFFIXES) for path in found) else self.xml.missions(folder, found)
+        return paths if all(path.endswith(SUFFIXES) for path in paths) else self.xml.missions(folder, paths)
 
     def know(self, files: Iterable[File]) -> None:
         """Reuse files parsed elsewhere, while their texts are the same."""
-        self._known.update({file.path: file for file in files})
+        self._parsed.update({file.path: file for file in files})
 
     def _read_stdin(self, filename: str | None) -> str:
         if self.stdin is None:
             self.stdin = absolute(filename or "<stdin>")
-            text, self._of_stdin = decoded(self.stdin, sys.stdin.buffer.read())
+            text, self._stdin_problem = decoded(self.stdin, sys.stdin.buffer.read())
             if text is not None:
                 self.overlay[self.stdin] = text
         return self.stdin
@@ -353,23 +343,56 @@ class Files:
         registered = (path for factory in factories for path in (*factory.files, *factory.node_files))
         named = dict.fromkeys((*paths, *registered, *project.node_files))
         wanted = tuple(path for path in named if path not in cpp)
-        known = {path: self.overlay[path] for path in wanted if path in self.overlay}
-        loaded = load((path for path in wanted if path not in known), project, includes_of, known)
+        texts = {path: self.overlay[path] for path in wanted if path in self.overlay}
+        loaded = load((path for path in wanted if path not in texts), project, includes_of, texts)
         files = {path: self._file(path, text) for path, text in loaded.texts.items()}
         given = tuple(path for path in paths if path in files)
         files.update(cpp)
         damaged = loaded.damaged
-        if self._of_stdin is not None:
+        if self._stdin_problem is not None:
             damaged += tuple(path for path in given if path == self.stdin)
         project = replace(project, folders=self.folders)
         group = FileGroup(Workspace(files, project), given, damaged, loaded.absent, home.path)
         return group, list(loaded.problems)
 
     def _file(self, path: str, text: str) -> File:
-        known = self._known.get(path)
-        if known is None or known.source != text:
-            known = self._known[path] = file_of(path, text)
-        return known
+        file = self._parsed.get(path)
+        if file is None or file.source != text:
+            file = self._parsed[path] = file_of(path, text)
+        return file
+
+
+class _Projects:
+    """The projects of what is requested.
+
+    Attributes:
+        governing: those that must be right, by their files; others may be of no concern.
+        problems: their mistakes, and others of the request, in order.
+    """
+
+    def __init__(self, overlay: Mapping[str, str]) -> None:
+        self._overlay = overlay
+        self._of_folder: dict[str, FoundProject] = {}
+        self.governing: dict[str, FoundProject] = {}
+        self.problems: list[LoadProblem] = []
+
+    def of(self, path: str) -> FoundProject:
+        """The project of a file or folder."""
+        folder = path if os.path.isdir(path) else os.path.dirname(path)
+        if folder not in self._of_folder:
+            self._of_folder[folder] = find_project(folder, self._overlay)
+        return self._of_folder[folder]
+
+    def govern(self, path: str) -> FoundProject:
+        """The project of something that is requested, so that its mistakes count."""
+        home = self.of(path)
+        self.governing[home.path or ""] = home
+        self.problems.extend(home.problems)
+        return home
+
+    def by_file(self) -> dict[str, Project]:
+        """All projects found so far, by their files."""
+        return {home.path or "": home.project for home in self._of_folder.values()}
 
 
 def _by_factory(group: FileGroup, factories: Iterable[Factory], in_each: bool) -> Iterator[FileGroup]:
@@ -409,9 +432,9 @@ def lacking_names(workspace: Workspace, paths: Iterable[str]) -> frozenset[str]:
     """The trees and nodes that XML files and their includes lack."""
     from btq_lang.catalog.nodes import BUILTINS  # a large table, and many projects have no XML
 
-    found: set[str] = set()
+    names: set[str] = set()
     for path in paths:
         scope, file = workspace.scope(path), workspace.files[path]
         for kind in (Kind.TREE, Kind.MODEL) if file.is_foreign else ():
-            found.update(name for name in file.names_used(kind) if not scope.defines(kind, name))
-    return frozenset(found.difference(BUILTINS))
+            names.update(name for name in file.names_used(kind) if not scope.defines(kind, name))
+    return frozenset(names.difference(BUILTINS))

@@ -64,11 +64,11 @@ class Commit:
         return data.decode("utf-8", "replace").removeprefix("\ufeff")
 
     def is_file(self, path: str) -> bool:
-        """Whether it has a file."""
+        """Whether the commit has a file."""
         return self._kind(path) == "blob"
 
     def is_folder(self, path: str) -> bool:
-        """Whether it has a folder."""
+        """Whether the commit has a folder."""
         return self._kind(path) == "tree"
 
     def _kind(self, path: str) -> str:
@@ -88,15 +88,17 @@ class Commit:
         """The mission beside an XML file that was built of it."""
         return next(filter(self.is_file, named_beside(self.text(path) or "", path, SUFFIXES)), None)
 
-    def workspace(self, path: str, known: dict[str, str] | None = None) -> Workspace | None:
+    def workspace(self, path: str, texts: dict[str, str] | None = None) -> Workspace | None:
         """A file with all its includes, in the first factory of today's project file that registers it; None if there
-        is no such file; `known`: texts that override those of the commit."""
+        is no such file; `texts`: those that override those of the commit."""
         project = find_project(path).project
-        if known is None:  # else the file is built XML, restored in memory
-            of_factory = next((each for each in self._factories(project) if path in each.registered), None)
+        if texts is None:  # else the file is built XML, restored in memory
+            of_factory = next(
+                (workspace for workspace in self._factories(project) if path in workspace.registered), None
+            )
             if of_factory is not None:
                 return of_factory
-        workspace = self._read((path,), project, known or {})
+        workspace = self._read((path,), project, texts or {})
         return workspace if path in workspace.files else None
 
     def _factories(self, project: Project) -> tuple[Workspace, ...]:
@@ -104,11 +106,11 @@ class Commit:
         if project.factories and project.root not in self._of_factories:
             from btq_lang.projects.factory_files import resolved  # few projects have any
 
-            found: list[Factory] = []
-            for each in project.factories:
-                whole = resolved(each, project.root, self, self.matching)
-                found += self._of_nav2(whole, project) if each.nav2 else (whole,)
-            self._of_factories[project.root] = tuple(self._of_factory(project, each) for each in found)
+            factories: list[Factory] = []
+            for factory in project.factories:
+                whole = resolved(factory, project.root, self, self.matching)
+                factories += self._of_nav2(whole, project) if factory.nav2 else (whole,)
+            self._of_factories[project.root] = tuple(self._of_factory(project, factory) for factory in factories)
         return self._of_factories.get(project.root, ())
 
     def _of_nav2(self, factory: Factory, project: Project) -> Iterator[Factory]:
@@ -123,20 +125,21 @@ class Commit:
         return self._read((*factory.files, *factory.node_files), project, {}, factory)
 
     def _read(
-        self, paths: Iterable[str], project: Project, known: Mapping[str, str], factory: Factory | None = None
+        self, paths: Iterable[str], project: Project, texts: Mapping[str, str], factory: Factory | None = None
     ) -> Workspace:
         """Files with all their includes."""
         files: dict[str, File] = {}
         waiting = [*paths]
-        for each in waiting:
-            text = known[each] if each in known else self.text(each)
-            if text is None or each in files:
+        for path in waiting:
+            text = texts[path] if path in texts else self.text(path)
+            if text is None or path in files:
                 continue
-            files[each] = file_of(each, text)
-            for include in files[each].includes:
+            files[path] = file_of(path, text)
+            for include in files[path].includes:
                 if include.path is not None:
-                    found = include_candidates(project, each, include.path.text)
-                    waiting += [one for one in found if one in known or self.is_file(one)][:1]
+                    candidates = include_candidates(project, path, include.path.text)
+                    existing = [candidate for candidate in candidates if candidate in texts or self.is_file(candidate)]
+                    waiting += existing[:1]
         return Workspace(files, project, factory)
 
 
@@ -153,15 +156,15 @@ class Revisions(Record):
         XML counts as a mission if it is written by hand; built XML is covered by its .btq file, or without one
         represents the mission together with its side file.
         """
-        commits = [each.id for each in (self.old, self.new) if each is not None]
+        commits = [commit.id for commit in (self.old, self.new) if commit is not None]
         inside = _inside(self.root, folder) or "."
         words = _git(self.root, "diff", "--name-status", "--find-renames", "-z", *commits, "--", inside).split("\0")
         pairs: dict[tuple[str | None, str | None], None] = {}
-        at = 0
-        while at + 1 < len(words):
-            status, path = words[at][:1], _outside(self.root, words[at + 1])
-            target = _outside(self.root, words[at + 2]) if status in ("R", "C") else path
-            at += 3 if status in ("R", "C") else 2
+        index = 0
+        while index + 1 < len(words):
+            status, path = words[index][:1], _outside(self.root, words[index + 1])
+            target = _outside(self.root, words[index + 2]) if status in ("R", "C") else path
+            index += 3 if status in ("R", "C") else 2
             before, after = (None if status in ("A", "C") else path, None if status == "D" else target)
             if path.endswith(SIDE_SUFFIX) and target.endswith(SIDE_SUFFIX):  # its XML may be unchanged
                 xml = xml_path(path), xml_path(target)
@@ -181,7 +184,7 @@ class Revisions(Record):
 
     def had_folder(self, path: str) -> bool:
         """Whether a path is a folder in one of the revisions, even if it has been removed."""
-        return any(each.is_folder(path) for each in (self.old, self.new) if each is not None)
+        return any(commit.is_folder(path) for commit in (self.old, self.new) if commit is not None)
 
     def _is_xml(self, before: str | None, after: str | None) -> bool:
         """Whether XML without its .btq file was or is a mission."""

@@ -33,7 +33,7 @@ from btq_lang.workspace.loader import LoadProblem, absolute, decoded, find_proje
 
 
 class ImportOptions(Record):
-    """What is imported, and how.
+    """The files to import, and how.
 
     Attributes:
         files: XML files and logs, or `-` for standard input.
@@ -55,7 +55,7 @@ class ImportOptions(Record):
 
 
 class ImportResult(Record):
-    """What an import did.
+    """The result of an import.
 
     Attributes:
         code: the exit code.
@@ -236,9 +236,9 @@ def _clashes(job: _Job, jobs: Iterable[_Job], force: bool, problems: list[LoadPr
     if job.target is None:
         return False
     for other in jobs:
-        known: dict[str | None, str] = {other.path: other.xml, **dict(other.others), other.target: other.done.text}
+        text_at: dict[str | None, str] = {other.path: other.xml, **dict(other.others), other.target: other.done.text}
         for path, text in job.others:
-            if known.get(path, text) != text:
+            if text_at.get(path, text) != text:
                 message = f"not imported: the bundle {shown(other.path)} contains another version of {shown(path)}"
                 problems.append(LoadProblem(job.path, message))
                 return True
@@ -263,7 +263,7 @@ def _write(job: _Job, problems: list[LoadProblem], messages: CommandOutput) -> b
 
 
 def _add_findings(jobs: Iterable[_Job], options: ImportOptions, messages: CommandOutput) -> None:
-    """Tell the diagnostics of the XML, with its lines."""
+    """Report the diagnostics of the XML, with its lines."""
     findings = [Finding(job.path, job.xml, each) for job in jobs for each in job.done.diagnostics]
     if not findings:
         return
@@ -272,7 +272,7 @@ def _add_findings(jobs: Iterable[_Job], options: ImportOptions, messages: Comman
 
 
 def _add_changes(job: _Job, messages: CommandOutput) -> None:
-    """Tell what is lost, and where the new file differs from the XML, a line each."""
+    """Report losses, and where the new file differs from the XML, a line each."""
     for loss in job.losses:
         messages.remark(f"{shown(job.path)}: {loss}")
     lines = LineIndex(job.xml)
@@ -351,8 +351,8 @@ def unpacked(
         problems: errors are appended.
     """
     folder = os.path.dirname(target)
-    found: dict[str, str] = {}
-    known = len(problems)
+    unpacked_texts: dict[str, str] = {}
+    problems_before = len(problems)
     for name, text in others:
         path = _below(root, folder, name)
         if path is None:
@@ -361,12 +361,12 @@ def unpacked(
         elif path in (target, *taken):
             problems.append(LoadProblem(target, f"its bundle contains `{name}`, which the import would overwrite"))
         elif not os.path.lexists(path):
-            found[path] = text
+            unpacked_texts[path] = text
         elif not os.path.isfile(path) or read(path) != (text, None):
-            found[path] = text
+            unpacked_texts[path] = text
             if not force:
                 problems.append(LoadProblem(path, "already exists; --force overwrites it"))
-    return None if len(problems) > known else tuple(found.items())
+    return None if len(problems) > problems_before else tuple(unpacked_texts.items())
 
 
 def _below(root: str, folder: str, name: str) -> str | None:

@@ -6,7 +6,6 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.nav2 import PACKAGED
-from btq_lang.projects.files import FileGroup
 from btq_lang.projects.nav2_factory import ParameterFile, findings_of, in_distribution
 from btq_lang.render import Finding
 from btq_lang.util.record import replace
@@ -35,28 +34,25 @@ def requested(files: Files, options: CheckOptions) -> tuple[ParameterFile, ...]:
             return True
         return file.path.startswith(tuple(folders)) and not excluder(file.project)(file.path)
 
-    wanted = [each for each in files.parameter_files if is_requested(each)]
-    found = tuple({each.path: each for each in reversed(wanted)}.values())  # with the project of trees, if any
+    wanted = [file for file in files.parameter_files if is_requested(file)]
+    wanted_files = tuple({file.path: file for file in reversed(wanted)}.values())  # with the project of trees, if any
     if options.since:
         from btq_lang.projects.since import has_changed
 
-        found = tuple(each for each in found if has_changed((*each.used, each.project_file or ""), options.since))
-    return found
-
-
-def as_groups(found: Iterable[ParameterFile]) -> tuple[FileGroup, ...]:
-    """Parameter files as groups without any tree, for what looks at the paths of groups."""
-    return tuple(FileGroup(Workspace({}, each.project), (each.path,), (), (), each.project_file) for each in found)
+        wanted_files = tuple(
+            file for file in wanted_files if has_changed((*file.used, file.project_file or ""), options.since)
+        )
+    return wanted_files
 
 
 def nav2_findings(
-    found: Iterable[ParameterFile],
+    parameter_files: Iterable[ParameterFile],
     files: Files,
     checked: Container[str],
     configured: Callable[[Project], Project],
     target: str | None = None,
 ) -> tuple[list[Finding], dict[str, str]]:
-    """What is wrong with parameter files, and with trees that are checked; and the texts of files that this names.
+    """The findings in parameter files and in checked trees, and the texts of the files that they name.
 
     Args:
         checked: the paths of those trees.
@@ -65,13 +61,13 @@ def nav2_findings(
     """
     findings: list[Finding] = []
     texts: dict[str, str] = {}
-    for file in found:
+    for file in parameter_files:
         texts[file.path] = file.text
         home = FoundProject(file.project, file.project_file)
 
         def workspace_of(factory: Factory, home: FoundProject = home) -> Workspace:
             workspace = files.workspace_of(factory, home)
-            texts.update((path, each.source) for path, each in workspace.files.items())
+            texts.update((path, loaded.source) for path, loaded in workspace.files.items())
             return workspace
 
         file = replace(file, project=configured(file.project))
@@ -81,6 +77,6 @@ def nav2_findings(
         for path, diagnostic in findings_of(file, workspace_of, moved):
             if path == file.path or path in checked:
                 findings.append(Finding(path, texts[path], diagnostic))
-                for other in [each.place.path for each in diagnostic.related if each.place.path is not None]:
+                for other in [related.place.path for related in diagnostic.related if related.place.path is not None]:
                     texts[other] = texts.get(other) or read(other)[0] or ""
     return findings, texts

@@ -1,4 +1,4 @@
-"""The factories that a parameter file of Nav2 describes, and what is wrong with it.
+"""The factories that a parameter file of Nav2 describes, and the findings in it.
 
 bt_navigator has a factory for each navigator, so a tree that one of them creates by default, or for a goal that names
 it, sees what is read for that tree and nothing else.
@@ -78,19 +78,19 @@ class ParameterFile(Record):
     def distinct(self) -> list[Factory]:
         """The factories with files, without those that register the same ones: Lyrical reads one folder for both
         navigators."""
-        found: dict[tuple[frozenset[str], bool], Factory] = {}
-        for _, each in self.factories:
-            if each.files:
-                found.setdefault((frozenset(each.files), each.has_gaps), each)
-        return [*found.values()]
+        by_files: dict[tuple[frozenset[str], bool], Factory] = {}
+        for _, factory in self.factories:
+            if factory.files:
+                by_files.setdefault((frozenset(factory.files), factory.has_gaps), factory)
+        return [*by_files.values()]
 
     @property
     def used(self) -> frozenset[str]:
-        """The files that its findings depend on, besides the project file."""
+        """The files that its findings depend on, without the project file."""
         loads = [load for load, _ in self.factories]
-        places = [each for load in loads for each in (*load.refused, *(skipped.place for skipped in load.skipped))]
+        places = [place for load in loads for place in (*load.refused, *(skipped.place for skipped in load.skipped))]
         places += [goal for load in loads for goal in load.goals]
-        named = [each.path for each in places if each.path is not None]
+        named = [place.path for place in places if place.path is not None]
         return frozenset((self.path, *named, *(path for load in loads for path in load.files)))
 
     def factory_of(self, load: Load) -> Factory:
@@ -101,7 +101,7 @@ class ParameterFile(Record):
         return replace(
             self.factory,
             name=f"{self.factory.name} ({load.label})",
-            files=tuple(dict.fromkeys(self.sources.source_of(each) or each for each in load.files)),
+            files=tuple(dict.fromkeys(self.sources.source_of(path) or path for path in load.files)),
             node_files=nodes,
             nav2=self.path,
             has_gaps=distribution is None or not load.is_whole or bool(load.refused),
@@ -115,8 +115,8 @@ def parameter_file(
     """The parameter file of a factory, or why it could not be read; the files of the factory are those that
     goals name."""
     path = absolute(os.path.join(project.root, factory.nav2))
-    known = sources.known(path)
-    text, problem = (known, None) if known is not None else read(path)
+    open_text = sources.known(path)
+    text, problem = (open_text, None) if open_text is not None else read(path)
     if text is None:
         return None, problem
     distribution = distribution_among((*factory.node_files, *project.node_files))
@@ -126,24 +126,24 @@ def parameter_file(
     except YamlMissing:
         return None, LoadProblem(path, "needs PyYAML to be read: pip install 'btq-lang[nav2]'")
     except YamlProblem as error:
-        at = min(error.offset, len(text))
-        return replace(empty, problem=Diagnostic("yaml-syntax", Span(at, at), error.message)), problem
+        offset = min(error.offset, len(text))
+        return replace(empty, problem=Diagnostic("yaml-syntax", Span(offset, offset), error.message)), problem
     whole = replace(empty, parameters=parameters)
     return in_distribution(whole, distribution or parameters.distribution), problem
 
 
 def in_distribution(file: ParameterFile, distribution: str | None) -> ParameterFile:
-    """A parameter file with what a distribution loads by it."""
+    """A parameter file with the trees that a distribution loads by it."""
     parameters, sources = file.parameters, file.sources
     if parameters is None:
         return file
     loads = Loads(parameters, distribution, file.project.root, lambda each: sources.known(each) or read(each)[0])
     file = replace(file, distribution=distribution)
-    found = [*loads.by_default(), *map(loads.of_file, file.factory.files)]
+    loaded = [*loads.by_default(), *map(loads.of_file, file.factory.files)]
     if distribution is not None:
-        found += _for_goals(file, parameters, loads, [*sources.senders, *map(file.factory_of, found)])
-    whole = replace(file, factories=tuple((load, file.factory_of(load)) for load in found))
-    if distribution is None or not any(load.goals for load in found):
+        loaded += _for_goals(file, parameters, loads, [*sources.senders, *map(file.factory_of, loaded)])
+    whole = replace(file, factories=tuple((load, file.factory_of(load)) for load in loaded))
+    if distribution is None or not any(load.goals for load in loaded):
         return whole
     goals = tuple(dict.fromkeys(wrong_goals(parameters, distribution, _loaded(whole, sources.workspace_of))))
     factories = tuple((load, replace(factory, goals=goals)) for load, factory in whole.factories)
@@ -152,10 +152,10 @@ def in_distribution(file: ParameterFile, distribution: str | None) -> ParameterF
 
 def _for_goals(file: ParameterFile, parameters: Parameters, loads: Loads, senders: list[Factory]) -> Iterator[Load]:
     """The trees that goals name, also those that only the tree of another goal names."""
-    found: dict[tuple[str, bool], Load] = {}
+    loads_of_goals: dict[tuple[str, bool], Load] = {}
     places: dict[tuple[str, bool], dict[Place, None]] = {}
-    for each in parameters.goals:
-        places.setdefault((each.text, True), {})[Place(each.span)] = None
+    for goal in parameters.goals:
+        places.setdefault((goal.text, True), {})[Place(goal.span)] = None
     walked: set[frozenset[str]] = set()
     while True:
         for factory in senders:
@@ -163,18 +163,18 @@ def _for_goals(file: ParameterFile, parameters: Parameters, loads: Loads, sender
                 walked.add(frozenset(factory.files))
                 for name, place in goals_in(file.sources.workspace_of(factory)):
                     places.setdefault((name, False), {})[place] = None
-        new = {goal: loads.of_goal(*goal) for goal in places if goal not in found}
+        new = {goal: loads.of_goal(*goal) for goal in places if goal not in loads_of_goals}
         if not new:
             break
-        found.update(new)
+        loads_of_goals.update(new)
         senders = [*map(file.factory_of, new.values())]
-    return (replace(load, goals=tuple(places[goal])) for goal, load in found.items())
+    return (replace(load, goals=tuple(places[goal])) for goal, load in loads_of_goals.items())
 
 
 def findings_of(
     file: ParameterFile, workspace_of: Callable[[Factory], Workspace], moved: ParameterFile | None = None
 ) -> Iterator[tuple[str, Diagnostic]]:
-    """All that is wrong with a parameter file and with what it loads, with the file that it is in.
+    """The findings in a parameter file and in what it loads, each with its file.
 
     What is wrong with trees that nodes name for goals is found by the checks of these nodes, but for that of `moved`.
 
@@ -182,33 +182,33 @@ def findings_of(
         workspace_of: returns the workspace of a factory.
         moved: the file in the distribution that its robot moves to.
     """
-    found = [*_found(file, workspace_of)]
+    findings_today = [*_own_findings(file, workspace_of)]
     new: list[_Finding] = []
     if moved is not None and file.distribution is not None:
-        new = [*_new_in_target(found, moved, workspace_of)]
-    for path, diagnostic in (*((None, each) for path, each in found if path is None), *new):
+        new = [*_new_in_target(findings_today, moved, workspace_of)]
+    for path, diagnostic in (*((None, each) for path, each in findings_today if path is None), *new):
         yield from ((path or file.path, each) for each in configured(file.project, path or file.path, (diagnostic,)))
 
 
 def _new_in_target(
-    found: list[_Finding], moved: ParameterFile, workspace_of: Callable[[Factory], Workspace]
+    findings_today: list[_Finding], moved: ParameterFile, workspace_of: Callable[[Factory], Workspace]
 ) -> Iterator[_Finding]:
-    """What the target refuses, or reads otherwise, and the distribution that the parameters are for does not."""
-    from btq_lang.checks.moved_engine import is_severe, of_target  # few checks have a target
+    """The findings about what only the target refuses, or reads otherwise than the distribution of the parameters."""
+    from btq_lang.checks.target_changes import is_severe, of_target  # few checks have a target
 
-    known = {_key(each) for each in found if is_severe(each[1])}
-    for path, each in _found(moved, workspace_of):
-        if is_severe(each) and _key((path, each)) not in known:
+    severe_today = {_key(finding) for finding in findings_today if is_severe(finding[1])}
+    for path, each in _own_findings(moved, workspace_of):
+        if is_severe(each) and _key((path, each)) not in severe_today:
             yield path, of_target(each, (moved.distribution or "").capitalize())
 
 
 def _key(finding: _Finding) -> tuple[object, ...]:
-    """What two distributions have in common where they find the same; nodes without library share a place."""
-    path, found = finding
-    return path, found.rule, found.span, found.related[:1] if found.rule == "unloaded-node" else ()
+    """The same value for equal findings of two distributions; nodes without library share a place."""
+    path, diagnostic = finding
+    return path, diagnostic.rule, diagnostic.span, diagnostic.related[:1] if diagnostic.rule == "unloaded-node" else ()
 
 
-def _found(file: ParameterFile, workspace_of: Callable[[Factory], Workspace]) -> Iterator[_Finding]:
+def _own_findings(file: ParameterFile, workspace_of: Callable[[Factory], Workspace]) -> Iterator[_Finding]:
     if file.problem is not None:
         yield None, file.problem
     if file.parameters is not None and file.distribution is None:

@@ -1,6 +1,6 @@
 """Nodes of C++ sources as models: in btq's own language, and as XML for Groot; and as a page for people.
 
-One invariant: the first line says what wrote the file, so that it is not taken for a handwritten mission.
+One invariant: the first line names the writer, so that the file is not taken for a handwritten mission.
 """
 
 from __future__ import annotations
@@ -53,16 +53,18 @@ def _models(nodes: Iterable[CppNode], texts: Mapping[str, str]) -> Iterator[XmlC
 
 
 def _port(port: CppPort) -> Element:
-    said = (("name", port.name), ("type", port.type or None), ("default", port.default))
-    attributes = [Attribute(key, escape(value)) for key, value in said if value is not None]
+    values = (("name", port.name), ("type", port.type or None), ("default", port.default))
+    attributes = [Attribute(key, escape(value)) for key, value in values if value is not None]
     return Element(f"{port.direction}_port", attributes, [XmlText(port.text)] if port.text.strip() else [])
 
 
-def as_html(found: CppNodes, sources: str) -> str:
+def as_html(cpp_nodes: CppNodes, sources: str) -> str:
     """The nodes as one page that needs nothing but itself, each port with the place where it is provided."""
     from btq_lang.render.pages import page
 
-    categories = [(category, [node for node in found.nodes if node.category == category]) for category in CATEGORIES]
+    categories = [
+        (category, [node for node in cpp_nodes.nodes if node.category == category]) for category in CATEGORIES
+    ]
     return page(
         "projects/nodes.html.j2",
         title=f"Nodes of {sources}",
@@ -71,7 +73,7 @@ def as_html(found: CppNodes, sources: str) -> str:
             for category, nodes in categories
             if nodes
         ],
-        unseen=found.unseen,
+        unseen=cpp_nodes.unseen,
     )
 
 

@@ -38,8 +38,10 @@ def open_workspace(*paths: str, factory: str | None = None) -> Workspace:
         raise OSError(str(problem))
     requested = {path for group in groups for path in group.given}
     for group in groups:
-        of = group.workspace.factory
-        if of is not None and (of.name == factory if factory is not None else requested.issubset(group.given)):
+        own_factory = group.workspace.factory
+        if own_factory is not None and (
+            own_factory.name == factory if factory is not None else requested.issubset(group.given)
+        ):
             return _shown_from_root(group.workspace)
     if factory is not None:
         raise ValueError(f"no factory `{factory}` registers any of these files")
@@ -51,8 +53,8 @@ def open_workspace(*paths: str, factory: str | None = None) -> Workspace:
     files = {
         path: whole.files[path]
         for group, whole in zip(groups, wholes, strict=True)
-        for given in (*group.given, *sorted(group.pooled), *whole.project.node_files)
-        for path in whole.closure(given)
+        for requested_path in (*group.given, *sorted(group.pooled), *whole.project.node_files)
+        for path in whole.closure(requested_path)
     }
     pools = dict.fromkeys(pool for whole in wholes for pool in whole.project.pools)
     return _shown_from_root(Workspace(files, replace(wholes[0].project, pools=tuple(pools))))
@@ -76,16 +78,16 @@ class Disk:
     def text(self, path: str) -> str | None:
         return read(path)[0]
 
-    def workspace(self, path: str, known: dict[str, str] | None = None) -> Workspace | None:
-        """A file with all that it includes; `known`: texts that override those on the disk.
+    def workspace(self, path: str, texts: dict[str, str] | None = None) -> Workspace | None:
+        """A file with all that it includes; `texts`: those that override those on the disk.
 
         Raises:
-            Refused: the file cannot be read, and no texts are known.
+            Refused: the file cannot be read, and no texts override it.
         """
         files = Files()
-        files.overlay.update(known or {})
-        groups, problems = files.groups(known or [path])
-        if problems and known is None:
+        files.overlay.update(texts or {})
+        groups, problems = files.groups(texts or [path])
+        if problems and texts is None:
             raise Refused(*problems)
         group = next((group for group in groups if path in group.given), None)
         return None if problems or group is None else group.workspace

@@ -5,52 +5,63 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from btq_lang.util.record import Record
+
 if TYPE_CHECKING:
     from argparse import ArgumentParser
 
 
 class Refused(Exception):
-    """What a command line asks for is wrong or cannot be done; each argument says why."""
+    """A command line is wrong, or cannot be obeyed; each argument is a reason."""
 
 
 def refuse(*problems: object) -> None:
     """Raise `Refused` if there is a problem."""
-    if found := [*filter(None, problems)]:
-        raise Refused(*found)
+    if reasons := [*filter(None, problems)]:
+        raise Refused(*reasons)
 
 
-class CheckOptions:
+class CheckOptions(Record):
     """The options of `btq check` and their defaults.
 
     A plain `btq check PATH …` uses this alone: importing argparse takes longer than checking a small file.
     """
 
+    paths: Sequence[str] = (".",)
     stdin_filename: str | None = None
-    output_format: str | None = None  # reporting.py says what that means
+    output_format: str | None = None  # None: see `form_of` of reporting.py
     output_file: str | None = None
-    statistics = False
-    exit_zero = False
-    select: Sequence[str] = []
-    ignore: Sequence[str] = []
-    severity = "hint"
+    statistics: bool = False
+    exit_zero: bool = False
+    select: Sequence[str] = ()
+    ignore: Sequence[str] = ()
+    severity: str = "hint"
     target: str | None = None
-    nav2_params: Sequence[str] = []
+    nav2_params: Sequence[str] = ()
     since: str | None = None
     baseline: str | None = None
-    update_baseline = False
+    update_baseline: bool = False
     add_ignore: str | None = None
-    fix = False
-    diff = False
-    watch = False
-    jobs = 0
-    quiet = False
-    show_files = False
-    show_settings = False
-    config: str | None = None
-    color = "auto"
+    fix: bool = False
+    diff: bool = False
+    watch: bool = False
+    jobs: int = 0
+    quiet: bool = False
+    show_files: bool = False
+    show_settings: bool = False
+    color: str = "auto"
 
-    def __init__(self, paths: Sequence[str]) -> None:
-        self.paths = paths or (".",)
+
+class ServerOptions(Record):
+    """The options of the language server.
+
+    Attributes:
+        tcp: the port to serve on; None: standard input and output.
+        log: the least severity of what is logged.
+    """
+
+    tcp: str | None
+    log: str
 
 
 def add_server_options(parser: ArgumentParser) -> None:

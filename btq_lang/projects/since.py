@@ -4,7 +4,7 @@ A file depends on itself; on the project file; on what it includes, directly or 
 there any more; in a factory on all files of it, and on the parameter file of Nav2 that names them;
 and XML on the files of its pool that define the trees and nodes it uses, or did so at the revision.
 
-One invariant: a file that is left out has the findings that it had at the revision, as far as they depend on files.
+One invariant: a file that is left out has the same findings as at the revision, as far as they depend on files.
 """
 
 from __future__ import annotations
@@ -31,19 +31,19 @@ def affected(groups: Iterable[FileGroup], revision: str) -> tuple[FileGroup, ...
     if ".." in revision:
         raise GitTrouble(f"expected one revision, which the files are compared with, not `{revision}`")
     of_folder: dict[str, tuple[Revisions, frozenset[str]]] = {}
-    done: list[FileGroup] = []
+    affected_groups: list[FileGroup] = []
     for group in groups:
         for path in group.given[:1]:
             folder = posixpath.dirname(path)
             if folder not in of_folder:
-                known = revisions(revision, folder)
-                of_folder[folder] = known, known.changed_paths()
-            known, changed = of_folder[folder]
+                compared = revisions(revision, folder)
+                of_folder[folder] = compared, compared.changed_paths()
+            compared, changed = of_folder[folder]
             if group.project_file not in changed:
-                concerned = _Concerned(group.workspace, changed, known)
+                concerned = _Concerned(group.workspace, changed, compared)
                 group = replace(group, given=tuple(filter(concerned, group.given)))
-        done.append(group)
-    return tuple(done)
+        affected_groups.append(group)
+    return tuple(affected_groups)
 
 
 def has_changed(paths: Iterable[str], revision: str) -> bool:
@@ -59,26 +59,26 @@ def has_changed(paths: Iterable[str], revision: str) -> bool:
 class _Concerned:
     """Whether a change of some files concerns a file of a workspace."""
 
-    def __init__(self, workspace: Workspace, changed: frozenset[str], known: Revisions) -> None:
+    def __init__(self, workspace: Workspace, changed: frozenset[str], compared: Revisions) -> None:
         self._workspace = workspace
         self._changed = changed
-        self._known = known
+        self._known = compared
         self._defined_before: dict[str, frozenset[str]] = {}
 
     def __call__(self, path: str) -> bool:
         seen: set[str] = set()
         waiting = [path]
         while waiting:
-            each = waiting.pop()
-            if each in self._changed:
+            needed = waiting.pop()
+            if needed in self._changed:
                 return True
-            if each in self._workspace.files and each not in seen:
-                seen.add(each)
-                waiting += self._needed(each)
+            if needed in self._workspace.files and needed not in seen:
+                seen.add(needed)
+                waiting += self._needed(needed)
         return False
 
     def _needed(self, path: str) -> Iterator[str]:
-        """What a file itself depends on; paths that are not there too."""
+        """The paths that a file itself depends on, existing or not."""
         workspace = self._workspace
         yield from workspace.scope(path).paths
         if workspace.factory is not None and workspace.factory.nav2:
@@ -89,11 +89,11 @@ class _Concerned:
         pool = workspace.project.pool_of(path) if workspace.files[path].is_foreign else None
         if pool is None:
             return
-        changed = [each for each in self._changed if each.startswith(pool)]
+        changed = [changed_path for changed_path in self._changed if changed_path.startswith(pool)]
         for kind, name in workspace.files[path].used_names:
             if kind in (Kind.TREE, Kind.MODEL) and not workspace.scope(path).defines(kind, name):
-                yield from (each.path for each in workspace.pooled(path, kind, name))
-                yield from (each for each in changed if self._defined(each, name))
+                yield from (pooled.path for pooled in workspace.pooled(path, kind, name))
+                yield from (changed_path for changed_path in changed if self._defined(changed_path, name))
 
     def _defined(self, path: str, name: str) -> bool:
         """Whether a changed file may have defined a tree or a node at the revision."""

@@ -17,14 +17,14 @@ from btq_lang.workspace.loader import absolute, head, read, stamp
 
 
 class XmlBelow:
-    """Looks at files, and remembers what they are until they change."""
+    """Classifies files, and remembers the result until they change."""
 
     def __init__(self) -> None:
         self._seen: dict[str, tuple[Hashable, frozenset[str] | None, bool]] = {}  # stamp, IDs, whether it is generated
 
     def missions(self, top: str, paths: Iterable[str]) -> tuple[str, ...]:
-        """All but the XML files that are not the engine's, that git ignores, or that were built from a .btq file that
-        is there.
+        """All but the XML files that are not the engine's, that git ignores, or that were built from an existing
+        .btq file.
 
         Args:
             top: the folder that contains the paths; if git ignores it as a whole, it was named on purpose.
@@ -46,7 +46,7 @@ class XmlBelow:
         return ids is not None and not ids.isdisjoint(names)
 
     def _is_written(self, path: str, sources: set[str]) -> bool:
-        """Whether an XML file is a mission that no build has made of a file that is there."""
+        """Whether an XML file is a mission that was not built from an existing file."""
         ids, generated = self._look(path)
         if ids is None or not generated:
             return ids is not None
@@ -57,21 +57,21 @@ class XmlBelow:
         return self._look(path)[0] is not None
 
     def source_of(self, path: str) -> str | None:
-        """The mission that an XML file was built of, if it is there: beside it, or where the side file says."""
+        """The mission that an XML file was built of, if it exists: beside the XML, or where the side file names it."""
         if not self._look(path)[1]:
             return None
         named = named_beside(read(path)[0] or "", path, SUFFIXES)
-        return next((each for each in (*named, *_named_by_side_file(path)) if os.path.isfile(each)), None)
+        return next((mission for mission in (*named, *_named_by_side_file(path)) if os.path.isfile(mission)), None)
 
     def _look(self, path: str) -> tuple[frozenset[str] | None, bool]:
         """The IDs of trees and models in an XML file, None if it is not the engine's, and whether a build wrote it."""
-        now = stamp(path)
-        known = self._seen.get(path)
-        if known is None or known[0] != now:
+        current = stamp(path)
+        remembered = self._seen.get(path)
+        if remembered is None or remembered[0] != current:
             text = read(path)[0] or "" if may_be_mission(head(path)) else ""
             ids = defined_in(text) if is_mission(text) else None
-            known = self._seen[path] = now, ids, is_generated(text)
-        return known[1:]
+            remembered = self._seen[path] = current, ids, is_generated(text)
+        return remembered[1:]
 
 
 def _named_by_side_file(path: str) -> tuple[str, ...]:
@@ -93,27 +93,27 @@ def _named_by_side_file(path: str) -> tuple[str, ...]:
 def ignored(paths: Iterable[str]) -> frozenset[str]:
     """Those of some absolute paths that git ignores, none without git; a file that is tracked is not ignored."""
     repository_of: dict[str, str | None] = {}  # by folder
-    found = ((_repository(os.path.dirname(path), repository_of), path) for path in paths)
-    by_repository = grouped((root, path) for root, path in found if root is not None and path != root)
+    in_repository = ((_repository(os.path.dirname(path), repository_of), path) for path in paths)
+    by_repository = grouped((root, path) for root, path in in_repository if root is not None and path != root)
     return frozenset().union(*(_ignored_in(root, below) for root, below in by_repository.items()))
 
 
-def _repository(folder: str, known: dict[str, str | None]) -> str | None:
+def _repository(folder: str, repository_of: dict[str, str | None]) -> str | None:
     """The nearest folder above with a `.git`, which is a file in a submodule or a second working tree."""
-    if folder not in known:
+    if folder not in repository_of:
         above = os.path.dirname(folder)
         if os.path.exists(f"{folder}/.git"):
-            known[folder] = folder
+            repository_of[folder] = folder
         else:
-            known[folder] = _repository(above, known) if above != folder else None
-    return known[folder]
+            repository_of[folder] = _repository(above, repository_of) if above != folder else None
+    return repository_of[folder]
 
 
 def _ignored_in(root: str, paths: list[str]) -> frozenset[str]:
-    given = "\0".join(path.removeprefix(f"{root.rstrip('/')}/") for path in paths)
+    names = "\0".join(path.removeprefix(f"{root.rstrip('/')}/") for path in paths)
     try:
         run = subprocess.run(
-            ["git", "-C", root, "check-ignore", "-z", "--stdin"], input=os.fsencode(given), capture_output=True
+            ["git", "-C", root, "check-ignore", "-z", "--stdin"], input=os.fsencode(names), capture_output=True
         )
     except OSError:  # git is not installed
         return frozenset()

@@ -51,17 +51,17 @@ def uses_in(
     """What a tree or an `apply` attaches to which nodes, and what is wrong with that."""
     reader = Reader(store, viewpoint, path, facts)
     item = facts.item
-    found = _at_nodes(reader, item) if isinstance(item, syntax.Tree) else ()
-    return tuple(_applied_by(reader, item) if isinstance(item, syntax.Apply) else found), reader.problems
+    attachments = _at_nodes(reader, item) if isinstance(item, syntax.Tree) else ()
+    return tuple(_applied_by(reader, item) if isinstance(item, syntax.Apply) else attachments), reader.problems
 
 
 def attached_names(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
     """The names of the requirements that anything in scope attaches, understood or not."""
-    found: set[str] = set()
+    names: set[str] = set()
     for _, facts in store.ask(inputs.attaching, viewpoint):
-        found.update(facts.used.get(Kind.REQUIREMENT, ()))
-        found.update([symbol.name for symbol in facts.summary.symbols if symbol.kind is Kind.REQUIREMENT])
-    return frozenset(found)
+        names.update(facts.used.get(Kind.REQUIREMENT, ()))
+        names.update([symbol.name for symbol in facts.summary.symbols if symbol.kind is Kind.REQUIREMENT])
+    return frozenset(names)
 
 
 # ---- what applies to the nodes of a tree ----
@@ -79,48 +79,48 @@ def applied_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts)
     names = [*by_name]
     if len(names) > 1:
         names.sort(key=store.ask(_order, viewpoint).__getitem__)
-    found: list[model.Applied] = []
+    all_applied: list[model.Applied] = []
     traces: list[model.Trace] = []
     problems: list[Problem] = []
     for name in names:
         claimed, uses = by_name[name]
         attached = attached_by(store, viewpoint, name, uses)
-        found += (*claimed, *attached.applied)
+        all_applied += (*claimed, *attached.applied)
         traces += attached.traces
         problems += attached.problems
-    return Attached(tuple(found), tuple(traces), tuple(problems))
+    return Attached(tuple(all_applied), tuple(traces), tuple(problems))
 
 
 def attached_by(store: Store[Workspace], viewpoint: str, name: str, uses: Sequence[model.Attachment]) -> Attached:
     """What a requirement applies to by some of its attachments: all of those to certain nodes."""
-    of_name, _ = store.ask(requirement, viewpoint, name)
-    if not uses or of_name is None:
+    resolved, _ = store.ask(requirement, viewpoint, name)
+    if not uses or resolved is None:
         return _NOTHING
-    which = tuple([at for at, claim in enumerate(of_name.claims) if claim.subject is None])
-    counting, problems = _most_specific(of_name, uses)
-    if of_name.claims and not which:
+    indices = tuple([index for index, claim in enumerate(resolved.claims) if claim.subject is None])
+    counting, problems = _most_specific(resolved, uses)
+    if resolved.claims and not indices:
         return Attached(traces=tuple([model.Trace(name, use.target.node) for use in counting]), problems=problems)
-    filled = [(use, _with(store, viewpoint, of_name, which, use.arguments)) for use in counting]
-    applied = [model.Applied(made, use.target, use.arguments, use.place, use.how) for use, made in filled]
+    filled = [(use, _with(store, viewpoint, resolved, indices, use.arguments)) for use in counting]
+    applied = [model.Applied(part, use.target, use.arguments, use.place, use.how) for use, part in filled]
     return Attached(tuple(applied), problems=problems)
 
 
 def uses_of_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> Iterable[model.Attachment]:
     """The attachments to nodes of a tree, in the order of the items that make them."""
     own, _ = store.ask(uses_in, viewpoint, path, facts)
-    given = store.ask(_given_to, viewpoint, facts) if store.ask(inputs.applies, viewpoint) else ()
-    if not own or not given:
-        return own or given
-    order = {id(each.item): at for at, (_, each) in enumerate(store.ask(inputs.attaching, viewpoint))}
-    return sorted((*own, *given), key=lambda use: order[id(use.place.anchor)])
+    by_apply = store.ask(_attached_by_apply, viewpoint, facts) if store.ask(inputs.applies, viewpoint) else ()
+    if not own or not by_apply:
+        return own or by_apply
+    order = {id(each.item): index for index, (_, each) in enumerate(store.ask(inputs.attaching, viewpoint))}
+    return sorted((*own, *by_apply), key=lambda use: order[id(use.place.anchor)])
 
 
-def _given_to(store: Store[Workspace], viewpoint: str, facts: Facts) -> tuple[model.Attachment, ...]:
+def _attached_by_apply(store: Store[Workspace], viewpoint: str, facts: Facts) -> tuple[model.Attachment, ...]:
     """What `apply` items attach to nodes of a tree."""
-    return store.ask(_given, viewpoint).get(facts, ())
+    return store.ask(_attached_by_applies, viewpoint).get(facts, ())
 
 
-def _given(store: Store[Workspace], viewpoint: str) -> dict[Facts, tuple[model.Attachment, ...]]:
+def _attached_by_applies(store: Store[Workspace], viewpoint: str) -> dict[Facts, tuple[model.Attachment, ...]]:
     uses = [use for each in store.ask(inputs.applies, viewpoint) for use in store.ask(uses_in, viewpoint, *each)[0]]
     return _by_tree((use.target.node.facts, use) for use in uses)
 
@@ -137,7 +137,7 @@ def claimed(store: Store[Workspace], viewpoint: str, name: str) -> tuple[model.A
 
 
 def claimed_of_no_tree(store: Store[Workspace], viewpoint: str, name: str) -> tuple[model.Applied, ...]:
-    """Those of them whose subject is in no tree: sums, and spans that do not begin with a node."""
+    """What `claimed` returns for subjects that are in no tree: sums, and spans that do not begin with a node."""
     return tuple([each for each in store.ask(claimed, viewpoint, name) if _home(each) is None])
 
 
@@ -147,15 +147,15 @@ def _claimed_in(store: Store[Workspace], viewpoint: str, facts: Facts) -> tuple[
 
 def _claimed_by_tree(store: Store[Workspace], viewpoint: str) -> dict[Facts, tuple[model.Applied, ...]]:
     names = store.ask(inputs.claiming, viewpoint)
-    found = [(_home(each), each) for name in names for each in store.ask(claimed, viewpoint, name)]
-    return _by_tree((home, each) for home, each in found if home is not None)
+    pairs = [(_home(each), each) for name in names for each in store.ask(claimed, viewpoint, name)]
+    return _by_tree((home, each) for home, each in pairs if home is not None)
 
 
-def _by_tree(found: Iterable[tuple[Facts, T]]) -> dict[Facts, tuple[T, ...]]:
+def _by_tree(pairs: Iterable[tuple[Facts, T]]) -> dict[Facts, tuple[T, ...]]:
     lists: dict[Facts, list[T]] = {}
-    for facts, each in found:
-        lists.setdefault(facts, []).append(each)
-    return {facts: tuple(each) for facts, each in lists.items()}
+    for facts, value in pairs:
+        lists.setdefault(facts, []).append(value)
+    return {facts: tuple(value) for facts, value in lists.items()}
 
 
 def _home(applied: model.Applied) -> Facts | None:
@@ -167,7 +167,7 @@ def _home(applied: model.Applied) -> Facts | None:
 
 def _order(store: Store[Workspace], viewpoint: str) -> dict[str, int]:
     """The index of each requirement in their order."""
-    return {name: at for at, name in enumerate(store.ask(inputs.names, viewpoint, Kind.REQUIREMENT))}
+    return {name: index for index, name in enumerate(store.ask(inputs.names, viewpoint, Kind.REQUIREMENT))}
 
 
 # ---- a requirement with arguments ----
@@ -176,30 +176,30 @@ def _order(store: Store[Workspace], viewpoint: str) -> dict[str, int]:
 def _with(
     store: Store[Workspace],
     viewpoint: str,
-    of_name: model.ResolvedRequirement,
-    which: tuple[int, ...],
+    resolved: model.ResolvedRequirement,
+    indices: tuple[int, ...],
     arguments: tuple[model.ResolvedArgument, ...],
 ) -> model.ResolvedRequirement:
     """A requirement with some of its claims, and with arguments in place of its parameters; cached, for most nodes get
     the same one."""
-    if not arguments and len(which) == len(of_name.claims):
-        return of_name
-    return store.ask(_filled, viewpoint, of_name.name, which, arguments)
+    if not arguments and len(indices) == len(resolved.claims):
+        return resolved
+    return store.ask(_filled, viewpoint, resolved.name, indices, arguments)
 
 
 def _filled(
     store: Store[Workspace],
     viewpoint: str,
     name: str,
-    which: tuple[int, ...],
+    indices: tuple[int, ...],
     arguments: tuple[model.ResolvedArgument, ...],
 ) -> model.ResolvedRequirement:
-    of_name, _ = store.ask(requirement, viewpoint, name)
-    assert of_name is not None, "whoever asks has seen it"
-    claims = tuple([of_name.claims[at] for at in which if at < len(of_name.claims)])
-    filled = _filled_part(replace(of_name, claims=claims), {each.name: each.value for each in arguments})
+    resolved, _ = store.ask(requirement, viewpoint, name)
+    assert resolved is not None, "the caller has resolved it"
+    claims = tuple([resolved.claims[index] for index in indices if index < len(resolved.claims)])
+    filled = _filled_part(replace(resolved, claims=claims), {each.name: each.value for each in arguments})
     assert isinstance(filled, model.ResolvedRequirement), "a part is filled with a part of its kind"
-    return replace(filled, parameters=of_name.parameters)
+    return replace(filled, parameters=resolved.parameters)
 
 
 def _filled_part(part: object, values: dict[str, model.Bounded]) -> object:
@@ -221,27 +221,31 @@ def _filled_part(part: object, values: dict[str, model.Bounded]) -> object:
     return replace(part, **changes) if changes else part
 
 
-def _by_subject(store: Store[Workspace], viewpoint: str, of_name: model.ResolvedRequirement) -> Iterator[model.Applied]:
+def _by_subject(
+    store: Store[Workspace], viewpoint: str, resolved: model.ResolvedRequirement
+) -> Iterator[model.Applied]:
     """A claim's own subject takes precedence over what the requirement is attached to."""
     arguments = tuple(
-        model.ResolvedArgument(each.name, each.default) for each in of_name.parameters if each.default is not None
+        model.ResolvedArgument(parameter.name, parameter.default)
+        for parameter in resolved.parameters
+        if parameter.default is not None
     )
-    if len(arguments) < len(of_name.parameters):
+    if len(arguments) < len(resolved.parameters):
         return
     groups: dict[object, tuple[model.Subject, list[int]]] = {}
-    for at, claim in enumerate(of_name.claims):
+    for index, claim in enumerate(resolved.claims):
         subject = claim.subject
         if isinstance(subject, model.EveryNode):
             for node in store.ask(nodes.every, viewpoint, subject.name):
-                groups.setdefault(id(node), (model.NodeTarget(node), []))[1].append(at)
+                groups.setdefault(id(node), (model.NodeTarget(node), []))[1].append(index)
         elif isinstance(subject, model.NodeTarget) and not subject.through:
-            groups.setdefault(id(subject.node), (subject, []))[1].append(at)
+            groups.setdefault(id(subject.node), (subject, []))[1].append(index)
         elif subject is not None:
-            groups.setdefault(subject, (subject, []))[1].append(at)
-    for subject, which in groups.values():
-        made = _with(store, viewpoint, of_name, tuple(which), arguments)
-        place = of_name.claims[which[0]].place
-        yield model.Applied(made, subject, arguments, place, "subject")  # type: ignore[arg-type]  # no Every is left
+            groups.setdefault(subject, (subject, []))[1].append(index)
+    for subject, indices in groups.values():
+        restricted = _with(store, viewpoint, resolved, tuple(indices), arguments)
+        place = resolved.claims[indices[0]].place
+        yield model.Applied(restricted, subject, arguments, place, "subject")  # type: ignore[arg-type]  # no Every is left
 
 
 def _at_nodes(reader: Reader, tree: syntax.Tree) -> Iterator[model.Attachment]:
@@ -251,27 +255,27 @@ def _at_nodes(reader: Reader, tree: syntax.Tree) -> Iterator[model.Attachment]:
     for node, clauses in places:
         for written in requirements_at(clauses):
             word = written.name
-            of_name = _requirement(reader, word.text) if word is not None else None
-            if word is None or of_name is None:
+            resolved = _requirement(reader, word.text) if word is not None else None
+            if word is None or resolved is None:
                 continue
-            arguments = _arguments(reader, of_name, written, word.span)
+            arguments = _arguments(reader, resolved, written, word.span)
             if arguments is not None and node is not None:
                 place = reader.place(word.span)
-                yield model.Attachment(of_name.name, model.NodeTarget(node), arguments, _AT_NODE, "satisfies", place)
+                yield model.Attachment(resolved.name, model.NodeTarget(node), arguments, _AT_NODE, "satisfies", place)
 
 
 def _applied_by(reader: Reader, apply: syntax.Apply) -> Iterator[model.Attachment]:
-    targets = [found for selector in apply.targets for found in _selected(reader, selector)]
+    targets = [selected for selector in apply.targets for selected in _selected(reader, selector)]
     excepted = _excepted(reader, apply, {id(target.node) for target, _ in targets})
     for reference in apply.uses:
-        of_name = _requirement(reader, reference.name.text)
-        arguments = _arguments(reader, of_name, reference, reference.name.span) if of_name is not None else None
-        if of_name is None or arguments is None:
+        resolved = _requirement(reader, reference.name.text)
+        arguments = _arguments(reader, resolved, reference, reference.name.span) if resolved is not None else None
+        if resolved is None or arguments is None:
             continue
         place = reader.place(reference.name.span)
         for target, rank in targets:
             if id(target.node) not in excepted:
-                yield model.Attachment(of_name.name, target, arguments, rank, "apply", place)
+                yield model.Attachment(resolved.name, target, arguments, rank, "apply", place)
 
 
 def _requirement(reader: Reader, name: str) -> model.ResolvedRequirement | None:
@@ -294,24 +298,24 @@ def _excepted(reader: Reader, apply: syntax.Apply, applied_to: set[int]) -> set[
 def _selected(reader: Reader, selector: syntax.Selector) -> Iterator[tuple[model.NodeTarget, int]]:
     """The nodes of a selector, and how specific it is."""
     if selector.tag is not None:
-        found = reader.store.ask(nodes.tagged, reader.viewpoint, selector.tag.text)
-        if not found:
+        matching = reader.store.ask(nodes.tagged, reader.viewpoint, selector.tag.text)
+        if not matching:
             reader.no_tag(selector.tag)
-        yield from ((model.NodeTarget(node), _EVERY) for node in found)
+        yield from ((model.NodeTarget(node), _EVERY) for node in matching)
     elif selector.every is not None:
-        found = reader.store.ask(nodes.every, reader.viewpoint, selector.every.text)
-        if not found:
+        matching = reader.store.ask(nodes.every, reader.viewpoint, selector.every.text)
+        if not matching:
             reader.none_of(selector.every)
         rank = _EVERY
         if selector.path is not None:
             top = reader.target(selector.path)
             below = reader.store.ask(nodes.every_under, reader.viewpoint, selector.every.text, top) if top else ()
-            if found and top is not None and not below and reader.knows_all_nodes:
+            if matching and top is not None and not below and reader.knows_all_nodes:
                 shown = "/".join(name.text for name in selector.path.names)
                 message = f"no node matches `every {selector.every.raw}` below `{shown}`"
                 reader.complain("unmatched-path", selector.every.span, message)
-            found, rank = below, _EVERY_UNDER
-        yield from ((model.NodeTarget(node), rank) for node in found)
+            matching, rank = below, _EVERY_UNDER
+        yield from ((model.NodeTarget(node), rank) for node in matching)
     elif selector.path is not None:
         target = reader.target(selector.path)
         if target is not None:
@@ -319,52 +323,52 @@ def _selected(reader: Reader, selector: syntax.Selector) -> Iterator[tuple[model
 
 
 def _arguments(
-    reader: Reader, of_name: model.ResolvedRequirement, written: syntax.Requirement | syntax.ReqRef, span: Span
+    reader: Reader, resolved: model.ResolvedRequirement, written: syntax.Requirement | syntax.ReqRef, span: Span
 ) -> tuple[model.ResolvedArgument, ...] | None:
     """The values of the parameters; None if one is missing or wrong, which is reported."""
-    given: dict[str, model.Bounded] = {}
+    by_name: dict[str, model.Bounded] = {}
     complete = True
-    parameters = {parameter.name: parameter for parameter in of_name.parameters}
+    parameters = {parameter.name: parameter for parameter in resolved.parameters}
     for argument in written.arguments if isinstance(written, syntax.ReqRef) else ():
         parameter = parameters.get(argument.name.text)
         if parameter is None:
-            _no_parameter(reader, of_name, argument)
+            _no_parameter(reader, resolved, argument)
             complete = False
         elif argument.value is not None and (value := reader.argument(parameter, argument.value)) is not None:
-            given.setdefault(parameter.name, value)
+            by_name.setdefault(parameter.name, value)
         else:
             complete = False
-    missing = [each.name for each in of_name.parameters if each.name not in given and each.default is None]
+    missing = [each.name for each in resolved.parameters if each.name not in by_name and each.default is None]
     if missing and complete:
         names = " and ".join(f"`{name}`" for name in missing)
-        related = (Related(of_name.place, "defined here"),)
+        related = (Related(resolved.place, "defined here"),)
         example = ", ".join(f"{name} = …" for name in missing)
-        message = f"`{of_name.name}` requires a value for {names}"
-        notes = (f"write `{of_name.name}({example})`, or add a default to its definition",)
+        message = f"`{resolved.name}` requires a value for {names}"
+        notes = (f"write `{resolved.name}({example})`, or add a default to its definition",)
         reader.complain("wrong-argument", span, message, related=related, notes=notes)
     if missing or not complete:
         return None
-    values = ((each.name, given.get(each.name, each.default)) for each in of_name.parameters)
+    values = ((each.name, by_name.get(each.name, each.default)) for each in resolved.parameters)
     return tuple(model.ResolvedArgument(name, value) for name, value in values if value is not None)
 
 
-def _no_parameter(reader: Reader, of_name: model.ResolvedRequirement, argument: syntax.Argument) -> None:
+def _no_parameter(reader: Reader, resolved: model.ResolvedRequirement, argument: syntax.Argument) -> None:
     word: syntax.Word = argument.name
-    known = [parameter.name for parameter in of_name.parameters]
-    likely = [name for name in near(word.text, known) if syntax.is_name(name)]
+    names = [parameter.name for parameter in resolved.parameters]
+    likely = [name for name in near(word.text, names) if syntax.is_name(name)]
     fixes = tuple(replace_fix(f"Replace `{word.text}` with `{name}`", word.span, name) for name in likely)
-    notes = (f"its parameters: {', '.join(f'`{name}`' for name in known)}",) if known else ("it has no parameters",)
-    message = f"`{of_name.name}` has no parameter `{word.text}`{did_you_mean(likely)}"
-    related = (Related(of_name.place, "defined here"),)
+    notes = (f"its parameters: {', '.join(f'`{name}`' for name in names)}",) if names else ("it has no parameters",)
+    message = f"`{resolved.name}` has no parameter `{word.text}`{did_you_mean(likely)}"
+    related = (Related(resolved.place, "defined here"),)
     reader.complain("wrong-argument", word.span, message, related=related, notes=notes, fixes=fixes)
 
 
 def _most_specific(
-    of_name: model.ResolvedRequirement, uses: Sequence[model.Attachment]
+    resolved: model.ResolvedRequirement, uses: Sequence[model.Attachment]
 ) -> tuple[list[model.Attachment], Problems]:
     """One use for each node, or for each way that a path leads to it; and the problems where equally specific ones
     differ."""
-    found: list[model.Attachment] = []
+    counting: list[model.Attachment] = []
     problems: list[Problem] = []
     of_node: dict[tuple[int, tuple[str, ...]], list[model.Attachment]] = {}
     for use in uses:
@@ -374,15 +378,16 @@ def _most_specific(
         best = [use for use in same if use.rank == rank]
         other = next((use for use in best if _values(use) != _values(best[0])), None)
         if other is None:
-            found.append(best[0])
+            counting.append(best[0])
             continue
         node = best[0].target.node
-        message = f"`{of_name.name}` has two values for {node.shown}: {_said(best[0])} and {_said(other)}"
+        values = f"{_shown_arguments(best[0])} and {_shown_arguments(other)}"
+        message = f"`{resolved.name}` has two values for {node.shown}: {values}"
         related = (Related(best[0].place, "other value"), Related(node.place, "node"))
         notes = ("a clause at the node takes precedence over a path, a path over `every … under`, that over `every`",)
         diagnostic = Diagnostic("ambiguous-application", other.place.span, message, related, notes)
         problems.append(Problem(other.place, diagnostic))
-    return found, tuple(problems)
+    return counting, tuple(problems)
 
 
 def _values(use: model.Attachment) -> tuple[object, ...]:
@@ -390,7 +395,7 @@ def _values(use: model.Attachment) -> tuple[object, ...]:
     return tuple(getattr(argument.value, "si", argument.value) for argument in use.arguments)
 
 
-def _said(use: model.Attachment) -> str:
+def _shown_arguments(use: model.Attachment) -> str:
     return ", ".join(f"{argument.name} = {argument.value.text}" for argument in use.arguments)
 
 

@@ -90,8 +90,8 @@ def port_seconds(node: ResolvedNode) -> float | None:
         return None
     quantity = parse_quantity(word.text) if word.kind == QUANTITY else None
     if quantity is not None:
-        found = to_si(quantity[0], quantity[1])
-        return max(round(found * 1000), 0) / 1000 if found < inf else None
+        seconds = to_si(quantity[0], quantity[1])
+        return max(round(seconds * 1000), 0) / 1000 if seconds < inf else None
     return int(word.text) / 1000 if word.text.isdecimal() and len(word.text) < 12 else None
 
 
@@ -115,16 +115,17 @@ def port_of(node: ResolvedNode, role: Role) -> tuple[Word | None, str]:
     return (None, "") if port is None else (node.node.attribute(port.name), port.default or "")
 
 
-def made(children: Sequence[Budget], success: Range | None, failure: Range | None, skip: Range | None) -> Budget:
-    """A node with these ranges that waits, and holds what it promises, as its children do."""
+def combined(children: Sequence[Budget], success: Range | None, failure: Range | None, skip: Range | None) -> Budget:
+    """The budget of a node with these ranges.  Its children decide whether it waits, how likely its ranges hold, and
+    whether it is endless."""
     waits = any(child.waits for child in children)
     likely = likelihood([child.probability for child in children])
     return Budget(success, failure, skip, waits, likely, endless=any(child.endless for child in children))
 
 
 def likelihood(probabilities: Sequence[float], count: int | None = 1) -> float:
-    """The union bound: all of them hold, each `count` times; without a count that is unknown, unless all are
-    certain."""
+    """The least probability that all of these hold, each `count` times, by the union bound.  Without a count it is 0,
+    unless all of them are certain."""
     if all(probability == 1.0 for probability in probabilities):
         return 1.0
     if count is None or count < 0:

@@ -58,8 +58,8 @@ def outcome(store: Store[Workspace], viewpoint: str, name: str) -> Outcome:
         return _UNKNOWN_TREE
     budgets = store.ask(tree_budgets, viewpoint, tree.path, tree.facts)
     success = budgets.success(tree.root)
-    seen = Success(success.seconds, success.probability) if success is not None else None
-    return _without_terms(budgets.of(tree.root)), seen
+    visible = Success(success.seconds, success.probability) if success is not None else None
+    return _without_terms(budgets.of(tree.root)), visible
 
 
 @on_circle(True)
@@ -110,8 +110,8 @@ class Budgets:
         name = node.node.id
         if node.category != "SubTree" or name is None:
             return None, _UNKNOWN_TREE
-        seen = self._store.ask(outcome, self._viewpoint, name.text)
-        return self._store.ask(nodes.root, self._viewpoint, name.text), seen
+        tree_outcome = self._store.ask(outcome, self._viewpoint, name.text)
+        return self._store.ask(nodes.root, self._viewpoint, name.text), tree_outcome
 
 
 # ---- one tree ----
@@ -125,13 +125,13 @@ class TreeBudgets:
 
     def __init__(self, tree: ResolvedTree, applied: tuple[Applied, ...], outcomes: Mapping[str, Outcome]) -> None:
         self._outcomes = outcomes
-        self._claims: dict[
-            int, list[tuple[Applied, ResolvedClaim]]
-        ] = {}  # the claims that count, by the `id` of the node
-        for each in applied:
-            if isinstance(each.subject, NodeTarget) and not each.subject.through and not each.requirement.scopes:
-                for claim in each.requirement.claims:
-                    self._claims.setdefault(id(each.subject.node), []).append((each, claim))
+        # The claims that count, by the `id` of the node.
+        self._claims: dict[int, list[tuple[Applied, ResolvedClaim]]] = {}
+        for application in applied:
+            subject = application.subject
+            if isinstance(subject, NodeTarget) and not subject.through and not application.requirement.scopes:
+                for claim in application.requirement.claims:
+                    self._claims.setdefault(id(subject.node), []).append((application, claim))
         self._composed: dict[int, Budget] = {}
         self._held: dict[int, Budget] = {}
         self._successes: dict[int, Success | None] = {}
@@ -156,20 +156,20 @@ class TreeBudgets:
         composed = self.composed(node)
         if node.category == "SubTree" or node.behavior is None or not node.children or _is_sure(composed):
             return composed if _is_sure(composed) else _shortest(composed)
-        parts = {id(child.node): _as_part(child, self._known(child)) for child in node.children}
-        found = compose(node, [parts.get(id(child), _shortest(UNKNOWN)) for child in node.node.children])
-        return found if found.is_bounded else _shortest(composed)
+        parts = {id(child.node): _as_part(child, self._known_budget(child)) for child in node.children}
+        budget = compose(node, [parts.get(id(child), _shortest(UNKNOWN)) for child in node.node.children])
+        return budget if budget.is_bounded else _shortest(composed)
 
     def success_of_known(self, node: ResolvedNode) -> Success | None:
         """As for all budgets."""
-        found = self.composed_success(node)
-        if found is not None or node.category == "SubTree" or not node.children or _may_be_passed(node):
-            return found
+        success = self.composed_success(node)
+        if success is not None or node.category == "SubTree" or not node.children or _may_be_passed(node):
+            return success
         parts = [self.success(child) or self.success_of_known(child) for child in node.children]
         if not any(parts):
             return None
-        known = [_success_as_part(child, part) for child, part in zip(node.children, parts, strict=True)]
-        return _success_of(node, [part or _SURE for part in known])
+        as_parts = [_success_as_part(child, part) for child, part in zip(node.children, parts, strict=True)]
+        return _success_of(node, [part or _SURE for part in as_parts])
 
     def composed_success(self, node: ResolvedNode) -> Success | None:
         """A node's success as far as it follows from its children's."""
@@ -182,10 +182,10 @@ class TreeBudgets:
         if _may_be_passed(node):
             return None
         parts = [_success_as_part(child, self._successes[id(child)]) for child in node.children]
-        known = [part for part in parts if part is not None]
-        if len(known) < len(node.node.children):
+        known_parts = [part for part in parts if part is not None]
+        if len(known_parts) < len(node.node.children):
             return None
-        return _success_of(node, known)
+        return _success_of(node, known_parts)
 
     def _work_out(self, top: ResolvedNode) -> None:
         """Compose a node, after those that it depends on."""
@@ -216,22 +216,22 @@ class TreeBudgets:
         parts = {id(child.node): _as_part(child, self._held[id(child)]) for child in node.children}
         return compose(node, [parts.get(id(child), UNKNOWN) for child in node.node.children])
 
-    def _known(self, node: ResolvedNode) -> Budget:
+    def _known_budget(self, node: ResolvedNode) -> Budget:
         held = self.of(node)
         if _is_sure(held):
             return held
         sure = [claim for applied, claim in self._claims.get(id(node), ()) if applied.requirement.odds is None]
-        found = _all_narrowed(self.composed_of_known(node), sure)
-        return found if found.is_bounded else _shortest(found)
+        budget = _all_narrowed(self.composed_of_known(node), sure)
+        return budget if budget.is_bounded else _shortest(budget)
 
     def _succeeding(self, node: ResolvedNode) -> Success | None:
-        found: list[Success] = []
+        successes: list[Success] = []
         for applied, claim in self._claims.get(id(node), ()):
             if VERBS[claim.verb].limits == "success":
                 odds = applied.requirement.odds
-                found.append(Success(_range(claim).high, odds.probability if odds is not None else 1.0))
-        if found:
-            return max(found, key=lambda each: (each.probability, -each.seconds))
+                successes.append(Success(_range(claim).high, odds.probability if odds is not None else 1.0))
+        if successes:
+            return max(successes, key=lambda each: (each.probability, -each.seconds))
         return self.composed_success(node)
 
 
@@ -243,15 +243,15 @@ def _may_be_passed(node: ResolvedNode) -> bool:
 def _success_of(node: ResolvedNode, parts: list[Success]) -> Success | None:
     """By the union bound: the probability that one of the parts misses is at most the sum of theirs."""
     first = parts[0]
-    together = tuple(part for each in parts for part in each.parts)
+    together = tuple(share for part in parts for share in part.parts)
     missed = fsum([1.0 - part.probability for part in parts])
     if node.flow == "sequence" and not (node.behavior is not None and node.behavior.reactive):
         return Success(fsum([part.seconds for part in parts]), max(0.0, 1.0 - missed), together)
     if node.flow == "parallel" and port_count(node, "successes") in (-1, len(parts)):
         return Success(max(part.seconds for part in parts), max(0.0, 1.0 - missed), together)
     if node.flow == "repeat" and (count := port_count(node, "count") or 0) > 0:
-        each = tuple((child, count * share) for child, share in first.parts)
-        return Success(first.seconds * count, max(0.0, 1.0 - count * missed), each)
+        repeated = tuple((child, count * share) for child, share in first.parts)
+        return Success(first.seconds * count, max(0.0, 1.0 - count * missed), repeated)
     if node.flow == "timeout" and (limit := port_seconds(node)) is not None:
         return first if first.seconds <= limit or limit == 0 else None
     if node.flow == "delay" and (delay := port_seconds(node)) is not None:
@@ -259,9 +259,11 @@ def _success_of(node: ResolvedNode, parts: list[Success]) -> Success | None:
     return None
 
 
-def _success_as_part(node: ResolvedNode, found: Success | None) -> Success | None:
+def _success_as_part(node: ResolvedNode, success: Success | None) -> Success | None:
     """A child's success, as a part of its parent's."""
-    return Success(found.seconds, found.probability, ((node, 1.0 - found.probability),)) if found is not None else None
+    if success is None:
+        return None
+    return Success(success.seconds, success.probability, ((node, 1.0 - success.probability),))
 
 
 def _is_sure(budget: Budget) -> bool:
@@ -271,17 +273,18 @@ def _is_sure(budget: Budget) -> bool:
 
 def _shortest(budget: Budget) -> Budget:
     """The shortest time that a budget allows, for each outcome."""
-    found = mapped(budget, lambda each: Range(each.low, each.low) if each is not None else None)
-    return replace(found, probability=1.0, endless=False)
+    shortest = mapped(budget, lambda each: Range(each.low, each.low) if each is not None else None)
+    return replace(shortest, probability=1.0, endless=False)
 
 
 def _as_part(node: ResolvedNode, budget: Budget) -> Budget:
     """A child's budget as its parent sees it: each outcome is one term."""
 
-    def part(each: Range | None) -> Range | None:
-        if each is None or (each.high == 0.0 and not each.terms):
-            return each
-        return Range(each.low, each.high, (DurationTerm(node, 1, each.high),) if each.high > 0.0 else ())
+    def part(duration: Range | None) -> Range | None:
+        if duration is None or (duration.high == 0.0 and not duration.terms):
+            return duration
+        terms = (DurationTerm(node, 1, duration.high),) if duration.high > 0.0 else ()
+        return Range(duration.low, duration.high, terms)
 
     return mapped(budget, part)
 
@@ -339,11 +342,11 @@ def _narrowed(budget: Budget, claim: ResolvedClaim) -> Budget:
     return replace(budget, success=success, failure=_within(budget.failure, allowed), skip=skip)
 
 
-def _within(each: Range | None, allowed: Range) -> Range | None:
-    if each is None:
+def _within(duration: Range | None, allowed: Range) -> Range | None:
+    if duration is None:
         return None
-    low, high = max(each.low, allowed.low), min(each.high, allowed.high)
-    return Range(low, high, each.terms if high == each.high else ()) if low <= high else allowed
+    low, high = max(duration.low, allowed.low), min(duration.high, allowed.high)
+    return Range(low, high, duration.terms if high == duration.high else ()) if low <= high else allowed
 
 
 def _range(claim: ResolvedClaim) -> Range:

@@ -28,9 +28,9 @@ from btq_lang.util.text import Span
 
 def with_constraints(reader: Reader, requirement: ResolvedRequirement, text: syntax.Word) -> ResolvedRequirement:
     """A requirement without clauses, with the claims of its description."""
-    found = constraints(text)
-    names = frozenset(reader.names("nodes")) if found else frozenset()
-    for constraint in found:
+    parts = constraints(text)
+    names = frozenset(reader.names("nodes")) if parts else frozenset()
+    for constraint in parts:
         if can_be_checked(constraint.text, names.__contains__):
             requirement = _with(reader, requirement, constraint, text.span)
     if not requirement.claims:
@@ -47,8 +47,8 @@ def entries_in(part: object) -> tuple[str, ...]:
     from btq_lang.syntax.script.parser import parse_script  # few missions have one
     from btq_lang.syntax.script.tree import variables
 
-    read = [each.name for script in scripts for each in variables(parse_script(script.code)) if each.reads]
-    return tuple(dict.fromkeys(name for name in read if not name.isupper()))
+    names = [each.name for script in scripts for each in variables(parse_script(script.code)) if each.reads]
+    return tuple(dict.fromkeys(name for name in names if not name.isupper()))
 
 
 def _with(reader: Reader, requirement: ResolvedRequirement, constraint: Constraint, span: Span) -> ResolvedRequirement:
@@ -58,9 +58,9 @@ def _with(reader: Reader, requirement: ResolvedRequirement, constraint: Constrai
         verb = "never" if constraint.violates else "keeps"
         claim = ResolvedClaim(verb, text, reader.place(span), condition=ClassicScript(constraint.text))
         return replace(requirement, claims=(*requirement.claims, claim))
-    found = clauses_of(constraint.text)
-    assert found is not None, "what can be checked is a script or has clauses"
-    item, text = found
+    parsed = clauses_of(constraint.text)
+    assert parsed is not None, "what can be checked is a script or has clauses"
+    item, text = parsed
     if constraint.violates and not all(isinstance(clause, syntax.Claim) for clause in item.clauses):
         return requirement
     inner = Reader(reader.store, reader.viewpoint, reader.path, reader.facts)

@@ -82,8 +82,8 @@ def claim_of(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | Non
             # What follows is read all the same: one mistake does not hide the next.
             _verb(reader, written)
             return None
-    found = _verb(reader, written)
-    return found if found is None or subject is None else replace(found, subject=subject)
+    claim = _verb(reader, written)
+    return claim if claim is None or subject is None else replace(claim, subject=subject)
 
 
 def _verb(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | None:
@@ -180,8 +180,8 @@ def _subject(reader: Reader, written: syntax.Subject) -> model.Subject | None:
         return model.Interval(first, last) if first is not None and last is not None else None
     assert isinstance(written, syntax.Sum), "the last kind of subject"
     targets = [reader.target(path) for path in written.paths]
-    found = tuple(target for target in targets if target is not None)
-    return model.DurationSum(found) if len(found) == len(targets) else None
+    nodes_named = tuple(target for target in targets if target is not None)
+    return model.DurationSum(nodes_named) if len(nodes_named) == len(targets) else None
 
 
 def _odds(reader: Reader, written: syntax.Odds) -> model.ResolvedOdds | None:

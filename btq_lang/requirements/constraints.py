@@ -40,9 +40,9 @@ def constraints(word: Word) -> list[Constraint]:
     text = word.text
     if "if" not in text.lower():
         return []
-    found = list(_keyword_pattern().finditer(text))
-    ends = [*(match.start() for match in found), len(text)][1:]
-    parts = [(match, text[match.end() : end].lstrip(":").strip()) for match, end in zip(found, ends, strict=True)]
+    matches = list(_keyword_pattern().finditer(text))
+    ends = [*(match.start() for match in matches), len(text)][1:]
+    parts = [(match, text[match.end() : end].lstrip(":").strip()) for match, end in zip(matches, ends, strict=True)]
     return [Constraint(Span(*match.span()), match[0][0] not in "sS", part) for match, part in parts]
 
 
@@ -61,10 +61,10 @@ def _nodes_needed(text: str) -> frozenset[str] | None:
     words = text.replace(".", " ").split()
     if not words or (words[0] not in HEADS and VERB_WORDS.isdisjoint(words)):
         return None
-    found = clauses_of(text)
-    if found is None:
+    parsed = clauses_of(text)
+    if parsed is None:
         return None
-    subjects = [clause.subject for clause in found[0].clauses if isinstance(clause, Claim)]
+    subjects = [clause.subject for clause in parsed[0].clauses if isinstance(clause, Claim)]
     return frozenset([name.text for subject in subjects if isinstance(subject, Path) for name in subject.names])
 
 

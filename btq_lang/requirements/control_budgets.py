@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import inf
 
-from btq_lang.requirements.budget_parts import Budget, in_order, likelihood, made, opened, port_count, without_limit
+from btq_lang.requirements.budget_parts import Budget, combined, in_order, likelihood, opened, port_count, without_limit
 from btq_lang.requirements.durations import ZERO, Range, from_zero, hull, plus, total
 from btq_lang.util.record import replace
 from btq_lang.workspace.resolved import ResolvedNode
@@ -18,8 +18,8 @@ def sequence(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     if node.behavior is not None and node.behavior.keeps_place:
         return _with_memory(children)
     go, end, skip = in_order([(each.success, each.failure, each.skip) for each in children])
-    found = made(children, go, end, skip)
-    return _reactive(children, found, "failure") if node.behavior is not None and node.behavior.reactive else found
+    budget = combined(children, go, end, skip)
+    return _reactive(children, budget, "failure") if node.behavior is not None and node.behavior.reactive else budget
 
 
 def _with_memory(children: Sequence[Budget]) -> Budget:
@@ -27,7 +27,7 @@ def _with_memory(children: Sequence[Budget]) -> Budget:
     go, end, skip = in_order([(each.success, each.failure, each.skip) for each in children])
     last = hull(children[-1].success, children[-1].skip)
     first = min((each.failure.low for each in children if each.failure is not None), default=0.0)
-    return made(
+    return combined(
         children,
         replace(go, low=last.low) if go is not None and last is not None else None,
         replace(end, low=first) if end is not None else None,
@@ -35,17 +35,17 @@ def _with_memory(children: Sequence[Budget]) -> Budget:
     )
 
 
-def _reactive(children: Sequence[Budget], found: Budget, ends: str) -> Budget:
+def _reactive(children: Sequence[Budget], budget: Budget, ends: str) -> Budget:
     """A child before the running one is ticked at every tick, and may end the whole; each of several that take time may
     be restarted without limit."""
     waiting = [index for index, child in enumerate(children) if child.waits]
     if len(waiting) > 1:
-        return replace(opened(found), probability=likelihood([found.probability], None), endless=True)
+        return replace(opened(budget), probability=likelihood([budget.probability], None), endless=True)
     before = children[: waiting[0]] if waiting else ()
     if any(getattr(child, ends) is not None for child in before):
         running = children[waiting[0]].running
-        return replace(found, **{ends: hull(getattr(found, ends), running)})
-    return found
+        return replace(budget, **{ends: hull(getattr(budget, ends), running)})
+    return budget
 
 
 def parallel(node: ResolvedNode, children: Sequence[Budget]) -> Budget | None:
@@ -60,7 +60,7 @@ def parallel(node: ResolvedNode, children: Sequence[Budget]) -> Budget | None:
         return with_skips
     if wanted is None or failures is None:
         longest = _slowest(everything)
-        return made(children, longest, longest, longest)
+        return combined(children, longest, longest, longest)
     if not 0 < wanted <= n or not 0 < failures <= n:
         return None
     enough = min(failures, n - wanted + 1)
@@ -68,7 +68,7 @@ def parallel(node: ResolvedNode, children: Sequence[Budget]) -> Budget | None:
     last = highs[wanted + enough - 2]
     succeeds = _nth(children, "success", wanted)
     fails = _nth(children, "failure", enough)
-    return made(
+    return combined(
         children,
         replace(last, low=succeeds) if succeeds < inf else None,
         replace(last, low=fails) if fails < inf else None,
@@ -89,13 +89,13 @@ def _with_skips(node: ResolvedNode, children: Sequence[Budget], asks_again: bool
     if asks_again or any(child.endless for child in children) or sum(skip.high > 0.0 for skip in skips) > 1:
         return without_limit(children)
     longest = total(child.running for child in children)
-    return made(children, longest, longest, longest)
+    return combined(children, longest, longest, longest)
 
 
 def _nth(children: Sequence[Budget], outcome: str, count: int) -> float:
-    """When that many can have ended so, at the earliest."""
-    found = [getattr(child, outcome) for child in children]
-    return sorted(each.low if each is not None else inf for each in found)[count - 1]
+    """The earliest time at which so many children can have an outcome."""
+    ranges = [getattr(child, outcome) for child in children]
+    return sorted(each.low if each is not None else inf for each in ranges)[count - 1]
 
 
 def parallel_all(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
@@ -106,13 +106,13 @@ def parallel_all(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     if (with_skips := _with_skips(node, children, False)) is not None:
         return with_skips
     if any(child.completes is None for child in children):
-        return made(children, None, None, None)
+        return combined(children, None, None, None)
     longest = _slowest([child.completes or ZERO for child in children])
     always = sum(child.success is None for child in children)
     maybe = sum(child.failure is not None for child in children)
     fails = most is None or maybe >= most
     succeeds = most is None or always < most
-    return made(children, longest if succeeds else None, longest if fails else None, None)
+    return combined(children, longest if succeeds else None, longest if fails else None, None)
 
 
 def _slowest(ranges: Sequence[Range]) -> Range:
@@ -123,15 +123,15 @@ def _slowest(ranges: Sequence[Range]) -> Range:
 def choice(node: ResolvedNode, children: Sequence[Budget]) -> Budget | None:
     if len(children) not in (2, 3):
         return None
-    found = _if_then_else(children)
-    return _rechecking(children, found) if node.behavior is not None and node.behavior.reactive else found
+    budget = _if_then_else(children)
+    return _rechecking(children, budget) if node.behavior is not None and node.behavior.reactive else budget
 
 
 def _if_then_else(children: Sequence[Budget]) -> Budget:
     condition, then = children[0], children[1]
     otherwise = children[2] if len(children) == 3 else Budget(None, ZERO, None, False)
     return replace(
-        made(
+        combined(
             children,
             hull(plus(condition.success, then.success), plus(condition.failure, otherwise.success)),
             hull(plus(condition.success, then.failure), plus(condition.failure, otherwise.failure)),
@@ -141,33 +141,33 @@ def _if_then_else(children: Sequence[Budget]) -> Budget:
     )
 
 
-def _rechecking(children: Sequence[Budget], found: Budget) -> Budget:
+def _rechecking(children: Sequence[Budget], budget: Budget) -> Budget:
     """The condition is evaluated at every tick, and its result may change."""
     condition, *branches = children
     changes = condition.success is not None and condition.failure is not None
     if condition.waits or (changes and len(branches) == 2 and all(branch.waits for branch in branches)):
         return without_limit(children)
     if not changes:
-        return found
+        return budget
     running = total(branch.running if branch.waits else ZERO for branch in branches)
     return replace(
-        found,
-        success=hull(found.success, running) if len(branches) == 2 else found.success,
-        failure=hull(found.failure, running),
-        skip=hull(found.skip, running) if found.skip is not None else None,
+        budget,
+        success=hull(budget.success, running) if len(branches) == 2 else budget.success,
+        failure=hull(budget.failure, running),
+        skip=hull(budget.skip, running) if budget.skip is not None else None,
         probability=likelihood([child.probability for child in children]),
     )
 
 
 def switch(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     cases = children if node.node.attribute("variable") is not None else children[-1:]
-    found = made(
+    budget = combined(
         children,
         hull(*(child.success for child in cases)),
         hull(*(child.failure for child in cases)),
         hull(*(child.skip for child in cases)),
     )
-    return replace(found, probability=min(child.probability for child in cases))
+    return replace(budget, probability=min(child.probability for child in cases))
 
 
 def try_and_catch(node: ResolvedNode, children: Sequence[Budget]) -> Budget | None:
@@ -176,4 +176,4 @@ def try_and_catch(node: ResolvedNode, children: Sequence[Budget]) -> Budget | No
         return None
     *tried, catch = children
     go, end, skip = in_order([(each.success, each.failure, each.skip) for each in tried])
-    return made(children, go, plus(end, catch.anything), skip)
+    return combined(children, go, plus(end, catch.anything), skip)

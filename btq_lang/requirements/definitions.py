@@ -17,27 +17,28 @@ from btq_lang.workspace.workspace import Workspace
 def requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple[ResolvedRequirement | None, Problems]:
     """The requirement with a name, with parameters, and what is wrong with its definition; None if it is not
     defined."""
-    found = store.ask(inputs.definition, viewpoint, Kind.REQUIREMENT, name)
-    if found is None:
+    item = store.ask(inputs.definition, viewpoint, Kind.REQUIREMENT, name)
+    if item is None:
         return None, ()
-    symbol = inputs.symbol(found[1], Kind.REQUIREMENT, name)
+    symbol = inputs.symbol(item[1], Kind.REQUIREMENT, name)
     written = symbol.target
     assert isinstance(written, syntax.Requirement), "its kind says so"
-    reader = Reader(store, viewpoint, *found)
+    reader = Reader(store, viewpoint, *item)
     parameters: dict[str, ResolvedParameter] = {}
-    for each in written.parameters:
-        parameter = parameter_of(reader, each)
+    for parameter_node in written.parameters:
+        parameter = parameter_of(reader, parameter_node)
         parameters.setdefault(parameter.name, parameter)
     reader.parameters = parameters
-    quality = _quality(store, viewpoint, *found, written)
+    quality = _quality(store, viewpoint, *item, written)
     title = written.text.text if written.text is not None else None
-    read = ResolvedRequirement(name, reader.place(symbol.span), quality, title, False, tuple(parameters.values()), ())
-    read = with_clauses(reader, read, written.clauses)
+    place = reader.place(symbol.span)
+    resolved = ResolvedRequirement(name, place, quality, title, False, tuple(parameters.values()), ())
+    resolved = with_clauses(reader, resolved, written.clauses)
     if not written.clauses and written.text is not None:
         from btq_lang.requirements.classic import with_constraints  # only requirements without clauses need it
 
-        read = with_constraints(reader, read, written.text)
-    return read, reader.problems
+        resolved = with_constraints(reader, resolved, written.text)
+    return resolved, reader.problems
 
 
 def _quality(

@@ -39,68 +39,68 @@ ANY: Final = Range(0.0, inf)
 
 
 def plus(first: Range | None, second: Range | None) -> Range | None:
-    """One after the other."""
+    """Both, one after the other."""
     if first is None or second is None:
         return None
     return Range(first.low + second.low, first.high + second.high, first.terms + second.terms)
 
 
 def hull(*ranges: Range | None) -> Range | None:
-    """The one or the other."""
+    """The smallest range that contains all of these."""
     longest: Range | None = None
     low = inf
-    for each in ranges:
-        if each is not None:
-            low = min(low, each.low)
-            if longest is None or each.high > longest.high:
-                longest = each
+    for duration in ranges:
+        if duration is not None:
+            low = min(low, duration.low)
+            if longest is None or duration.high > longest.high:
+                longest = duration
     if longest is None or longest.low == low:
         return longest
     return Range(low, longest.high, longest.terms)
 
 
-def times(count: int, each: Range | None) -> Range | None:
-    """So many of the same, one after the other."""
+def times(count: int, duration: Range | None) -> Range | None:
+    """A duration repeated `count` times, one after the other."""
     if count == 0:
         return ZERO
-    if each is None:
+    if duration is None:
         return None
-    terms = tuple(replace(term, times=term.times * count) for term in each.terms)
-    return Range(each.low * count, each.high * count, terms)
+    terms = tuple(replace(term, times=term.times * count) for term in duration.terms)
+    return Range(duration.low * count, duration.high * count, terms)
 
 
-def cut(each: Range | None, at: float) -> Range | None:
-    """The part that takes no longer than this."""
-    if each is None or each.low > at:
+def cut(duration: Range | None, limit: float) -> Range | None:
+    """The part that takes no longer than `limit` seconds."""
+    if duration is None or duration.low > limit:
         return None
-    if each.high <= at:
-        return each
-    return Range(each.low, at, tuple(replace(term, seconds=at) for term in each.terms[:1]))
+    if duration.high <= limit:
+        return duration
+    return Range(duration.low, limit, tuple(replace(term, seconds=limit) for term in duration.terms[:1]))
 
 
-def from_zero(each: Range | None) -> Range | None:
+def from_zero(duration: Range | None) -> Range | None:
     """The same and anything shorter: it can be interrupted."""
-    return replace(each, low=0.0) if each is not None else None
+    return replace(duration, low=0.0) if duration is not None else None
 
 
-def without_end(each: Range | None) -> Range | None:
+def without_end(duration: Range | None) -> Range | None:
     """The same and anything longer."""
-    return Range(each.low, inf) if each is not None else None
+    return Range(duration.low, inf) if duration is not None else None
 
 
 def total(ranges: Iterable[Range | None]) -> Range | None:
     """All of them, one after the other."""
     result: Range | None = ZERO
-    for each in ranges:
-        result = plus(result, each)
+    for duration in ranges:
+        result = plus(result, duration)
     return result
 
 
 def together(terms: Iterable[DurationTerm]) -> tuple[DurationTerm, ...]:
     """Terms with equal ones merged."""
-    found: dict[tuple[int, float], DurationTerm] = {}
+    merged: dict[tuple[int, float], DurationTerm] = {}
     for term in terms:
         key = id(term.node), term.seconds
-        same = found.get(key)
-        found[key] = term if same is None else replace(same, times=same.times + term.times)
-    return tuple(found.values())
+        same = merged.get(key)
+        merged[key] = term if same is None else replace(same, times=same.times + term.times)
+    return tuple(merged.values())

@@ -318,8 +318,8 @@ class ResolvedClaim(Record):
 def _values(bounded: Bounded) -> list[tuple[float, str]]:
     """The values of a bound, in SI and as typed; empty if one of them is a signal's."""
     simple = [case.value for case in bounded.cases] if isinstance(bounded, ResolvedTable) else [bounded]
-    found = [(value.si, value.text) for value in simple if isinstance(value, Quantity)]
-    return found if len(found) == len(simple) else []
+    values = [(value.si, value.text) for value in simple if isinstance(value, Quantity)]
+    return values if len(values) == len(simple) else []
 
 
 class ResolvedScope(Record):
@@ -442,10 +442,10 @@ class Applied(Record):
         return self.subject.node if isinstance(self.subject, NodeTarget | MissionRun) else None
 
     @property
-    def given(self) -> str:
+    def argument_list(self) -> str:
         """Its arguments, `(limit = 5 min)`; empty without any."""
-        given = ", ".join(f"{each.name} = {each.value.text}" for each in self.arguments)
-        return f"({given})" if given else ""
+        arguments = ", ".join(f"{each.name} = {each.value.text}" for each in self.arguments)
+        return f"({arguments})" if arguments else ""
 
     @property
     def tree(self) -> str | None:

@@ -11,10 +11,10 @@ from math import inf
 from btq_lang.requirements.budget_parts import (
     UNKNOWN,
     Budget,
+    combined,
     end_after,
     in_order,
     likelihood,
-    made,
     port_count,
     port_of,
     without_limit,
@@ -33,7 +33,7 @@ def pipeline(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     if any(child.waits for child in children[1:]):
         end = hull(end, longest) if end is not None else None
         skip = hull(skip, longest) if skip is not None else None
-    return made(children, go, end, skip)
+    return combined(children, go, end, skip)
 
 
 def together(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
@@ -42,7 +42,7 @@ def together(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
         return replace(without_limit(children), skip=None)
     success = total(child.success for child in children)
     fails = any(child.failure is not None for child in children)
-    return made(children, success, total(child.running for child in children) if fails else None, None)
+    return combined(children, success, total(child.running for child in children) if fails else None, None)
 
 
 def resume(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
@@ -52,7 +52,7 @@ def resume(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     if word is not None and word.kind != BRACED:
         return UNKNOWN
     go, end, _ = in_order([(each.success, each.failure, each.skip) for each in children])
-    return made(children, hull(from_zero(go), ZERO), from_zero(end), None)
+    return combined(children, hull(from_zero(go), ZERO), from_zero(end), None)
 
 
 def recover(node: ResolvedNode, children: Sequence[Budget]) -> Budget | None:
@@ -71,14 +71,14 @@ def recover(node: ResolvedNode, children: Sequence[Budget]) -> Budget | None:
         last = plus(times(count, cycle), first.failure) if count == 0 or cycle is not None else None
     elif cycle is not None:
         last = end_after(cycle, first.failure, most)
-    found = made(
+    budget = combined(
         children,
         end_after(cycle, first.success, most),
         hull(last, end_after(cycle, gives_up, most - 1) if most > 0 else None),
         end_after(cycle, first.skip, most),
     )
     likely = likelihood([child.probability for child in children], None if count is None else count + 1)
-    return replace(found, probability=likely, endless=found.endless or (count is None and cycle is not None))
+    return replace(budget, probability=likely, endless=budget.endless or (count is None and cycle is not None))
 
 
 def rotate(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
@@ -88,7 +88,7 @@ def rotate(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
         return replace(UNKNOWN, waits=any(child.waits for child in children))
     longest = total(child.running for child in children)
     succeeds = [child.success for child in children if child.success is not None]
-    return made(
+    return combined(
         children,
         replace(longest, low=min(each.low for each in succeeds)) if succeeds and longest is not None else None,
         longest,

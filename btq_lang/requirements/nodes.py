@@ -58,8 +58,8 @@ def mission(store: Store[Workspace], viewpoint: str) -> ResolvedNode | None:
 
 def root(store: Store[Workspace], viewpoint: str, tree: str) -> ResolvedNode | None:
     """The root of the tree with a name."""
-    found = store.ask(tree_named, viewpoint, tree)
-    return found.root if found is not None else None
+    resolved = store.ask(tree_named, viewpoint, tree)
+    return resolved.root if resolved is not None else None
 
 
 def _of_nodes(read: Callable[Concatenate[Nodes, P], T]) -> Callable[Concatenate[Store[Workspace], str, P], T]:
@@ -93,7 +93,7 @@ class Nodes:
         return tuple([node for tree in self.trees for node in tree.all])
 
     def are_known(self) -> bool:
-        """Whether there are any."""
+        """Whether there is a node."""
         return any(tree.all for tree in self.trees)
 
     def callers(self, tree: str | None) -> tuple[ResolvedNode, ...]:
@@ -103,11 +103,11 @@ class Nodes:
     @cached_property
     def callers_by_tree(self) -> dict[str | None, tuple[ResolvedNode, ...]]:
         """The same for all trees that are run."""
-        found: dict[str, list[ResolvedNode]] = {}
+        nodes_by_name: dict[str, list[ResolvedNode]] = {}
         for tree in self.trees:
             for name, node in tree.calls:
-                found.setdefault(name, []).append(node)
-        return {name: tuple(nodes) for name, nodes in found.items()}
+                nodes_by_name.setdefault(name, []).append(node)
+        return {name: tuple(nodes) for name, nodes in nodes_by_name.items()}
 
     def run_by(self, node: ResolvedNode) -> ResolvedNode | None:
         """The root of the tree that a SubTree node runs."""
@@ -121,34 +121,34 @@ class Nodes:
         last, above = names[-1], names[:-1]
         root = self._roots.get(last)
         matching = (self._target(node, above, False) for node in self._by_name.get(last, ()) if node is not root)
-        found = [target for target in matching if target is not None]
+        targets = [target for target in matching if target is not None]
         of_tree = self._target(root, above, True) if root is not None else None
         if of_tree is None:
-            return tuple(found)
-        others = [target for target in found if not _runs(target.node, last)]
-        if not of_tree.through or len(others) == len(found):
+            return tuple(targets)
+        others = [target for target in targets if not _runs(target.node, last)]
+        if not of_tree.through or len(others) == len(targets):
             return (of_tree, *others)
-        return tuple(found)
+        return tuple(targets)
 
     def every(self, name: str) -> tuple[ResolvedNode, ...]:
         """The nodes of an ID or kind; a tree's name, if no SubTree runs it, means its root."""
-        found = [node for node in self._by_name.get(name, ()) if name in node.kinds]
-        if not found and (root := self._roots.get(name)) is not None:
+        matching = [node for node in self._by_name.get(name, ()) if name in node.kinds]
+        if not matching and (root := self._roots.get(name)) is not None:
             return (root,)
-        return tuple(found)
+        return tuple(matching)
 
     def has_any(self, name: str) -> bool:
-        """Whether there are any of these."""
+        """Whether a node has this ID or kind."""
         return bool(self.every(name))
 
     def tagged(self, tag: str) -> tuple[ResolvedNode, ...]:
         """The nodes with a tag; a tag of a tree is one of its root."""
-        found: list[ResolvedNode] = []
+        matching: list[ResolvedNode] = []
         for tree in self.trees:
             if tag in tree.by_tag:
                 tagged = set(map(id, tree.by_tag[tag]))
-                found += [node for node in tree.all if id(node) in tagged]
-        return tuple(found)
+                matching += [node for node in tree.all if id(node) in tagged]
+        return tuple(matching)
 
     def tags(self) -> frozenset[str]:
         """Every tag that a node has."""
@@ -173,11 +173,11 @@ class Nodes:
 
     @cached_property
     def _by_name(self) -> dict[str, list[ResolvedNode]]:
-        found: dict[str, list[ResolvedNode]] = {}
+        by_name: dict[str, list[ResolvedNode]] = {}
         for tree in self.trees:
             for name, nodes in tree.by_name.items():
-                found.setdefault(name, []).extend(nodes)
-        return found
+                by_name.setdefault(name, []).extend(nodes)
+        return by_name
 
     def _target(self, node: ResolvedNode, above: tuple[str, ...], is_tree: bool) -> NodeTarget | None:
         """The node as target of a path, if the path's other names are found above it.
@@ -214,10 +214,10 @@ def _left(node: ResolvedNode | None, tree: str | None, above: tuple[str, ...], c
         called: the tree that the node runs, whose name does not count there.
     """
     left = len(above)
-    at = node
-    while left and at is not None:
-        left -= above[left - 1] in at.names and not (at is node and above[left - 1] == called)
-        at = at.parent
+    current = node
+    while left and current is not None:
+        left -= above[left - 1] in current.names and not (current is node and above[left - 1] == called)
+        current = current.parent
     return left - bool(left and above[left - 1] == tree)
 
 

@@ -48,16 +48,16 @@ class PathReader:
     """
 
     def __init__(
-        self, store: Store[Workspace], viewpoint: str, path: str, facts: Facts, known: Collection[str] | None = None
+        self, store: Store[Workspace], viewpoint: str, path: str, facts: Facts, signals: Collection[str] | None = None
     ) -> None:
-        """known: the only signals that may be named, without contexts; None: all signals and contexts."""
+        """signals: the only ones that may be named, without contexts; None: all signals and contexts."""
         self.store: Final = store
         self.viewpoint: Final = viewpoint
         self.path: Final = path
         self.parameters: dict[str, ResolvedParameter] = {}
         self.source: tuple[str, Span] | None = None
         self.facts: Final = facts
-        self._known: Final = known
+        self._signals: Final = signals
         self._problems: dict[tuple[str, Span, str], Problem] = {}
 
     @property
@@ -75,8 +75,8 @@ class PathReader:
         """The names of a kind: parameters, signals, contexts, nodes, kinds, tags."""
         if kind == "parameters":
             return tuple(self.parameters)
-        if kind in _DECLARED and self._known is not None:
-            return tuple(self._known) if kind == "signals" else ()
+        if kind in _DECLARED and self._signals is not None:
+            return tuple(self._signals) if kind == "signals" else ()
         if kind in _DECLARED:
             return self.store.ask(inputs.names, self.viewpoint, _DECLARED[kind])
         if kind == "nodes":
@@ -114,8 +114,8 @@ class PathReader:
         severity: Severity | None = None,
     ) -> None:
         """Add a problem, once."""
-        found = Diagnostic(rule, span, message, related, notes, fixes, severity=severity)
-        self._problems.setdefault((rule, span, message), Problem(Place(span, self.path, self.facts.item), found))
+        diagnostic = Diagnostic(rule, span, message, related, notes, fixes, severity=severity)
+        self._problems.setdefault((rule, span, message), Problem(Place(span, self.path, self.facts.item), diagnostic))
 
     def place(self, span: Span) -> Place:
         """A place in the item."""
@@ -131,14 +131,14 @@ class PathReader:
     def target(self, path: Path, notes: tuple[str, ...] = ()) -> NodeTarget | None:
         """The one node that a path names; `notes` are for a path that names none."""
         names = tuple(name.text for name in path.names)
-        found = self.find(names)
-        if len(found) == 1:
-            return found[0]
+        targets = self.find(names)
+        if len(targets) == 1:
+            return targets[0]
         shown = "/".join(name.raw for name in path.names)
-        if found:
-            self.ambiguous(path.span, shown, found)
+        if targets:
+            self.ambiguous(path.span, shown, targets)
         elif self.knows_all_nodes:
-            likely = self._meant(path)
+            likely = self._respellings(path)
             fixes = tuple(
                 replace_fix(f"Replace `{word.text}` with `{name}`", word.span, written(name)) for word, name in likely
             )
@@ -169,12 +169,12 @@ class PathReader:
         fixes = tuple(replace_fix(f"Replace `{word.text}` with `{name}`", word.span, written(name)) for name in likely)
         self.complain("unmatched-path", word.span, f"{message}{did_you_mean(likely)}", notes=notes, fixes=fixes)
 
-    def ambiguous(self, span: Span, shown: str, found: tuple[NodeTarget, ...]) -> None:
+    def ambiguous(self, span: Span, shown: str, targets: tuple[NodeTarget, ...]) -> None:
         """Report a path that names several nodes."""
-        related = tuple(Related(target.node.place, f"in the tree `{target.node.tree}`") for target in found[:_SHOWN])
-        some = found[:_LOOKED_AT]
-        paths = dict.fromkeys(path for target in some if (path := self._path_to(target)) is not None)
-        message = f"ambiguous path `{shown}`: {len(found)} nodes match"
+        related = tuple(Related(target.node.place, f"in the tree `{target.node.tree}`") for target in targets[:_SHOWN])
+        examined = targets[:_LOOKED_AT]
+        paths = dict.fromkeys(path for target in examined if (path := self._path_to(target)) is not None)
+        message = f"ambiguous path `{shown}`: {len(targets)} nodes match"
         notes = ("a path must match one node; write `every` for all of them, in a clause or in `apply … to every …`",)
         fixes = tuple(write_fix(path, span) for path in list(paths)[:_SHOWN])
         self.complain("ambiguous-path", span, message, related=related, notes=notes, fixes=fixes)
@@ -184,9 +184,9 @@ class PathReader:
             return f"no node `{names[-1]}` below `{'/'.join(names[:-1])}`"
         return f"unknown node `{shown}`" if len(names) == 1 else f"no node matches `{shown}`"
 
-    def _meant(self, path: Path) -> list[tuple[Word, str]]:
+    def _respellings(self, path: Path) -> list[tuple[Word, str]]:
         """Words of a path that names no node, each with a similar name that would make it match one."""
-        found = []
+        respellings = []
         for index, word in enumerate(path.names):
             if self.store.ask(nodes.has_name, self.viewpoint, word.text):
                 continue
@@ -194,8 +194,8 @@ class PathReader:
                 names = [other.text for other in path.names]
                 names[index] = name
                 if len(self.find(tuple(names))) == 1:
-                    found.append((word, name))
-        return found
+                    respellings.append((word, name))
+        return respellings
 
     def _path_to(self, target: NodeTarget) -> str | None:
         """The shortest path that names that node alone."""
@@ -205,8 +205,8 @@ class PathReader:
         above += [node.tree] if node.tree is not None else []
         choices = [*([head] for head in heads), *([name, head] for head in heads for name in above)]
         for names in choices:
-            found = self.find(tuple(names))
-            if len(found) == 1 and found[0].node is node:
+            targets = self.find(tuple(names))
+            if len(targets) == 1 and targets[0].node is node:
                 return "/".join(map(written, names))
         return None
 
@@ -214,9 +214,9 @@ class PathReader:
 def _is_crowded(store: Store[Workspace], viewpoint: str) -> bool:
     """Whether clauses use so many unknown names, and there are so many known ones, that comparing all of them would
     take seconds."""
-    known = {*store.ask(inputs.names, viewpoint, Kind.SIGNAL), *store.ask(inputs.names, viewpoint, Kind.CONTEXT)}
-    known |= {*store.ask(nodes.node_names, viewpoint), *store.ask(nodes.tags, viewpoint)}
-    return len(store.ask(inputs.asked_for, viewpoint) - known) * len(known) > _MOST_COMPARED
+    names = {*store.ask(inputs.names, viewpoint, Kind.SIGNAL), *store.ask(inputs.names, viewpoint, Kind.CONTEXT)}
+    names |= {*store.ask(nodes.node_names, viewpoint), *store.ask(nodes.tags, viewpoint)}
+    return len(store.ask(inputs.asked_for, viewpoint) - names) * len(names) > _MOST_COMPARED
 
 
 _DECLARED: Final = {"signals": Kind.SIGNAL, "contexts": Kind.CONTEXT}

@@ -50,14 +50,14 @@ Problems: TypeAlias = tuple[Problem, ...]
 
 def signal(store: Store[Workspace], viewpoint: str, name: str) -> tuple[model.ResolvedSignal | None, Problems]:
     """The signal with a name; None if it is not declared."""
-    found = store.ask(inputs.definition, viewpoint, Kind.SIGNAL, name)
-    if found is None:
+    definition = store.ask(inputs.definition, viewpoint, Kind.SIGNAL, name)
+    if definition is None:
         return None, ()
-    symbol = inputs.symbol(found[1], Kind.SIGNAL, name)
+    symbol = inputs.symbol(definition[1], Kind.SIGNAL, name)
     item = symbol.target
     assert isinstance(item, syntax.Signal), "its kind says so"
     names = store.ask(inputs.names, viewpoint, Kind.SIGNAL) if item.initially is not None else ()
-    reader = Reader(store, viewpoint, *found, known=names[: names.index(name)] if name in names else ())
+    reader = Reader(store, viewpoint, *definition, signals=names[: names.index(name)] if name in names else ())
     sort, unit = sort_of(item.unit)
     fresh = reader.quantity(item.fresh, DURATION)
     source = item.source.text[1:-1].strip() if item.source is not None else None
@@ -66,7 +66,7 @@ def signal(store: Store[Workspace], viewpoint: str, name: str) -> tuple[model.Re
     initially = None
     if item.initially is not None:
         initially = reader.argument(model.ResolvedParameter(name, sort, unit, None), item.initially)
-    read = model.ResolvedSignal(
+    resolved = model.ResolvedSignal(
         name,
         sort,
         unit,
@@ -76,23 +76,23 @@ def signal(store: Store[Workspace], viewpoint: str, name: str) -> tuple[model.Re
         initially,  # type: ignore[arg-type]  # an Amount is not a table
         place,
     )
-    return read, reader.problems
+    return resolved, reader.problems
 
 
 def context(store: Store[Workspace], viewpoint: str, name: str) -> tuple[model.Condition | None, Problems]:
     """The condition of a context; None if it cannot be understood."""
-    found = store.ask(inputs.definition, viewpoint, Kind.CONTEXT, name)
-    if found is None:
+    definition = store.ask(inputs.definition, viewpoint, Kind.CONTEXT, name)
+    if definition is None:
         return None, ()
-    reader = Reader(store, viewpoint, *found)
-    span = inputs.symbol(found[1], Kind.CONTEXT, name).span
+    reader = Reader(store, viewpoint, *definition)
+    span = inputs.symbol(definition[1], Kind.CONTEXT, name).span
     depth = store.ask(_depth, viewpoint, name)
     if depth == _IN_CIRCLE:
         reader.complain("cyclic-context", span, f"the context `{name}` refers to itself")
     elif depth > _DEEPEST:
         reader.complain("nested-too-deep", span, f"more than {_DEEPEST} levels of contexts in contexts")
     else:
-        written = _written_context(found[1], name)
+        written = _written_context(definition[1], name)
         for other in _contexts_in(store, viewpoint, written):  # before its condition is read, deep in Python's stack
             store.ask(context, viewpoint, other)
         return reader.condition(written.condition), reader.problems
@@ -105,10 +105,10 @@ _IN_CIRCLE: Final = 0
 @on_circle(_IN_CIRCLE)
 def _depth(store: Store[Workspace], viewpoint: str, name: str) -> int:
     """How deeply contexts are nested in a context, itself included."""
-    found = store.ask(inputs.definition, viewpoint, Kind.CONTEXT, name)
-    if found is None:
+    definition = store.ask(inputs.definition, viewpoint, Kind.CONTEXT, name)
+    if definition is None:
         return 1
-    others = _contexts_in(store, viewpoint, _written_context(found[1], name))
+    others = _contexts_in(store, viewpoint, _written_context(definition[1], name))
     return 1 + max([store.ask(_depth, viewpoint, other) for other in others], default=0)
 
 
@@ -133,13 +133,13 @@ class Reader(PathReader):
 
     def signal(self, name: str) -> model.ResolvedSignal | None:
         """The signal with a name."""
-        if self._known is not None and name not in self._known:
+        if self._signals is not None and name not in self._signals:
             return None
         return self.store.ask(signal, self.viewpoint, name)[0]
 
     def is_context(self, name: str) -> bool:
         """Whether a context with this name exists, understood or not."""
-        if self._known is not None:
+        if self._signals is not None:
             return False
         return self.store.ask(inputs.definition, self.viewpoint, Kind.CONTEXT, name) is not None
 
@@ -173,13 +173,13 @@ class Reader(PathReader):
                 return self.bounded(written, None)
             plain = unit.dimension == model.NO_DIMENSION
             return self.bounded(written, Wanted(a_dimension(unit), (unit.dimension,), None if plain else unit.symbol))
-        found = self.bounded(written, None)
-        for value, place in amounts(found, written):
+        bounded = self.bounded(written, None)
+        for value, place in amounts(bounded, written):
             if sort_of_value(value) != parameter.sort:
                 what = "a text in quotes" if parameter.sort == "text" else "`true` or `false`"
-                self.complain("unit-mismatch", place, f"expected {what}, found `{self._at(place)}`")
+                self.complain("unit-mismatch", place, f"expected {what}, found `{self._text_at(place)}`")
                 return None
-        return found
+        return bounded
 
     def quantity(self, word: syntax.Word | None, wanted: Wanted) -> model.Quantity | None:
         """A quantity or a number by itself."""
@@ -198,10 +198,10 @@ class Reader(PathReader):
         if word.kind == NUMBER:
             term = Term(model.Quantity(raw, float(raw), ONE), "number", model.NO_DIMENSION, None, word.span, word=word)
             return term if self._is_finite(float(raw), word) else None
-        found = parse_quantity(raw)
-        if found is None:
+        parsed = parse_quantity(raw)
+        if parsed is None:
             return None  # an unknown unit, which is reported
-        number, unit, unit_text = found
+        number, unit, unit_text = parsed
         value = to_si(number, unit)
         if not self._is_finite(value, word):
             return None
@@ -247,25 +247,25 @@ class Reader(PathReader):
         """
         if not self.store.ask(inputs.is_complete, self.viewpoint):
             return
-        meant = self.near(word.text, *kinds) if word.text not in OF_PYTHON else (word.text.lower(),)
-        if not meant and "contexts" in kinds:
-            meant = sharing_a_word(word.text, self.names("contexts"))
+        likely = self.near(word.text, *kinds) if word.text not in OF_PYTHON else (word.text.lower(),)
+        if not likely and "contexts" in kinds:
+            likely = sharing_a_word(word.text, self.names("contexts"))
         title = f"Replace `{word.text}` with"
-        fixes = tuple(replace_fix(f"{title} `{name}`", word.span, syntax.written(name)) for name in meant)
+        fixes = tuple(replace_fix(f"{title} `{name}`", word.span, syntax.written(name)) for name in likely)
         if word.text[-1] in "²³":
             power = "^2" if word.text[-1] == "²" else "^3"
             message = f"unknown unit `{word.text}`; write the power as `{power}`"
             fix = write_fix(power, Span(word.end - 1, word.end))
             self.complain("unknown-unit", word.span, message, fixes=(fix,))
             return
-        note = f"{'or ' if meant else ''}declare it: `signal {word.text} : {unit} from {{{word.text}}}`"
-        message = f"unknown signal `{word.text}`{did_you_mean(meant)}"
+        note = f"{'or ' if likely else ''}declare it: `signal {word.text} : {unit} from {{{word.text}}}`"
+        message = f"unknown signal `{word.text}`{did_you_mean(likely)}"
         self.complain("unknown-signal", word.span, message, notes=(note,), fixes=fixes)
 
     def _is_subtraction(self, word: syntax.Word) -> bool:
         """Whether an unknown name is two known ones with a `-` between them, which is then reported."""
-        for at, character in enumerate(word.text):
-            left, right = word.text[:at], word.text[at + 1 :]
+        for index, character in enumerate(word.text):
+            left, right = word.text[:index], word.text[index + 1 :]
             if character == "-" and self._is_declared(left) and self._is_declared(right):
                 message = f"undefined name `{word.text}`; write spaces around `-` to subtract"
                 fixes = (write_fix(f"{left} - {right}", word.span, safe=True),)
@@ -296,7 +296,7 @@ class Reader(PathReader):
         return False
 
     def _unexpected(self, what: str, term: Term) -> None:
-        message = f"expected {what}, found `{self._at(term.span)}` ({in_words(term)})"
+        message = f"expected {what}, found `{self._text_at(term.span)}` ({in_words(term)})"
         self.complain("unit-mismatch", term.span, message)
 
     def _level(self, term: Term) -> None:
@@ -304,7 +304,7 @@ class Reader(PathReader):
         if term.word is not None:
             kelvin = f"{term.word.raw.removesuffix(term.unit or '').rstrip()} K"
             fixes = (write_fix(kelvin, term.span),)
-        message = f"expected a temperature difference, found `{self._at(term.span)}` (a temperature)"
+        message = f"expected a temperature difference, found `{self._text_at(term.span)}` (a temperature)"
         self.complain("unit-mismatch", term.span, message, notes=("write the difference in K",), fixes=fixes)
 
     def _bare(self, term: Term, message: str, unit: str) -> None:
@@ -312,7 +312,9 @@ class Reader(PathReader):
         if self._has_unknown_unit(term):
             return
         number = term.word.raw
-        fix = write_fix(f"{number} {unit}", term.span)
+        is_share = unit == "%" and 0 < float(number) < 1
+        amount = f"{float(number) * 100:.10g}" if is_share else number
+        fix = write_fix(f"{amount} {unit}", term.span)
         self.complain("number-without-unit", term.span, f"missing unit after `{number}`; {message}", fixes=(fix,))
 
     def _has_unknown_unit(self, term: Term) -> bool:
@@ -350,15 +352,15 @@ class Reader(PathReader):
 
     def _joined(self, written: syntax.Binary) -> model.Condition | None:
         parts: list[syntax.Condition] = []
-        at: syntax.Condition = written
-        while isinstance(at, syntax.Binary) and at.operator == written.operator:
-            parts.append(at.right)
-            at = at.left
-        conditions = [self.condition(part) for part in (at, *reversed(parts))]
-        found = tuple(condition for condition in conditions if condition is not None)
-        if len(found) < len(conditions):
+        leftmost: syntax.Condition = written
+        while isinstance(leftmost, syntax.Binary) and leftmost.operator == written.operator:
+            parts.append(leftmost.right)
+            leftmost = leftmost.left
+        conditions = [self.condition(part) for part in (leftmost, *reversed(parts))]
+        understood = tuple(condition for condition in conditions if condition is not None)
+        if len(understood) < len(conditions):
             return None
-        return model.All(found) if written.operator == "and" else model.Any(found)
+        return model.All(understood) if written.operator == "and" else model.Any(understood)
 
     def _lone(self, written: syntax.Operand) -> model.Condition | None:
         """A context, a bool signal or parameter, `true` or `false`, or else a running node."""
@@ -389,13 +391,17 @@ class Reader(PathReader):
     def _as_path(self, written: syntax.Binary) -> syntax.Path | None:
         """`A/B`, which is parsed as a division, if no name in it is a signal."""
         words: list[syntax.Word] = []
-        at: syntax.Condition = written
-        while isinstance(at, syntax.Binary) and at.operator == "/" and isinstance(at.right, syntax.Operand):
-            words.append(at.right.word)
-            at = at.left
-        if not isinstance(at, syntax.Operand):
+        leftmost: syntax.Condition = written
+        while (
+            isinstance(leftmost, syntax.Binary)
+            and leftmost.operator == "/"
+            and isinstance(leftmost.right, syntax.Operand)
+        ):
+            words.append(leftmost.right.word)
+            leftmost = leftmost.left
+        if not isinstance(leftmost, syntax.Operand):
             return None
-        words.append(at.word)
+        words.append(leftmost.word)
         if all(word.kind in (NAME, STRING) and not self._is_value(word.text) for word in words):
             return syntax.Path(tuple(reversed(words)))
         return None
@@ -403,19 +409,19 @@ class Reader(PathReader):
     def _compare(self, written: syntax.Comparison) -> model.Condition | None:
         terms: list[Term | None] = [None] * len(written.operands)
         # An undeclared name may get the unit of what it is compared with, so names come last.
-        for at, operand in sorted(enumerate(written.operands), key=lambda each: self._is_unknown(each[1])):
+        for index, operand in sorted(enumerate(written.operands), key=lambda each: self._is_unknown(each[1])):
             if self._is_unknown(operand) and isinstance(operand, syntax.Operand):
-                terms[at] = self._named(operand.word, next(filter(None, terms), None))
+                terms[index] = self._named(operand.word, next(filter(None, terms), None))
             else:
-                terms[at] = self._expression(operand)
-        found = [term for term in terms if term is not None]
-        if len(found) < len(terms):
+                terms[index] = self._expression(operand)
+        understood = [term for term in terms if term is not None]
+        if len(understood) < len(terms):
             return None
         # Adjacent pairs, so that one number without a unit is reported once.
         ok = True
-        for operator, left, right in zip(written.operators, found, found[1:], strict=False):
+        for operator, left, right in zip(written.operators, understood, understood[1:], strict=False):
             ok = self._comparable(left, right, operator) and ok
-        return model.Compare(written.operators, tuple(term.value for term in found)) if ok else None
+        return model.Compare(written.operators, tuple(term.value for term in understood)) if ok else None
 
     def _is_unknown(self, written: syntax.Condition) -> bool:
         if not isinstance(written, syntax.Operand) or written.word.kind != NAME:
@@ -453,14 +459,14 @@ class Reader(PathReader):
         """Report that two values measure different things, or one lacks its unit; `what` cannot be done with them."""
         for number, other in ((left, right), (right, left)):
             if number.is_bare and other.unit is not None:
-                self._bare(number, f"`{self._at(other.span)}` is in {other.unit}", other.unit)
+                self._bare(number, f"`{self._text_at(other.span)}` is in {other.unit}", other.unit)
                 return
-        shown = [f"`{self._at(term.span)}` ({in_words(term)})" for term in (left, right)]
+        shown = [f"`{self._text_at(term.span)}` ({in_words(term)})" for term in (left, right)]
         preposition = {"compare": "with", "add": "and", "subtract": "and"}[what]
         message = f"cannot {what} {f' {preposition} '.join(shown)}"
         self.complain("unit-mismatch", Span(left.span.start, right.span.end), message)
 
-    def _at(self, span: Span) -> str:
+    def _text_at(self, span: Span) -> str:
         return self.text(span.start, span.end)
 
     def _expression(self, written: syntax.Condition) -> Term | None:
@@ -479,7 +485,7 @@ class Reader(PathReader):
             return self._arithmetic(written)
         if self.condition(written) is not None:
             span = Span(written.start, written.end)
-            self.complain("unit-mismatch", span, f"expected a value, found the condition `{self._at(span)}`")
+            self.complain("unit-mismatch", span, f"expected a value, found the condition `{self._text_at(span)}`")
         return None
 
     def _call(self, written: syntax.Call) -> Term | None:
@@ -511,7 +517,8 @@ class Reader(PathReader):
         span = Span(written.start, written.end)
         for term in (left, right):
             if term.sort != "number":
-                message = f"`{written.operator}` requires numbers, found `{self._at(term.span)}` ({in_words(term)})"
+                value_text = f"`{self._text_at(term.span)}` ({in_words(term)})"
+                message = f"`{written.operator}` requires numbers, found {value_text}"
                 self.complain("unit-mismatch", span, message)
                 return None
         value = model.Arithmetic(written.operator, left.value, right.value)
@@ -534,7 +541,7 @@ class Reader(PathReader):
         assert right.dimension is not None, "the caller has looked"
         for term in (left, right):
             if term.level == "level":
-                message = f"cannot multiply or divide `{self._at(term.span)}`, a temperature in degC"
+                message = f"cannot multiply or divide `{self._text_at(term.span)}`, a temperature in degC"
                 self.complain("unit-mismatch", term.span, message, notes=("write it in K",))
                 return None
         sign = 1 if value.operator == "*" else -1

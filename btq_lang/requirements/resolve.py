@@ -49,15 +49,15 @@ def requirements(workspace: Workspace, path: str) -> Requirements:
     applied: list[Applied] = []
     traces: list[Trace] = []
     for name in defined:
-        held = attached_by(store, path, name, uses.get(name, ()))
-        applied += (*store.ask(claimed, path, name), *held.applied)
-        traces += held.traces
+        attached = attached_by(store, path, name, uses.get(name, ()))
+        applied += (*store.ask(claimed, path, name), *attached.applied)
+        traces += attached.traces
     return Requirements(
         store,
         path,
-        {name: found for name, (found, _) in signals.items() if found is not None},
+        {name: resolved for name, (resolved, _) in signals.items() if resolved is not None},
         contexts,
-        {name: found for name, (found, _) in defined.items() if found is not None},
+        {name: resolved for name, (resolved, _) in defined.items() if resolved is not None},
         tuple(applied),
         tuple(traces),
         store.ask(nodes.nodes, path),
@@ -67,18 +67,18 @@ def requirements(workspace: Workspace, path: str) -> Requirements:
 
 def problems_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> Problems:
     """What is wrong with the requirements, signals and contexts that an item defines, and with what it attaches."""
-    found: list[Problem] = []
+    all_problems: list[Problem] = []
     names = dict.fromkeys((symbol.kind, symbol.name) for symbol in facts.summary.symbols)
     for kind, name in names:
         if kind in _DEFINING and store.ask(inputs.definition, viewpoint, kind, name) == (path, facts):
-            found += store.ask(_DEFINING[kind], viewpoint, name)[1]
+            all_problems += store.ask(_DEFINING[kind], viewpoint, name)[1]
     if isinstance(facts.item, Tree | Apply):
         uses, problems = store.ask(uses_in, viewpoint, path, facts)
-        found += problems
+        all_problems += problems
         trees = dict.fromkeys((use.target.node.path, use.target.node.facts) for use in uses)
         ambiguous = [problem for tree in trees for problem in store.ask(applied_in, viewpoint, *tree).problems]
-        found += [problem for problem in ambiguous if problem.place.anchor is facts.item]
-    return tuple(found)
+        all_problems += [problem for problem in ambiguous if problem.place.anchor is facts.item]
+    return tuple(all_problems)
 
 
 _DEFINING: Final[dict[Kind, Callable[[Store[Workspace], str, str], tuple[object, Problems]]]] = {
@@ -117,11 +117,11 @@ class Requirements(Record):
         applies to nothing at all is unused, which is reported separately."""
         used = {each.requirement.name for each in self.applied}
         # Claims with equal text have the same subject, or none.
-        held = {(each.requirement.name, claim.text) for each in self.applied for claim in each.requirement.claims}
+        applied = {(each.requirement.name, claim.text) for each in self.applied for claim in each.requirement.claims}
         return tuple(
             (requirement, claim)
             for requirement in self.all.values()
             if requirement.name in used
             for claim in requirement.claims
-            if (requirement.name, claim.text) not in held
+            if (requirement.name, claim.text) not in applied
         )

@@ -57,17 +57,17 @@ class Term(Record):
         return self.word is not None and self.word.kind == NUMBER
 
 
-def amounts(found: model.Bounded | None, written: syntax.Bounded) -> tuple[tuple[model.Simple, Span], ...]:
+def amounts(bounded: model.Bounded | None, written: syntax.Bounded) -> tuple[tuple[model.Simple, Span], ...]:
     """Each value with its place."""
-    if found is None:
+    if bounded is None:
         return ()
-    if isinstance(found, model.ResolvedTable) and isinstance(written, syntax.Table):
+    if isinstance(bounded, model.ResolvedTable) and isinstance(written, syntax.Table):
         amounts = (*(case.value for case in written.cases), written.otherwise)
-        pairs = zip(found.cases, amounts, strict=True)
+        pairs = zip(bounded.cases, amounts, strict=True)
         return tuple((case.value, amount.word.span) for case, amount in pairs if amount is not None)
-    assert not isinstance(found, model.ResolvedTable), "a table is read from a table"
+    assert not isinstance(bounded, model.ResolvedTable), "a table is read from a table"
     assert isinstance(written, syntax.Amount), "a table is read from a table"
-    return ((found, written.word.span),)
+    return ((bounded, written.word.span),)
 
 
 def sort_of_value(value: model.Simple) -> model.Sort:

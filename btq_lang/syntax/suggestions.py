@@ -22,6 +22,10 @@ def close_string(text: str, start: int) -> Fix:
     """Close the string that begins at `start` on its line, before what is probably not part of it."""
     end = line_end(text, start)
     end_of_string = start + 1 + len(text[start + 1 : end].rstrip(" \t,"))
+    other = "'" if text[start] == '"' else '"'
+    if mixed := re.compile(rf"[^\s{other}]+({other})(?=\s*$|\s*[),]|\s+[^\W\d]\w*\s*=)").match(text, start + 1, end):
+        closed = text[start] + text[start + 1 : mixed.start(1)] + text[start]
+        return write_fix(closed, Span(start, mixed.end(1)))
     depth = 0
     for offset in range(start + 1, end_of_string):
         depth += (text[offset] == "(") - (text[offset] == ")")
@@ -50,7 +54,8 @@ def unknown_unit(text: str, start: int, end: int) -> Diagnostic:
     word = text[start:end]
     glued = start > 0 and text[start - 1].isdigit()
     wanted = measured(_WORD.findall(text[line_start(text, 0, start) : start]))
-    if glued and wanted == "s" and (number := _NUMBER_BEFORE.search(text, line_start(text, 0, start), start)):
+    is_time = wanted == "s" or (not wanted and _TWO_UNITS.fullmatch(word) is not None)
+    if glued and is_time and (number := _NUMBER_BEFORE.search(text, line_start(text, 0, start), start)):
         composed = composed_time(text, number.start())
         if composed is not None:
             return composed
@@ -170,6 +175,7 @@ _BRACED_ATTRIBUTES: Final = re.compile(
 )
 _nearest_units: Final = lru_cache(256)(nearest_units)  # the same mistake is often repeated
 _NUMBER_BEFORE: Final = re.compile(r"(?<![\w.])\d+\Z")
+_TWO_UNITS: Final = re.compile(r"[^\W\d_]+\d+[^\W\d_]+")
 _ESCAPE: Final = re.compile(r"(?s)\\(.)")
 _OTHER_QUOTES: Final = "“”„‟«»‘’"
 _LOOKS_LIKE: Final = {

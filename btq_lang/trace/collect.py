@@ -228,7 +228,7 @@ class _Collector:
                 _subject(applied),
                 tuple(dict.fromkeys(self._nodes[id(source.node)].key for source in sources)),
                 applied.how,
-                applied.given,
+                applied.argument_list,
                 place(applied.place),
                 tuple(clauses),
             )

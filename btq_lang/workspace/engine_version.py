@@ -2,7 +2,7 @@
 
 One invariant: the project's versions count before a text's own signs, and a declaration in the text before its words;
 but no text is for a version that refuses its words.  Not known here: how words are found in XML
-(`btcpp/signs.py`), and which distribution of Nav2 a file is for.
+(`btcpp/version3.py`), and which distribution of Nav2 a file is for.
 """
 
 from __future__ import annotations

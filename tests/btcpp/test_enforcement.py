@@ -15,13 +15,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from missions import mission
 
-from btq_lang.btcpp.bundle import bundle
 from btq_lang.btcpp.conditions import NoScript, condition_script, real
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.enforcement import clause_enforcements, enforced
 from btq_lang.btcpp.export import export
 from btq_lang.btcpp.importing import import_xml
 from btq_lang.btcpp.keys import Keys
+from btq_lang.btcpp.outputs import bundle
 from btq_lang.projects.opening import open_workspace
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.script.check import check_script

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from btq_lang.btcpp.bundle import bundle
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.export import export
 from btq_lang.btcpp.importing import import_xml
+from btq_lang.btcpp.outputs import bundle
 from btq_lang.btcpp.restoring import restored
 from btq_lang.btcpp.side_file import BuiltFile, side_file
 from btq_lang.checks import check

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from btq_lang import build, open_workspace
 from btq_lang.btcpp.marks import described
-from btq_lang.btcpp.side_elements import of_elements
+from btq_lang.btcpp.side_elements import descriptions_from
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").rglob("*.btq"))
 PART = """\
@@ -45,7 +45,7 @@ def built(folder: Path, text: str, **others: str) -> tuple[str, str]:
 def test_lines_of_elements(tmp_path: Path) -> None:
     """What holds for one of the nodes that the engine makes of an element holds for the element."""
     xml, side = built(tmp_path, PART)
-    found = of_elements(side, xml, ())
+    found = descriptions_from(side, xml, ())
     assert found.problem == ""
     assert {xml[at:].split()[0]: lines for at, lines in found.lines.items()} == {
         "Move": (
@@ -66,22 +66,22 @@ def test_nodes_after_an_include_that_has_changed(tmp_path: Path) -> None:
     included = '<root BTCPP_format="4"><BehaviorTree ID="Part"><Move/></BehaviorTree></root>'
     longer = included.replace("<Move/>", "<Inverter><Move/></Inverter>")
     at = xml.index("Go")
-    assert of_elements(side, xml, (included,)).lines == {at: ("satisfices safety",)}
-    assert of_elements(side, xml, (longer,)).lines == {}
-    assert of_elements(side, xml, ()).lines == {}
+    assert descriptions_from(side, xml, (included,)).lines == {at: ("satisfices safety",)}
+    assert descriptions_from(side, xml, (longer,)).lines == {}
+    assert descriptions_from(side, xml, ()).lines == {}
 
 
 def test_side_files_that_say_nothing(tmp_path: Path) -> None:
     xml, side = built(tmp_path, PART)
-    assert of_elements(side, f"{xml}\n", ()).problem == "belongs to other XML than this"
+    assert descriptions_from(side, f"{xml}\n", ()).problem == "belongs to other XML than this"
     newer = json.dumps({**json.loads(side), "version": 99})
-    assert of_elements(newer, xml, ()).problem == "cannot be read by this version of btq"
+    assert descriptions_from(newer, xml, ()).problem == "cannot be read by this version of btq"
     damaged = ["", "{", "[]", "{}", "[" * 100_000, side[:-40], side.replace('"uid": 2', '"uid": []')]
     damaged += [side.replace('"nodes": [3]', '"nodes": 3'), side.replace('"arguments": {', '"arguments": [], "x": {')]
     for each in damaged:
         assert each != side
-        assert of_elements(each, xml, ()).problem == "cannot be read", each[:80]
-        assert of_elements(each, xml, ()).lines == {}
+        assert descriptions_from(each, xml, ()).problem == "cannot be read", each[:80]
+        assert descriptions_from(each, xml, ()).lines == {}
 
 
 def test_it_says_what_the_build_has_described() -> None:
@@ -91,7 +91,7 @@ def test_it_says_what_the_build_has_described() -> None:
         files = build(open_workspace(str(example)), str(example)).files
         xml = files[str(example.with_suffix(".xml"))]
         side = files.get(str(example.with_suffix(".qreq.json")))
-        said = of_elements(side, xml, ()).lines if side is not None else {}
+        said = descriptions_from(side, xml, ()).lines if side is not None else {}
         for at, lines in described(xml):
             if at in said:
                 assert list(map(_name, lines)) == list(map(_name, said[at]))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from check_asserts import assert_clean, assert_fix, assert_problems, fixes
+from check_asserts import assert_clean, assert_fix, assert_problems, fixes, problems
 
 
 def tree(*lines: str) -> str:
@@ -173,3 +173,11 @@ def test_a_string_over_lines_is_not_indented() -> None:
 
 def test_a_leaf_gets_no_sequence() -> None:
     assert fixes(tree("AlwaysSuccess", "    A", "    B"), "child-count") == []
+
+
+def test_a_branch_of_several_nodes() -> None:
+    (found,) = problems(tree("IfThenElse", "    Near", "    Go", "    Turn", "    Stop"), "child-count")
+    assert found.notes == (
+        "the engine loads this and throws when the node is ticked",
+        "put the nodes of each branch below a Sequence",
+    )

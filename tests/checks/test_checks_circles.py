@@ -28,7 +28,7 @@ ENDLESS = 'Fallback\n        AlwaysSuccess\n        Script (code = "a := 1")\n'
 @pytest.mark.parametrize(
     ("text", "rules"),
     [
-        pytest.param(DECLARED, {"recursive-tree": 1}, id="through a model"),
+        pytest.param(DECLARED, {"recursive-tree": 1, "unknown-node": 1}, id="through a model"),
         pytest.param(chain(1, "SubTree T0"), {"recursive-tree": 1}, id="itself"),
         pytest.param(chain(2, "SubTree T0 (a = {a})"), {"recursive-tree": 1}, id="two"),
         pytest.param(chain(LONG, "SubTree T0 (a = {a})"), {"recursive-tree": 1}, id="many"),

@@ -404,6 +404,27 @@ def test_what_writes_a_signal(writer: str) -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("port", "node", "note"),
+    [
+        ("output level : double", "S", "connect the output `level` of `S`: `level = {@level}`"),
+        ("output n", 'S "name"', "connect the output `n` of `S`: `n = {@level}`"),
+        ("output n", "S (n = {other})", None),
+        ("input n", "S", None),
+        ("output m", "S", None),
+    ],
+)
+def test_an_output_that_is_not_connected_to_a_signal(port: str, node: str, note: str | None) -> None:
+    text = GUARD.replace("{initially}", " initially 0") + f"Condition S\n    {port}\n"
+    text += f"BehaviorTree Main\n    ->\n        {node}\n        Action A\n"
+    (found,) = problems(text, "signal-never-written")
+    assert found.notes == (note or "ignore this if the robot's program writes it",)
+    assert found.effective_severity.value == ("warning" if note else "hint")
+    assert [related.message for related in found.related] == (
+        [f"writes `{port.split()[1]}` nowhere"] if note is not None else []
+    )
+
+
 def test_an_input_writes_nothing() -> None:
     text = GUARD.replace("{initially}", " initially 0") + "Condition S\n    input x : double\n"
     text += "BehaviorTree Main\n    ->\n        S (x = {level})\n        Action A\n"

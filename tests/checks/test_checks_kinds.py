@@ -224,6 +224,24 @@ def test_a_tree_called_as_a_node() -> None:
     assert_fix(tree("Action Pick") + pick, "Write `SubTree Pick`", tree("SubTree Pick") + pick)
 
 
+def test_a_tree_called_as_a_node_beside_its_model() -> None:
+    text = tree("Pick (object = cup)") + "BehaviorTree Pick\n    X\nSubTree Pick\n    input object\n"
+    assert_problems(text, "3:9 error unknown-node «Pick» `Pick` is a tree, not a node")
+    assert_fix(text, "Write `SubTree Pick`", text.replace("Pick (", "SubTree Pick (", 1))
+
+
+@pytest.mark.parametrize("of_tree", ["", '<BehaviorTree ID="Pick"><AlwaysSuccess/></BehaviorTree>'])
+@pytest.mark.parametrize("bare", ["<Pick/>", '<Pick name="first"/>', '<Pick object="cup"/>'])
+def test_xml_that_calls_a_tree_as_a_node_beside_its_model(of_tree: str, bare: str) -> None:
+    """Version 4 does not recognize the node; version 3 runs the tree."""
+    model = '<TreeNodesModel><SubTree ID="Pick"><input_port name="object"/></SubTree></TreeNodesModel>'
+    text = f'<root{{}}><BehaviorTree ID="Main">{bare}</BehaviorTree>{of_tree}{model}</root>'
+    found = check(workspace_of({"a.xml": text.format(' BTCPP_format="4" main_tree_to_execute="Main"')}), "a.xml")
+    assert [each.message for each in found if each.rule == "unknown-node"] == ["`Pick` is a tree, not a node"]
+    found = check(workspace_of({"a.xml": text.format(' main_tree_to_execute="Main"')}), "a.xml")
+    assert [each.message for each in found if each.rule == "unknown-node"] == []
+
+
 def test_an_explicit_form_without_an_id() -> None:
     assert_problems(tree("Action"), "3:9 error unknown-node «Action» missing ID of this Action: write `Action <ID>`")
     assert_problems(

@@ -55,20 +55,44 @@ def test_what_the_engine_is_strict_about_is_offered_right(written: str, meant: s
 @pytest.mark.parametrize(
     ("value", "reads", "fixes"),
     [
-        ('"30 sec"', "30", {"Write the quantity `30 sec`": "30 sec", "Write what the engine reads: `30`": "30"}),
+        ('"30 sec"', "30", {"Write the quantity `30 sec`": "30 sec"}),
         ('"30 apples"', "30", {"Write what the engine reads: `30`": "30"}),
-        ("1.5", "1", {"Write what the engine reads: `1`": "1"}),
+        ("1.5", "1", {"Write the quantity `1.5 s`": "1.5 s", "Write what the engine reads: `1`": "1"}),
         ("0.5", "0", {"Write the quantity `0.5 s`": "0.5 s"}),
-        ('"1.5"', "1", {"Write the quantity `1.5 s`": "1.5 s", "Write what the engine reads: `1`": "1"}),
-        ('"30 kg"', "30", {"Write what the engine reads: `30`": "30"}),
+        ('"30 kg"', "30", {}),
+        ('"1,5"', "1", {}),
     ],
 )
 def test_what_is_read_of_a_number_with_a_tail(value: str, reads: str, fixes: dict[str, str]) -> None:
     text = value.strip('"')
     message = f"the engine reads `{text}` as {reads} and silently drops the rest"
     assert_problems(timeout(value), f"2:21 warning trailing-text-in-number «{value}» {message}")
+    (found,) = check(workspace_of({"main.btq": timeout(value)}), "main.btq")
+    assert [fix.title for fix in found.fixes] == list(fixes)
     for title, fixed in fixes.items():
         assert_fix(timeout(value), title, timeout(fixed))  # none is safe: what was meant is not known
+
+
+@pytest.mark.parametrize(
+    ("type_", "value", "meant", "notes"),
+    [
+        ("double", "0,2", "0.2", ()),
+        ("float", "-1,25", "-1.25", ()),
+        ("int", "1,000", None, ()),  # 1 or 1000
+        ("double", "0,2,3", "0", ()),
+        ("double", "90deg", None, ("write the number in the unit that the node expects",)),
+        ("double", "90 %", None, ("write the number in the unit that the node expects",)),
+    ],
+)
+def test_what_a_port_without_a_unit_reads_of_a_number(
+    type_: str, value: str, meant: str | None, notes: tuple[str, ...]
+) -> None:
+    model = f'<TreeNodesModel><Action ID="Go"><input_port name="v" type="{type_}"/></Action></TreeNodesModel>'
+    text = f'<root BTCPP_format="4"><BehaviorTree ID="T"><Go v="{value}"/></BehaviorTree>{model}</root>'
+    (found,) = check(workspace_of({"main.xml": text}), "main.xml")
+    fixed = [apply({"main.xml": text}, "main.xml", fix)["main.xml"] for fix in found.fixes]
+    assert (found.rule, found.notes) == ("trailing-text-in-number", notes)
+    assert fixed == ([text.replace(value, meant)] if meant is not None else [])
 
 
 @pytest.mark.parametrize(("tag", "port"), [("Timeout", "msec"), ("Delay", "delay_msec")])

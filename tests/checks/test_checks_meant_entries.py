@@ -162,3 +162,29 @@ def test_unquoted(value: str, message: str, fix: str) -> None:
     (found,) = check(workspace_of({MAIN: text}), MAIN)
     assert (found.message, [each.title for each in found.fixes]) == (message, [fix])
     assert not any(each.safe for each in found.fixes)
+
+
+@pytest.mark.parametrize(
+    ("value", "reported"),
+    [
+        ("$(var planner)", "$(var planner)"),
+        ("$(arg planner)", "$(arg planner)"),
+        ("$(find-pkg-share my_bot)/maps/a.yaml", "$(find-pkg-share my_bot)"),
+        ("file://$(find my_bot)/a.yaml", "$(find my_bot)"),
+        ("$(env ROBOT)", "$(env ROBOT)"),
+        ("$(optenv ROBOT.NAME)", "$(optenv ROBOT.NAME)"),
+        ("echo $(date)", None),  # a command of a shell
+        ("$(find . -name a)", None),
+        ("$var planner", None),
+    ],
+)
+def test_a_substitution_of_launch_files(value: str, reported: str | None) -> None:
+    model = MODEL.format("std::string")
+    text = f'{ROOTS[0]}<BehaviorTree ID="A"><MoveTo place="{value}"/></BehaviorTree>{model}</root>'
+    message = f"`{reported}` is a text here: only launch files have such substitutions"
+    notes = ("write the value itself, or an entry that the robot's program sets: `{key}`",)
+    assert [(each.message, each.notes) for each in in_xml(text)] == ([(message, notes)] if reported else [])
+    mission = f'Action MoveTo\n    input place : string\nBehaviorTree A\n    MoveTo (place = "{value}")\n'
+    shown = f'4:21 warning misspelt-entry «"{value}"» {message}'
+    found = check(workspace_of({"main.btq": mission}), "main.btq")
+    assert show(mission, found) == ([shown] if reported else [])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from check_asserts import findings, problems, workspace_of
+from check_asserts import apply, findings, problems, workspace_of
 from mixed_types import CASES, MODELS, mission
 
 from btq_lang.checks import check
@@ -60,3 +60,34 @@ def test_trees_that_run_each_other_or_many_others_are_no_trouble() -> None:
     )
     end = "BehaviorTree T2000\n Count (n = {k})\n"
     assert problems(f"{MODELS}Root T0\n{chain}{end}", RULE) == []
+
+
+PLANNER = (
+    '<TreeNodesModel><Action ID="Plan"><input_port name="goal" type="geometry_msgs::msg::PoseStamped"/>'
+    '<output_port name="path" type="nav_msgs::msg::Path"/></Action>'
+    '<Action ID="Follow"><input_port name="path" type="{}"/></Action></TreeNodesModel>'
+)
+
+
+@pytest.mark.parametrize(
+    ("type_", "more", "severity", "meant"),
+    [
+        ("nav_msgs::msg::Path", "", "error", "{path}"),
+        ("nav_msgs::msg::Path", '<Follow path="{path}"/>', "error", None),  # it is read elsewhere
+        ("nav_msgs::msg::Path", '<Plan goal="{goal}" path="{other}"/>', "error", None),  # two may be meant
+        ("my::Path", "", "warning", None),
+        ("int", "", "warning", None),
+    ],
+)
+def test_an_entry_of_the_type_that_is_read_nowhere(type_: str, more: str, severity: str, meant: str | None) -> None:
+    nodes = f'<Sequence><Plan goal="{{goal}}" path="{{path}}"/><Follow path="{{goal}}"/>{more}</Sequence>'
+    tree = f'<BehaviorTree ID="Main">{nodes}</BehaviorTree>'
+    text = f'<root BTCPP_format="4" main_tree_to_execute="Main">{tree}{PLANNER.format(type_)}</root>'
+    found = [each for each in check(workspace_of({"a.xml": text}), "a.xml") if each.rule == "entry-with-two-types"]
+    assert found[0].effective_severity.value == severity
+    assert found[0].message.endswith(f"; did you mean `{meant}`?" if meant else f"has the type {type_}")
+    unless = ", unless one of the types is an alias for the other" if severity == "warning" else ""
+    advice = "" if meant else "; use an entry for each type, and copy the value in a script: `other := entry`"
+    assert found[0].notes == (f"BehaviorTree.CPP refuses to load this tree{unless}{advice}",)
+    fixed = [apply({"a.xml": text}, "a.xml", fix)["a.xml"] for fix in found[0].fixes]
+    assert fixed == ([text.replace('Follow path="{goal}"', f'Follow path="{meant}"')] if meant else [])

@@ -532,3 +532,18 @@ def test_how_long_a_recovery_may_take() -> None:
         "3 × `FollowPath` 5 s + 2 × `Spin` 3 s"
     ]
     assert found(text.replace("20 s", "21 s"), "jazzy") == []
+
+
+@pytest.mark.parametrize("extra", [("Spin",), ("Spin", "Wait")])
+def test_a_recovery_node_with_several_recoveries(extra: tuple[str, ...]) -> None:
+    path = PACKAGED["nav2-jazzy"]
+    children = ("ComputePathToPose", "BackUp", *extra)
+    text = tree("RecoveryNode (number_of_retries = 1)", *(f"    {name}" for name in children))
+    files = {"main.btq": file_of("main.btq", text), path: file_of(path, read(path)[0] or "")}
+    problems = check(Workspace(files, Project(node_files=(path,))), "main.btq")
+    assert [each.notes for each in problems if each.rule == "child-count"] == [
+        (
+            "the engine loads this and throws when the node is ticked",
+            "put those after the first one below one Sequence, or a RoundRobin, which takes turns",
+        )
+    ]

@@ -184,6 +184,8 @@ def test_a_node_that_a_model_declares_runs_its_tree() -> None:
         "Root A\nBehaviorTree A\n    ->\n        B\n        X\nBehaviorTree B\n    A\nTreeNodesModel\n"
         "    SubTree A\n    SubTree B\n    Action X\n",
         "4:9 error recursive-tree «B» the tree `A` contains itself: `A` → `B` → `A`",
+        "4:9 error unknown-node «B» `B` is a tree, not a node",
+        "7:5 error unknown-node «A» `A` is a tree, not a node",
     )
 
 

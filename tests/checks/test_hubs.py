@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from btq_lang import checks, open_workspace
-from btq_lang.checks import calls, measures, placeholders, swallowing, view
+from btq_lang.checks import calls, enforcement, placeholders, requirements, view
 from btq_lang.requirements import nodes
 from btq_lang.workspace import queries
 
@@ -19,10 +19,10 @@ HUBS = {
     calls._missed,
     calls.callers,
     calls.is_main,
-    measures.is_measured,
+    requirements.is_measured,
     nodes.has_nodes,
     placeholders._first_names,
-    swallowing._callers,
+    enforcement._callers,
     view._is_main_tree,
 }
 

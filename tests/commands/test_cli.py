@@ -794,7 +794,7 @@ def test_the_traceback_is_shown_when_asked_for(tmp_path: Path) -> None:
 
 def test_where_no_file_was_at_hand_the_command_is_said(tmp_path: Path) -> None:
     broken = BROKEN.replace("from btq_lang import checks", "from btq_lang.commands import explain")
-    broken = broken.replace("checks.check = check", "explain.run = lambda _: check('', '')")
+    broken = broken.replace("checks.check = check", "explain._pages = lambda _: check('', '')")
     done = run_broken(tmp_path, "KeyError('x')", ["explain", "Retry"], broken)
     assert done.stderr == (
         "btq: internal error: KeyError: 'x' in `btq explain Retry`; report it in btq's issue tracker; "

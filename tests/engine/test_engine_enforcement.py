@@ -17,10 +17,10 @@ from typing import Any
 import pytest
 from engine_loader import Answer, Engine, job
 
-from btq_lang.btcpp.bundle import bundle
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.enforcement import enforced
 from btq_lang.btcpp.export import export
+from btq_lang.btcpp.outputs import bundle
 from btq_lang.checks import check
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.workspace.workspace import Workspace

@@ -41,6 +41,12 @@ CASES = {
     "never written": (SLEEP, "", UNSET, "[msec]"),
     "read in a script before it is written": (READ + CREATE, "", UNSET, "not found: x"),
     "written afterwards": (SLEEP + CREATE, "", UNSET, "[msec]"),
+    "written afterwards below": ('<SubTree ID="Below"/>', f"<Sequence>{SLEEP + CREATE}</Sequence>", UNSET, "[msec]"),
+    "read at every tick below": (
+        *('<SubTree ID="Below"/>', f"<ReactiveSequence>{SLEEP + CREATE}</ReactiveSequence>"),
+        *(UNSET, "[msec]"),
+    ),
+    "created afterwards": (ASSIGN + CREATE, "", UNCREATED, "doesn't exist, yet"),
 }
 
 

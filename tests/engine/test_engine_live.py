@@ -18,7 +18,7 @@ from engine_loader import Answer, Engine, Published
 from evidence_logs import Verify
 from groot2_recording import RECORDINGS, exchanges, meaning, read, write
 
-from btq_lang.commands.live_lines import Lines
+from btq_lang.commands.live_screen import Lines
 from btq_lang.evidence.model import IDLE, PAUSE, UNTIL
 from btq_lang.evidence.readers.groot2.sessions import sessions
 

@@ -36,6 +36,13 @@ def test_a_refusal_has_the_words_of_the_engine(engine: Engine) -> None:
     assert (answer.stage, answer.error) == ("load", "Error at line 3: -> Node not recognized: Pikc")
 
 
+def test_the_model_of_a_subtree_makes_no_node_of_its_tree(engine: Engine) -> None:
+    other = '<BehaviorTree ID="Pick"><AlwaysSuccess/></BehaviorTree>'
+    model = '<TreeNodesModel><SubTree ID="Pick"/></TreeNodesModel>'
+    answer = engine.run_one(mission("<Pick/>", other + model), stubs=[])
+    assert (answer.stage, answer.error) == ("load", "Error at line 3: -> Node not recognized: Pick")
+
+
 def test_every_tree_is_instantiated_when_asked(engine: Engine) -> None:
     xml = mission("<AlwaysSuccess/>", '<BehaviorTree ID="Other"><SubTree ID="Nowhere"/></BehaviorTree>')
     assert engine.run_one(xml).stage == "done"

@@ -7,8 +7,8 @@ import json
 import pytest
 from evidence_logs import MAIN, MAIN_XML, Verify, btlog, rows
 
+from btq_lang.evidence.json_document import read_verdicts
 from btq_lang.evidence.verdicts import Bounded
-from btq_lang.evidence.written_verdicts import read_verdicts
 
 MISSION = "QualityReq rq : safety\n    Pick takes at most 1 s\n" + MAIN
 

@@ -15,7 +15,7 @@ import pytest
 from evidence_logs import START, Verify, btlog, rows
 from ub_test_reports.junitparser import JUnitParser
 
-from btq_lang.commands.verdict_formats import FORMATS
+from btq_lang.commands.verify_options import FORMATS
 
 MISSION = """
 Root Main

@@ -13,7 +13,7 @@ from in_process import run_btq
 from random_runs import Case, case
 from seeds import seeds, share_of
 
-from btq_lang.evidence import parallel
+from btq_lang.evidence import judging
 from btq_lang.evidence.evaluate import LogFindings, MissionEvaluation
 from btq_lang.evidence.judging import JudgedLog, Means, judge
 from btq_lang.evidence.model import LogSession
@@ -41,8 +41,8 @@ def added(made: Case) -> MissionVerdicts:
     for number, rows in enumerate(made.sessions):
         one = MissionEvaluation(made.mission, with_timelines=True)
         read = one.read(LogSession(made.joined.tree, iter(rows)), made.joined, made.series, 1, f"log {number}")
-        findings: LogFindings = pickle.loads(pickle.dumps(one.found))
-        evaluation.found.add(findings, runs)
+        findings: LogFindings = pickle.loads(pickle.dumps(one.findings))
+        evaluation.findings.add(findings, runs)
         runs += read
     return evaluation.result()
 
@@ -104,7 +104,7 @@ def dies(log: str, means: Means) -> JudgedLog:
 
 
 def test_a_process_that_is_ended_is_a_problem(logs: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(parallel, "judge", dies)
+    monkeypatch.setattr(judging, "judge", dies)
     code, _, errors = run_btq("verify", "0.btlog", "1.btlog", "--mission", "lab.btq", "--jobs", "2", cwd=logs)
     problem = "btq verify: a process that judges logs was ended from outside, perhaps for lack of memory\n"
     assert (code, errors[-len(problem) :]) == (2, problem)

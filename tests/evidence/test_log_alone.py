@@ -11,7 +11,7 @@ from evidence_logs import MAIN_XML, START, Verify, btlog, rows, write_db3
 from json_schema import violations
 
 import btq_lang.evidence
-from btq_lang.commands.verdict_formats import FORMATS
+from btq_lang.commands.verify_options import FORMATS
 
 TWO_RUNS = "0 1R 2R 5 2S 3S 1S 2I 3I 1I 20 1R 2R 30 2F 1F 2I 1I"
 OTHER_XML = MAIN_XML.replace("Pick", "Drop")

@@ -14,8 +14,8 @@ from evidence_logs import MAIN, MAIN_XML, START, Verify, btlog, rows
 from in_process import run_btq
 from json_schema import violations
 
-from btq_lang.commands.verdict_formats import FORMATS
-from btq_lang.evidence.written_verdicts import read_verdicts
+from btq_lang.commands.verify_options import FORMATS
+from btq_lang.evidence.json_document import read_verdicts
 from btq_lang.ide.meaning import Subject
 from btq_lang.ide.verdicts import ProjectVerdicts, verdict_table, verdict_titles
 from btq_lang.workspace.references import What

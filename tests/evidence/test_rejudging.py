@@ -17,7 +17,7 @@ from btq_lang.evidence import margins
 from btq_lang.evidence.edges import edge_of
 from btq_lang.evidence.evaluate import MissionEvaluation
 from btq_lang.evidence.identity import Candidate, join
-from btq_lang.evidence.json_document import render
+from btq_lang.evidence.json_document import WrittenMission, read_verdicts, render
 from btq_lang.evidence.judging import Means
 from btq_lang.evidence.margins import Margins
 from btq_lang.evidence.model import LogSession
@@ -25,7 +25,6 @@ from btq_lang.evidence.outline import demands, outline
 from btq_lang.evidence.rejudging import shown_now
 from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, VerdictReport
 from btq_lang.evidence.verifying import verify
-from btq_lang.evidence.written_verdicts import WrittenMission, read_verdicts
 
 KEPT, VIOLATED = 0, 1
 
@@ -39,7 +38,7 @@ def judged(made: Case, mission: Candidate) -> MissionVerdicts:
     for number, session in enumerate(made.sessions):
         one = MissionEvaluation(mission, with_measures=True)
         read = one.read(LogSession(made.joined.tree, iter(session)), joined, made.series, 1, f"log {number}")
-        evaluation.found.add(one.found, runs)
+        evaluation.findings.add(one.findings, runs)
         runs += read
     return evaluation.result()
 

@@ -10,7 +10,7 @@ import pytest
 from evidence_logs import MAIN, MAIN_XML, START, Row, Verify, btlog, rows, write_db3
 
 from btq_lang.evidence import judging, readers
-from btq_lang.evidence.written_verdicts import read_verdicts
+from btq_lang.evidence.json_document import read_verdicts
 from btq_lang.ide.runs import logged_run
 from btq_lang.ide.verdicts import ProjectVerdicts
 from btq_lang.workspace.workspace import Workspace

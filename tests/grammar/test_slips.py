@@ -900,6 +900,128 @@ def test_a_time_of_several_numbers(written: str, meant: str) -> None:
     assert [mistakes(each) for each in fixed] == [[]] * len(fixed)
 
 
+@pytest.mark.parametrize(
+    ("line", "rule", "mended"),
+    [
+        ("input int count", "syntax-error", "input count : int"),
+        ('input string name = "x"', "syntax-error", 'input name : string = "x"'),
+        ("output uint16_t code", "syntax-error", "output code : uint16_t"),
+        ("input count int", "syntax-error", "input count : int"),
+        ("input goal Pose", "syntax-error", "input goal : Pose"),
+    ],
+)
+def test_a_port_with_its_type_in_another_place(line: str, rule: str, mended: str) -> None:
+    text = f"Action Go\n    {line}\n" + tree("Go (count = 1 name = a goal = {g} code = {c})")
+    found = next(each for each in mistakes(text) if each.span.start < text.index("BehaviorTree"))
+    assert (found.rule, found.notes) == (rule, ("a port is written `input name : type`",))
+    assert [after(text, fix) for fix in found.fixes] == [text.replace(line, mended)]
+
+
+@pytest.mark.parametrize("newline", ["\n", "\r\n"])
+@pytest.mark.parametrize(
+    ("lines", "moved"),
+    [
+        (("->", "    input p : string", "    Go"), ("input p : string", "->", "    Go")),
+        (("->", "    Go", "    output p : int = 3"), ("output p : int = 3", "->", "    Go")),
+        (("->", "    Go", "input p : string"), ("input p : string", "->", "    Go")),
+        (("->", "    Go", "        inout p : string", "    Turn"), ("inout p : string", "->", "    Go", "    Turn")),
+    ],
+)
+def test_a_port_below_a_node(lines: tuple[str, ...], moved: tuple[str, ...], newline: str) -> None:
+    text, mended = tree(*lines).replace("\n", newline), tree(*moved).replace("\n", newline)
+    found = parse(text).diagnostics[0]
+    assert found.message == "the ports of a tree go directly below its own line, before its node"
+    assert [after(text, fix) for fix in found.fixes] == [mended]
+    assert parse(mended).diagnostics == ()
+
+
+def test_a_node_that_is_called_like_a_port_is_one() -> None:
+    assert parse(tree("->", "    input p", "    output (x = 3)")).diagnostics == ()
+
+
+@pytest.mark.parametrize(("value", "meant"), [("'home\"", "'home'"), ("\"home'", '"home"')])
+@pytest.mark.parametrize("rest", [")", " at = 3)", ", at = 3)", " ) satisfies r"])
+def test_a_string_in_mixed_quotes(value: str, meant: str, rest: str) -> None:
+    text = tree(f"Go (to = {value}{rest}")
+    found = parse(text).diagnostics[0]
+    assert (found.rule, [after(text, fix) for fix in found.fixes]) == ("unclosed-string", [text.replace(value, meant)])
+
+
+def test_another_quote_in_a_string_that_is_not_closed() -> None:
+    text = tree("Go (to = \"it's home)")
+    (fix,) = parse(text).diagnostics[0].fixes
+    assert after(text, fix) == text.replace("home", 'home"')
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [("0.15", "15 %"), ("0.995", "99.5 %"), ("0", "0 %"), ("1", "1 %"), ("15", "15 %")],
+)
+def test_a_share_that_is_meant_as_a_percentage(written: str, meant: str) -> None:
+    text = tree("Go satisfies r") + f"signal b : % from {{b}}\nQualityReq r\n    leaves b >= {written}\n"
+    (found,) = [each for each in mistakes(text) if each.rule == "number-without-unit"]
+    assert [after(text, fix) for fix in found.fixes] == [text.replace(f">= {written}", f">= {meant}")]
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [("5min30s", ["5.5 min", "330 s"]), ("1h30m", ["1.5 h", "90 min"]), ("2s500ms", ["2.5 s", "2500 ms"])],
+)
+def test_a_time_of_several_numbers_in_a_port(written: str, meant: list[str]) -> None:
+    text = tree(f"Timeout (msec = {written})", "    Go")
+    (found,) = mistakes(text)
+    assert [after(text, fix) for fix in found.fixes] == [text.replace(written, each) for each in meant]
+
+
+@pytest.mark.parametrize("topic", ["/battery", "/bot/battery", '"/battery"', '"/bot_1/battery"'])
+@pytest.mark.parametrize("rest", ["", " level"])
+def test_a_signal_from_a_topic(topic: str, rest: str) -> None:
+    text = tree("Go") + f"signal b : % from {topic}{rest}\n"
+    (found,) = parse(text).diagnostics
+    assert found.notes == (
+        "the topic from which `btq verify` takes samples goes under `[evidence.signals]` in btq.toml",
+    )
+    assert [after(text, fix) for fix in found.fixes] == [text.replace(topic, "{battery}")]
+
+
+@pytest.mark.parametrize("indent", ["", "    "])
+def test_a_comment_after_dashes(indent: str) -> None:
+    text = f"BehaviorTree Main\n    Go\n{indent}-- drives home\n"
+    (found,) = parse(text).diagnostics
+    assert (found.message, found.notes) == ("a comment begins with `#`", ())
+    assert [after(text, fix) for fix in found.fixes] == [text.replace("--", "#")]
+
+
+@pytest.mark.parametrize("word", ["Action", "Condition", "Control", "Decorator"])
+def test_a_model_with_the_name_of_a_class(word: str) -> None:
+    text = f"{word}Node Go\n    input a : int\n" + tree("Turn")
+    (found,) = parse(text).diagnostics
+    assert [after(text, fix) for fix in found.fixes] == [text.replace("Node", "")]
+
+
+BRANCH: Final = "the third child of an IfThenElse is the else branch"
+
+
+@pytest.mark.parametrize(
+    ("word", "how"),
+    [
+        ("Else", BRANCH),
+        ("Otherwise", BRANCH),
+        ("Elif", "the third child of an IfThenElse is its else branch: another IfThenElse"),
+        ("ElseIf", "the third child of an IfThenElse is its else branch: another IfThenElse"),
+        ("Then", "the second child of an IfThenElse, after the condition, is the then branch"),
+    ],
+)
+def test_a_branch_as_a_node(word: str, how: str) -> None:
+    lines = ("IfThenElse", "    Near", "    Go", f"    {word}")
+    below = tree(*lines, "        Turn")
+    models = "Action Go\nAction Turn\nCondition Near\n"
+    for text in (below, models + below, models + tree(*lines)):
+        (found,) = [each for each in mistakes(text) if each.rule == "unknown-node"]
+        assert (found.message, found.notes, found.fixes) == (f"there is no `{word}`: {how}", (), ())
+    assert [each.rule for each in mistakes(tree(*lines))] == []  # a node of the program
+
+
 @pytest.mark.parametrize("word", ["description", "title", "text:", "summary ="])
 def test_a_title_in_the_block_of_a_requirement(word: str) -> None:
     text = requirement("takes at most 3 s", f'{word} "in time"')

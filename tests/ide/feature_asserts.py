@@ -20,7 +20,6 @@ from btq_lang.checks import check
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.ide.actions import code_actions
-from btq_lang.ide.calls import called, callers, prepare_calls
 from btq_lang.ide.colours import colours, difference, encoded_within
 from btq_lang.ide.completion import Completion, complete
 from btq_lang.ide.describe import documentation, include_edits
@@ -29,12 +28,15 @@ from btq_lang.ide.hover import hover, signature_help
 from btq_lang.ide.legend import MODIFIERS, TYPES
 from btq_lang.ide.moves import moved_files
 from btq_lang.ide.navigation import (
+    called,
+    callers,
     find_references,
     goto_definition,
     goto_implementation,
     goto_type,
     highlights,
     node_path,
+    prepare_calls,
 )
 from btq_lang.ide.on_type import linked_ranges, on_type
 from btq_lang.ide.outline import Outline, document_symbols, workspace_symbols
@@ -262,8 +264,8 @@ def check_delta(before: list[int], after: list[int], expected: tuple[int, int, l
     """This change turns the first list of integers into the second."""
     made = difference(before, after)
     if made is not None:
-        assert [*before[: made.start], *made.come, *before[made.start + made.gone :]] == after
-    assert (None if made is None else (made.start, made.gone, made.come)) == expected
+        assert [*before[: made.start], *made.data, *before[made.start + made.delete_count :]] == after
+    assert (None if made is None else (made.start, made.delete_count, made.data)) == expected
 
 
 def check_hover(text: str, markdown: str | None) -> None:
@@ -576,7 +578,7 @@ def answer_everything(
     part = list(decoded(encoded_within(workspace, "main.btq", Span(offset, offset), "utf-16"), lines, "utf-16"))
     line = lines.position(offset).line
     assert part == [one for one in tokens if lines.position(one[0].start).line == line]
-    for action in code_actions(workspace, "main.btq", Span(offset, offset), found=problems):
+    for action in code_actions(workspace, "main.btq", Span(offset, offset), diagnostics=problems):
         for changed in action.edits.values():
             apply_edits(text, changed)
     tree = prepare_calls(*at)

@@ -46,11 +46,11 @@ def test_a_check_ends_when_an_edit_waits(pulls: bool) -> None:
 
         server.session.check = checked  # type: ignore[method-assign]  # to see what each check says
         if pulls:
-            await server.check(path)
+            await server.schedule.check(path)
         else:
-            server.check_soon((path,))
-            assert server.task is not None
-            await server.task
+            server.schedule.check_soon((path,))
+            assert server.schedule.task is not None
+            await server.schedule.task
         return messages
 
     assert asyncio.run(edit()) == {"cancelled": 1, "unknown node `Fallbck`; did you mean `Fallback`?": 1}

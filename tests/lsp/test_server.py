@@ -607,7 +607,7 @@ def test_semantic_tokens(editor: Editor) -> None:
 
 
 def test_an_edit_ends_what_is_made_ready_in_a_pause(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btq_lang.lsp.editor.PAUSE", 0)
+    monkeypatch.setattr("btq_lang.lsp.schedule.PAUSE", 0)
     path = str(tmp_path / "main.btq")
     steps: list[str] = []
 
@@ -619,14 +619,14 @@ def test_an_edit_ends_what_is_made_ready_in_a_pause(tmp_path: Path, monkeypatch:
     async def type_meanwhile() -> None:
         server = Server()
         server.protocol.client_capabilities = types.ClientCapabilities()
-        server.check_soon(server.session.edit(path, WRONG))
+        server.schedule.check_soon(server.session.edit(path, WRONG))
         while len(steps) < 3:
             await asyncio.sleep(0)
-        server.check_soon(server.session.edit(path, RIGHT))
+        server.schedule.check_soon(server.session.edit(path, RIGHT))
         while len(steps) < 103:
             await asyncio.sleep(0)
         await asyncio.sleep(0.05)
-        server.check_soon(server.session.edit(path, WRONG))  # all is there already
+        server.schedule.check_soon(server.session.edit(path, WRONG))  # all is there already
         await asyncio.sleep(0.05)
 
     monkeypatch.setattr("btq_lang.ide.readiness.getting_ready", making, raising=False)
@@ -635,7 +635,7 @@ def test_an_edit_ends_what_is_made_ready_in_a_pause(tmp_path: Path, monkeypatch:
 
 
 def test_nothing_is_made_ready_while_somebody_waits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btq_lang.lsp.editor.PAUSE", 0.05)
+    monkeypatch.setattr("btq_lang.lsp.schedule.PAUSE", 0.05)
     steps: list[int] = []
 
     def making(*_: object) -> Iterator[None]:
@@ -646,18 +646,18 @@ def test_nothing_is_made_ready_while_somebody_waits(tmp_path: Path, monkeypatch:
     async def ask_meanwhile() -> None:
         server = Server()
         server.protocol.client_capabilities = types.ClientCapabilities()
-        server.answering = 1
-        server.check_soon(server.session.edit(str(tmp_path / "main.btq"), RIGHT))
+        server.schedule.answering = 1
+        server.schedule.check_soon(server.session.edit(str(tmp_path / "main.btq"), RIGHT))
         await asyncio.sleep(0.2)
         assert not steps
-        server.answering = 0
+        server.schedule.answering = 0
         while not steps:
             await asyncio.sleep(0)
-        server.answering = 1
+        server.schedule.answering = 1
         for _ in range(50):
             await asyncio.sleep(0)
         assert len(steps) < 10
-        server.answering = 0
+        server.schedule.answering = 0
         while len(steps) < 100:
             await asyncio.sleep(0)
 
@@ -669,7 +669,7 @@ def test_nothing_is_made_ready_while_somebody_waits(tmp_path: Path, monkeypatch:
 def test_tokens_are_made_in_a_pause_for_an_editor_that_asks_for_them(
     asks: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("btq_lang.lsp.editor.PAUSE", 0)
+    monkeypatch.setattr("btq_lang.lsp.schedule.PAUSE", 0)
     path = str(tmp_path / "main.btq")
     made: list[str] = []
 
@@ -679,7 +679,7 @@ def test_tokens_are_made_in_a_pause_for_an_editor_that_asks_for_them(
         tokens = types.SemanticTokensClientCapabilities(requests, [], [], []) if asks else None
         document = types.TextDocumentClientCapabilities(semantic_tokens=tokens)
         server.protocol.client_capabilities = types.ClientCapabilities(text_document=document)
-        server.check_soon(server.session.edit(path, RIGHT))
+        server.schedule.check_soon(server.session.edit(path, RIGHT))
         while "the rest" not in made:
             await asyncio.sleep(0)
 
@@ -1077,15 +1077,15 @@ def test_what_is_outdated_is_not_checked() -> None:
         def publish(self, path: str) -> None:
             told.append(path)
             if path == "first":
-                self.check_soon(("edited", "linked"))  # an edit, while all is checked for the first time
+                self.schedule.check_soon(("edited", "linked"))  # an edit, while all is checked for the first time
 
     async def edit() -> None:
         server = Telling()
-        server.check_soon(("first", "linked", "other", "edited"))
+        server.schedule.check_soon(("first", "linked", "other", "edited"))
         for _ in range(50):  # keys that come faster than they are checked
-            server.check_soon(("first", "linked"))
-        assert server.task is not None
-        await server.task
+            server.schedule.check_soon(("first", "linked"))
+        assert server.schedule.task is not None
+        await server.schedule.task
 
     told: list[str] = []
     asyncio.run(edit())
@@ -1109,16 +1109,16 @@ class Telling(Server):
 def test_what_is_asked_is_answered_before_files_that_are_not_open_are_checked() -> None:
     async def ask() -> None:
         server = Telling()
-        server.answering = 1
-        server.check_soon(("open", "closed"))
+        server.schedule.answering = 1
+        server.schedule.check_soon(("open", "closed"))
         await asyncio.sleep(0.05)
         assert server.told == ["open"]
-        server.check_soon(("open",))  # a key meanwhile does not wait
+        server.schedule.check_soon(("open",))  # a key meanwhile does not wait
         await asyncio.sleep(0.05)
         assert server.told == ["open", "open"]
-        server.answering = 0
-        assert server.task is not None
-        await server.task
+        server.schedule.answering = 0
+        assert server.schedule.task is not None
+        await server.schedule.task
         assert server.told == ["open", "open", "closed"]
 
     asyncio.run(ask())
@@ -1127,19 +1127,19 @@ def test_what_is_asked_is_answered_before_files_that_are_not_open_are_checked() 
 def test_a_key_does_not_wait_for_what_an_editor_may_ask_about_the_key_before(monkeypatch: pytest.MonkeyPatch) -> None:
     async def press() -> None:
         server = Telling()
-        server.check_soon(("open", "closed"))
+        server.schedule.check_soon(("open", "closed"))
         for keys in range(1, 4):
             while len(server.told) < keys:
                 await asyncio.sleep(0)
-            server.check_soon(("open",))
+            server.schedule.check_soon(("open",))
         while len(server.told) < 4:
             await asyncio.sleep(0)
-        assert server.task is not None
-        assert not server.task.done()
+        assert server.schedule.task is not None
+        assert not server.schedule.task.done()
         assert server.told == ["open"] * 4
-        server.task.cancel()
+        server.schedule.task.cancel()
 
-    monkeypatch.setattr("btq_lang.lsp.editor.REQUEST_WINDOW", 2)
+    monkeypatch.setattr("btq_lang.lsp.schedule.REQUEST_WINDOW", 2)
     asyncio.run(asyncio.wait_for(press(), 4))  # seconds; less than three keys would wait
 
 
@@ -1232,14 +1232,14 @@ def test_a_request_interrupts_a_check(tmp_path: Path) -> None:
 def test_a_key_ends_a_pause() -> None:
     async def press() -> None:
         server = Telling()
-        server.check_soon(("open",))
-        assert server.task is not None
-        await server.task
-        pause = server._pause
+        server.schedule.check_soon(("open",))
+        assert server.schedule.task is not None
+        await server.schedule.task
+        pause = server.schedule._pause
         assert pause is not None
         assert not pause.cancelled()
-        server.check_soon(("open",))
-        await server.task
+        server.schedule.check_soon(("open",))
+        await server.schedule.task
         assert pause.cancelled()
 
     asyncio.run(press())

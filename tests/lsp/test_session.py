@@ -172,8 +172,8 @@ def test_what_is_told_is_what_a_new_session_finds(folder: Path, seed: int, monke
             for feature in (complete, find_references):
                 mine, fresh = (feature(each, path, at) for each in workspaces if each is not None)
                 assert mine == fresh
-            outline, outline_anew = (document_symbols(each, path) for each in workspaces if each is not None)
-            assert outline == outline_anew
+            outlines = [document_symbols(each, path) for each in workspaces if each is not None]
+            assert outlines[0] == outlines[1]
             coloured, anew = (colours(each, path, "utf-16") for each in workspaces if each is not None)
             assert coloured.data == anew.data
             assert patched(known.get(path, coloured).data, delta(known.get(path, coloured), coloured)) == coloured.data
@@ -242,8 +242,8 @@ def patched(data: list[int], changes: list[TokenEdit]) -> list[int]:
     patched, end = [], 0
     for one in changes:
         assert end <= one.start
-        patched += [*data[end : one.start], *one.come]
-        end = one.start + one.gone
+        patched += [*data[end : one.start], *one.data]
+        end = one.start + one.delete_count
     assert end <= len(data)
     return [*patched, *data[end:]]
 

@@ -12,10 +12,9 @@ from btq_lang.catalog.nodes import BUILTINS, spellings
 ROOT = Path(__file__).parents[2] / "btq_lang"
 
 NAMING = {
-    "btcpp/around.py": "says which nodes enforce clauses",
     "btcpp/enforcement.py": "writes these",
     "btcpp/guards.py": "writes these",
-    "btcpp/wrappers.py": "writes these",
+    "btcpp/wrappers.py": "writes these, and says which nodes enforce clauses",
     "grammar/nodes.py": "writes one for `!Dark`",
     "ide/refactor.py": "offers nodes to put around another one, and writes them",
 }

@@ -12,7 +12,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 # CI never comes back to a cache that it has written, which takes a tenth of the time.
 MYPY = ("mypy", "--cache-dir", os.devnull) if "BTQ_CI" in os.environ else ("mypy",)
-# Some tests call what only POSIX has, so pyproject.toml names Linux; btq_lang itself is checked for every system.
+# Some tests call what only POSIX has, so pyproject.toml names Linux; another system checks btq_lang alone, for itself.
 TYPES = MYPY if sys.platform == "linux" else (*MYPY, "--platform", sys.platform, "btq_lang")
 
 

@@ -13,8 +13,8 @@ import pytest
 from evidence_logs import MAIN, MAIN_XML, btlog, rows
 
 from btq_lang.cli import main
+from btq_lang.evidence.json_document import NotVerdicts, read_verdicts
 from btq_lang.evidence.verdicts import ClauseVerdict, RequirementVerdict
-from btq_lang.evidence.written_verdicts import NotVerdicts, read_verdicts
 from btq_lang.trace.collect import collect
 from btq_lang.trace.wording import evidence_lines
 from btq_lang.workspace.workspace import Workspace

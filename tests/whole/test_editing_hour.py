@@ -16,12 +16,11 @@ from lsp_editor import Editor, Message
 from seeds import share_of
 from typist import Typist
 
-from btq_lang.ide.calls import prepare_calls
 from btq_lang.ide.colours import colours
 from btq_lang.ide.completion import complete
 from btq_lang.ide.hints import code_lenses, inlay_hints
 from btq_lang.ide.hover import hover, signature_help
-from btq_lang.ide.navigation import find_references, goto_definition, highlights
+from btq_lang.ide.navigation import find_references, goto_definition, highlights, prepare_calls
 from btq_lang.ide.on_type import linked_ranges
 from btq_lang.ide.outline import document_symbols, workspace_symbols
 from btq_lang.ide.rename import prepare_rename

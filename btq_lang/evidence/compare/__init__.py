@@ -10,7 +10,7 @@ One invariant: only what chance hardly explains is called a change, whatever the
     requirements.py what changed in the verdicts on requirements
     causes.py       which differences have one cause
     comparison.py   what changed; model.py has it as data
-    lines.py        what changed in words; words.py the rest of a report
+    lines.py        the comparison in words
     table.py, json_document.py, markdown.py   the writers
 """
 
@@ -26,12 +26,12 @@ if TYPE_CHECKING:
 FORMATS: Final = ("table", "json", "markdown")
 
 
-def write(found: Sequence[RunComparison], by: str, sides: tuple[str, str], form: str) -> str:
+def write(comparisons: Sequence[RunComparison], by: str, sides: tuple[str, str], form: str) -> str:
     """Write what changed, in one of FORMATS.
 
     Args:
         by: what names the sides: `label` or `robot`.
     """
     module = import_module(f"{__name__}.{'json_document' if form == 'json' else form}")
-    text: str = module.render(found, by, sides)
+    text: str = module.render(comparisons, by, sides)
     return text

@@ -1,7 +1,6 @@
 """One cause, one comparison: what a node and those above it have in common.
 
-One invariant: nothing here looks at which side a run is of to decide what is compared; only what is found is explained
-by the sides.
+One invariant: the side of a run never decides what is compared; it only explains what was found.
 """
 
 from __future__ import annotations
@@ -30,24 +29,25 @@ def chains(durations: Mapping[Key, Measure], leaves: Collection[Key]) -> list[li
     Args:
         leaves: nodes without others inside.
     """
-    lengths = {key: sum(of.mean for of in durations[key].values()) for key in durations}
-    numbers = {key: frozenset((unit, of.number) for unit, of in durations[key].items()) for key in durations}
+    lengths = {key: sum(values.mean for values in durations[key].values()) for key in durations}
+    numbers = {key: frozenset((unit, values.number) for unit, values in durations[key].items()) for key in durations}
     chained: list[list[Key]] = []
     for keys in grouped((numbers[key], key) for key in durations).values():
         joined: list[list[Key]] = []
         for key in sorted(keys, key=lambda key: (bool(key.requirement), lengths[key])):
-            of = durations[key]
+            measure = durations[key]
             inner = [
                 chain
                 for chain in joined
                 if key not in leaves
                 and (
-                    _closes(of, durations[chain[0]])
-                    or (key.requirement and _closes(durations[chain[0]], of))  # a clause may begin with a row in a node
+                    _closes(measure, durations[chain[0]])
+                    # A clause may begin with a row in a node.
+                    or (key.requirement and _closes(durations[chain[0]], measure))
                 )
             ]
             if inner:
-                max(inner, key=lambda chain: sum(of.end for of in durations[chain[0]].values())).append(key)
+                max(inner, key=lambda chain: sum(values.end for values in durations[chain[0]].values())).append(key)
             else:
                 joined.append([key])
         chained += joined
@@ -57,24 +57,26 @@ def chains(durations: Mapping[Key, Measure], leaves: Collection[Key]) -> list[li
 def with_causes(changes: Sequence[ComparedNumber], numbers: Numbers, at_least: float) -> list[ComparedNumber]:
     """The changes, each with what explains it: a change in the same direction inside of it.
 
-    Without that, what is left of the difference is less than counts, or chance may explain it.
+    Without that change, the rest of the difference is too small to count, or chance may explain it.
 
     Args:
         at_least: as in `compare`.
     """
-    alike = grouped((each.direction, each) for each in changes if each.is_at_least(at_least) and _reaches_above(each))
-    groups = [group for group in alike.values() if len(group) > 1 and any(each.finding for each in group)]
+    alike = grouped(
+        (change.direction, change) for change in changes if change.is_at_least(at_least) and _reaches_above(change)
+    )
+    groups = [group for group in alike.values() if len(group) > 1 and any(change.finding for change in group)]
     if not groups:
         return list(changes)
-    inside = numbers.inside(list(dict.fromkeys(each.key for group in groups for each in group)))
-    failed = [each.key for group in groups for each in group if each.what == "failures"]
+    inside = numbers.inside(list(dict.fromkeys(change.key for group in groups for change in group)))
+    failed = [change.key for group in groups for change in group if change.what == "failures"]
     time_left, failures_left = _time_left(numbers, at_least), _failures_left(failed, numbers)
     causes = {
         id(change): cause.key
         for group in groups
         for change, cause in _explained(group, inside, failures_left if group[0].what == "failures" else time_left)
     }
-    return [replace(each, cause=causes.get(id(each))) for each in changes]
+    return [replace(change, cause=causes.get(id(change))) for change in changes]
 
 
 def _reaches_above(change: ComparedNumber) -> bool:
@@ -89,16 +91,18 @@ def _explained(
 ) -> Iterator[tuple[ComparedNumber, ComparedNumber]]:
     """Changes in one direction that others explain, each with the largest of these."""
     causes: list[ComparedNumber] = []
-    for change in sorted(changes, key=lambda each: (not each.finding, len(inside[each.key]), bool(each.requirement))):
-        within = [each for each in causes if each.key in inside[change.key]]
+    for change in sorted(
+        changes, key=lambda change: (not change.finding, len(inside[change.key]), bool(change.requirement))
+    ):
+        within = [cause for cause in causes if cause.key in inside[change.key]]
         # What is inside of another one is part of it.
         parts = [
-            each
-            for place, each in enumerate(within)
-            if not any(each.key in inside[other.key] for other in within[place + 1 :])
+            part
+            for place, part in enumerate(within)
+            if not any(part.key in inside[other.key] for other in within[place + 1 :])
         ]
-        if parts and is_rest_chance(change.key, [each.key for each in parts]):
-            yield change, max(parts, key=lambda each: abs(each.difference))
+        if parts and is_rest_chance(change.key, [part.key for part in parts]):
+            yield change, max(parts, key=lambda part: abs(part.difference))
         elif change.finding:
             causes.append(change)
 
@@ -108,14 +112,14 @@ def _time_left(numbers: Numbers, at_least: float) -> Callable[[Key, Sequence[Key
 
     def is_chance(key: Key, parts: Sequence[Key]) -> bool:
         whole = difference(rest(numbers.measures[key], ()), numbers.sides)
-        left = rest(numbers.measures[key], [numbers.measures[part] for part in parts])
-        of_rest = difference(left, numbers.sides)
-        size = abs(of_rest.after - of_rest.before)
+        remaining = rest(numbers.measures[key], [numbers.measures[part] for part in parts])
+        rest_means = difference(remaining, numbers.sides)
+        size = abs(rest_means.after - rest_means.before)
         if size > abs(whole.after - whole.before) / 2:  # chance may explain it, but the parts do not
             return False
         if size < at_least * abs(whole.before):
             return True
-        return probability(left, numbers.units, numbers.shuffles, of_rest.after > of_rest.before) > LEVEL
+        return probability(remaining, numbers.units, numbers.shuffles, rest_means.after > rest_means.before) > LEVEL
 
     return is_chance
 
@@ -126,10 +130,11 @@ def _failures_left(keys: Sequence[Key], numbers: Numbers) -> Callable[[Key, Sequ
     rows = numbers.failed_together(keys) if keys else ()
 
     def is_chance(key: Key, parts: Sequence[Key]) -> bool:
-        whole, left = (
-            failures.rest(rows, places[key], {places[part] for part in of}, numbers.sides) for of in ((), parts)
+        whole, remaining = (
+            failures.rest(rows, places[key], {places[part] for part in removed}, numbers.sides)
+            for removed in ((), parts)
         )
-        return abs(failures.difference(left)) <= abs(failures.difference(whole)) / 2 and exact(left) > LEVEL
+        return abs(failures.difference(remaining)) <= abs(failures.difference(whole)) / 2 and exact(remaining) > LEVEL
 
     return is_chance
 
@@ -137,7 +142,7 @@ def _failures_left(keys: Sequence[Key], numbers: Numbers) -> Callable[[Key, Sequ
 def _closes(outer: Measure, inner: Measure) -> bool:
     """Whether one is around the other, and no longer, in nearly all units of each side."""
     sides = grouped((unit.side, _is_around(outer[unit], inner[unit])) for unit in outer)
-    return all(of.count(False) <= _PAUSED * len(of) for of in sides.values())
+    return all(are_around.count(False) <= _PAUSED * len(are_around) for are_around in sides.values())
 
 
 def _is_around(outer: Values, inner: Values) -> bool:

@@ -33,7 +33,7 @@ class Shuffles:
         self._first: Final = len(first)
         units = grouped((stratum, index) for index, stratum in enumerate((*first, *second)))
         sizes = Counter(first)
-        self._strata: Final = [(of, sizes[stratum]) for stratum, of in units.items()]
+        self._strata: Final = [(indices, sizes[stratum]) for stratum, indices in units.items()]
         self._to_draw: Final = self._draws(len(first) + len(second))
         self._drawn: Final[list[bytearray]] = []  # only as many as a difference has needed
 
@@ -105,14 +105,14 @@ def exact(strata: Iterable[Failures]) -> float:
     for (failed, n), (other, m) in strata:
         both = failed + other
         possible = range(max(0, both - m), min(both, n) + 1)
-        logs = [_log_comb(n, each) + _log_comb(m, both - each) - _log_comb(n + m, both) for each in possible]
+        logs = [_log_comb(n, number) + _log_comb(m, both - number) - _log_comb(n + m, both) for number in possible]
         least, own = _likely(possible[0], map(exp, logs))
         first, chances = _likely(first + least, _of_sums(chances, own))
         observed += failed
     if observed not in range(first, first + len(chances)):
         return _RARE
     limit = chances[observed - first] * (1 + _ALIKE)
-    return min(1.0, sum(each for each in chances if each <= limit))
+    return min(1.0, sum(chance for chance in chances if chance <= limit))
 
 
 def expected(strata: Iterable[Failures]) -> float:

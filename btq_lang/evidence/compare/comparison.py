@@ -56,10 +56,10 @@ def compare(ask: Ask, by: str, sides: tuple[str, str], at_least: float = AT_LEAS
         raise UnknownSide(f"no mission was run with both {sides[0]} and {sides[1]}")
     number = sum(mission.comparisons for mission in missions)
     compared = [[*mission.changes(number)] for mission in missions]
-    adjusted = iter(holm([each.p for changes in compared for each in changes]))
-    judged = [[_judged(each, next(adjusted), at_least) for each in changes] for changes in compared]
+    adjusted = iter(holm([change.p for changes in compared for change in changes]))
+    judged = [[_judged(change, next(adjusted), at_least) for change in changes] for changes in compared]
     alone = [_alone(name, [rows.get(side) for side in sides]) for name, rows in runs.items() if len(rows) < len(sides)]
-    return (*(mission.result(of, at_least) for mission, of in zip(missions, judged, strict=True)), *alone)
+    return (*(mission.result(changes, at_least) for mission, changes in zip(missions, judged, strict=True)), *alone)
 
 
 def _judged(change: ComparedNumber, p: float, at_least: float) -> ComparedNumber:
@@ -112,7 +112,7 @@ class _Mission:
             if name in judged[0] and {requirement.verdict, judged[0][name].verdict} == {UNKNOWN}
         )
         self._numbers: Final = Numbers(ask, by, sides, name, runs, self._edited)
-        durations = {key: of for key, of in self._numbers.measures.items() if self._numbers.is_duration(key)}
+        durations = {key: measure for key, measure in self._numbers.measures.items() if self._numbers.is_duration(key)}
         others = [[key] for key in self._numbers.measures if key not in durations]
         self._measures: Final = [*chains(durations, self._numbers.leaves), *others]
         self.comparisons: Final = len(self._measures) + len(self._numbers.failures)
@@ -126,18 +126,21 @@ class _Mission:
         numbers = self._numbers
         for key, *same in self._measures:
             measure = numbers.measures[key]
-            of = difference(measure, numbers.sides)
-            p = probability(measure, numbers.units, numbers.shuffles, of.after > of.before, shuffles_for(comparisons))
+            means = difference(measure, numbers.sides)
+            p = probability(
+                measure, numbers.units, numbers.shuffles, means.after > means.before, shuffles_for(comparisons)
+            )
             units = sizes(measure, numbers.sides)
             yield ComparedNumber(
                 *key,
                 what="mean",
                 unit=numbers.symbol(key),
-                before=of.before,
-                after=of.after,
-                interval=of.interval,
+                before=means.before,
+                after=means.after,
+                interval=means.interval,
                 counts=_pair(
-                    sum(each.number for unit, each in measure.items() if unit.side == side) for side in numbers.sides
+                    sum(values.number for unit, values in measure.items() if unit.side == side)
+                    for side in numbers.sides
                 ),
                 units=_pair(map(sum, zip(*units, strict=True))),
                 failed=None,
@@ -148,26 +151,26 @@ class _Mission:
                 same=tuple(same),
                 cause=None,
             )
-        yield from (_failed(each, comparisons) for each in numbers.failures)
+        yield from (_failed(failed_runs, comparisons) for failed_runs in numbers.failures)
 
     def result(self, changes: Sequence[ComparedNumber], at_least: float) -> RunComparison:
         """The comparison, with p-values after Holm."""
         numbers = self._numbers
-        labels = [dict(sorted(of["labels"].items())) for of in self._runs]
+        labels = [dict(sorted(row["labels"].items())) for row in self._runs]
         is_mixed = self._by == "robot" and len({*labels[0], *labels[1]}) > 1
-        tested = [self._tested(each, changes) for each in self._turned]
+        tested = [self._tested(turned, changes) for turned in self._turned]
         return RunComparison(
             mission=self._name,
-            runs=_pair(of["runs"] for of in self._runs),
-            robots=_pair(len(of["robots"]) for of in self._runs),
-            times=_pair((of["first_us"], of["last_us"]) for of in self._runs),
+            runs=_pair(row["runs"] for row in self._runs),
+            robots=_pair(len(row["robots"]) for row in self._runs),
+            times=_pair((row["first_us"], row["last_us"]) for row in self._runs),
             labels=tuple(labels) if is_mixed else (),
             over=numbers.over,
             group=numbers.group,
             at_least=at_least,
             one_sided=numbers.one_sided(),
-            newly=tuple(each for each in tested if each.after == VIOLATED),
-            no_longer=tuple(each for each in tested if each.after != VIOLATED),
+            newly=tuple(requirement for requirement in tested if requirement.after == VIOLATED),
+            no_longer=tuple(requirement for requirement in tested if requirement.after != VIOLATED),
             only=self._only,
             unknown=self._unknown,
             edited=self._edited,
@@ -179,21 +182,21 @@ class _Mission:
         direction = "less reliable" if newly.after == VIOLATED else "more reliable"
         p = [
             change.p if change.direction == direction else 1.0
-            for change, of in zip(changes[len(self._measures) :], self._numbers.failures, strict=True)
-            if newly.id in {key.requirement for key in (of.key, *of.same)}
+            for change, failed_runs in zip(changes[len(self._measures) :], self._numbers.failures, strict=True)
+            if newly.id in {key.requirement for key in (failed_runs.key, *failed_runs.same)}
         ]
         return replace(newly, p=min(p), may_be_chance=min(p) > LEVEL) if p else newly
 
 
-def _failed(of: FailedRuns, comparisons: int) -> ComparedNumber:
+def _failed(failed_runs: FailedRuns, comparisons: int) -> ComparedNumber:
     """The failures of a node, or the violations of a clause."""
-    (failed, before), (other, after) = totals(of.strata)
+    (failed, before), (other, after) = totals(failed_runs.strata)
     shares = failed / before, other / after
     # Robots that fail more often may have run more on one side: then the shares differ the other way than their own.
-    agrees = (failed < expected(of.strata)) == (shares[0] < shares[1])
-    p = exact(of.strata) if agrees else 1.0
+    agrees = (failed < expected(failed_runs.strata)) == (shares[0] < shares[1])
+    p = exact(failed_runs.strata) if agrees else 1.0
     return ComparedNumber(
-        *of.key,
+        *failed_runs.key,
         what="failures",
         unit="%",
         before=shares[0],
@@ -204,9 +207,9 @@ def _failed(of: FailedRuns, comparisons: int) -> ComparedNumber:
         failed=(failed, other),
         p_alone=p,
         p=p,
-        too_few=is_too_few([(one[1], two[1]) for one, two in of.strata], comparisons),
+        too_few=is_too_few([(first[1], second[1]) for first, second in failed_runs.strata], comparisons),
         finding="",
-        same=of.same,
+        same=failed_runs.same,
         cause=None,
     )
 

@@ -40,8 +40,8 @@ def failed_runs(rows: Iterable[Mapping[str, Any]], sides: tuple[str, str]) -> li
     # Of several nodes the last one of the tree leads: it is inside of the others.
     for key in sorted(of_keys, key=lambda key: (bool(key.requirement), -max(row["uid"] for row in of_keys[key]))):
         runs = [(row["stratum"], row["side"], row["number"], row["failed"], row["alike"]) for row in of_keys[key]]
-        failed, number = sum(each[3] for each in runs), sum(each[2] for each in runs)
-        if {each[1] for each in runs} == {*sides} and 0 < failed < number:
+        failed, number = sum(run[3] for run in runs), sum(run[2] for run in runs)
+        if {run[1] for run in runs} == {*sides} and 0 < failed < number:
             alike.setdefault(tuple(runs), []).append(key)
     return [FailedRuns(keys[0], _strata(of_keys[keys[0]], sides), tuple(keys[1:])) for keys in alike.values()]
 
@@ -53,12 +53,12 @@ def rest(rows: Iterable[Mapping[str, Any]], place: int, parts: set[int], sides: 
         rows: the answer to `questions.FAILED_TOGETHER`.
         place, parts: which they are there.
     """
-    left = []
+    unexplained = []
     for row in rows:
         if place in row["had"]:
             failed = {*(row["failed"] or ())}
-            left.append({**row, "failed": row["number"] if place in failed and not parts & failed else 0})
-    return _strata(left, sides)
+            unexplained.append({**row, "failed": row["number"] if place in failed and not parts & failed else 0})
+    return _strata(unexplained, sides)
 
 
 def totals(strata: Sequence[Failures]) -> Failures:
@@ -77,7 +77,7 @@ def _strata(rows: Iterable[Mapping[str, Any]], sides: tuple[str, str]) -> list[F
     """The numbers of each stratum; rows of one side and stratum are added up."""
     strata: dict[str, dict[str, tuple[int, int]]] = {}
     for row in rows:
-        of = strata.setdefault(row["stratum"], dict.fromkeys(sides, (0, 0)))
-        failed, number = of[row["side"]]
-        of[row["side"]] = failed + row["failed"], number + row["number"]
-    return [(of[sides[0]], of[sides[1]]) for of in strata.values()]
+        by_side = strata.setdefault(row["stratum"], dict.fromkeys(sides, (0, 0)))
+        failed, number = by_side[row["side"]]
+        by_side[row["side"]] = failed + row["failed"], number + row["number"]
+    return [(by_side[sides[0]], by_side[sides[1]]) for by_side in strata.values()]

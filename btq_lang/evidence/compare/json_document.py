@@ -13,7 +13,7 @@ FORMAT: Final = "btq-comparison"
 VERSION: Final = 2
 
 
-def render(found: Sequence[RunComparison], by: str, sides: tuple[str, str]) -> str:
+def render(comparisons: Sequence[RunComparison], by: str, sides: tuple[str, str]) -> str:
     """Write the comparisons as JSON."""
     document = {
         "format": FORMAT,
@@ -22,11 +22,11 @@ def render(found: Sequence[RunComparison], by: str, sides: tuple[str, str]) -> s
         "sides": sides,
         "missions": [
             {
-                **as_dict(each),
-                **{name: [as_dict(one) for one in getattr(each, name)] for name in _LISTS},
-                "changes": [_change(one) for one in each.changes],
+                **as_dict(comparison),
+                **{name: [as_dict(record) for record in getattr(comparison, name)] for name in _LISTS},
+                "changes": [_change(record) for record in comparison.changes],
             }
-            for each in found
+            for comparison in comparisons
         ],
     }
     return json.dumps(document, indent=1, allow_nan=False) + "\n"

@@ -1,8 +1,8 @@
-"""The lines of a report: what changed, and what differs but may be chance."""
+"""A comparison in words: what changed, what differs but may be chance, and what was not compared."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from math import inf
 from typing import Final
 
@@ -11,7 +11,7 @@ from btq_lang.evidence.compare.chance import LEVEL
 from btq_lang.evidence.compare.model import WORSE, ComparedNumber, RunComparison, is_time
 from btq_lang.evidence.compare.requirements import Newly
 from btq_lang.evidence.verdicts import VIOLATED
-from btq_lang.evidence.wording import duration, first_of, quantity, share
+from btq_lang.evidence.wording import duration, first_of, period, quantity, share
 from btq_lang.util.grouping import grouped
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import counted
@@ -42,56 +42,59 @@ def certain(comparison: RunComparison) -> list[DifferenceLine]:
 
     What another change explains has no line of its own; that of a requirement also says what is measured for it.
     """
-    turned = [each for each in (*comparison.newly, *comparison.no_longer) if not each.may_be_chance]
-    own = {each.id for each in turned}
-    changes = [each for each in comparison.changes if each.finding and each.cause is None]
-    changes.sort(key=lambda each: -abs(each.difference / each.before) if each.before else -inf)
+    turned = [newly for newly in (*comparison.newly, *comparison.no_longer) if not newly.may_be_chance]
+    own = {newly.id for newly in turned}
+    changes = [change for change in comparison.changes if change.finding and change.cause is None]
+    changes.sort(key=lambda change: -abs(change.difference / change.before) if change.before else -inf)
     measured = grouped(
-        (each.requirement, f"and {each.finding}: {_numbers(each, comparison)}, {_chance(each.p)}")
-        for each in changes
-        if each.failed is None
+        (change.requirement, f"and {change.finding}: {_numbers(change, comparison)}, {_chance(change.p)}")
+        for change in changes
+        if change.failed is None
     )
-    of_requirements = [replace(_turned(each), more="; ".join(measured.get(each.id, ()))) for each in turned]
+    of_requirements = [replace(_turned(newly), more="; ".join(measured.get(newly.id, ()))) for newly in turned]
     lines = [
         DifferenceLine(
-            finding=each.finding,
-            is_worse=each.finding in WORSE,
-            requirement=each.requirement,
-            name=each.name,
-            text=f"{_numbers(each, comparison)}, {_chance(each.p)}",
-            more=_folded(each, comparison.changes),
+            finding=change.finding,
+            is_worse=change.finding in WORSE,
+            requirement=change.requirement,
+            name=change.name,
+            text=f"{_numbers(change, comparison)}, {_chance(change.p)}",
+            more=_folded(change, comparison.changes),
         )
-        for each in changes
-        if each.requirement not in own
+        for change in changes
+        if change.requirement not in own
     ]
-    newly, no_longer = ([each for each in of_requirements if each.is_worse is is_worse] for is_worse in (True, False))
-    return [*newly, *sorted(lines, key=lambda each: not each.is_worse), *no_longer]
+    violated, no_longer = (
+        [line for line in of_requirements if line.is_worse is is_worse] for is_worse in (True, False)
+    )
+    return [*violated, *sorted(lines, key=lambda line: not line.is_worse), *no_longer]
 
 
 def by_chance(comparison: RunComparison) -> list[DifferenceLine]:
     """What differs most of what chance may explain: requirements, then the least likely differences."""
-    turned = [
-        replace(_turned(each), is_worse=False)
-        for each in (*comparison.newly, *comparison.no_longer)
-        if each.may_be_chance
+    lines = [
+        replace(_turned(newly), is_worse=False)
+        for newly in (*comparison.newly, *comparison.no_longer)
+        if newly.may_be_chance
     ]
     causes = _causes_in_requirements(comparison.changes)
-    turned = [
-        replace(each, more=_AT_WORK.format(causes[each.requirement])) if each.requirement in causes else each
-        for each in turned
+    lines = [
+        replace(line, more=_AT_WORK.format(causes[line.requirement])) if line.requirement in causes else line
+        for line in lines
     ]
-    own = {each.requirement for each in turned}
+    own = {line.requirement for line in lines}
     quiet = [
-        each
-        for each in comparison.changes
-        if each.p > LEVEL and each.p_alone <= _LIKELY and each.cause is None and each.is_at_least(comparison.at_least)
-        if not (each.failed is not None and each.requirement in own)
+        change
+        for change in comparison.changes
+        if change.p > LEVEL and change.p_alone <= _LIKELY
+        if change.cause is None and change.is_at_least(comparison.at_least)
+        if not (change.failed is not None and change.requirement in own)
     ]
-    quiet.sort(key=lambda each: each.p_alone)
-    for each in quiet[:_MOST]:
-        text = f"{_numbers(each, comparison)}, {_chance(each.p)}, alone {each.p_alone:.2g}"
-        turned.append(DifferenceLine("", False, each.requirement, each.name, text, ""))
-    return turned
+    quiet.sort(key=lambda change: change.p_alone)
+    for change in quiet[:_MOST]:
+        text = f"{_numbers(change, comparison)}, {_chance(change.p)}, alone {change.p_alone:.2g}"
+        lines.append(DifferenceLine("", False, change.requirement, change.name, text, ""))
+    return lines
 
 
 def percent(change: ComparedNumber) -> str:
@@ -112,17 +115,17 @@ def _turned(newly: Newly) -> DifferenceLine:
 
 def _causes_in_requirements(changes: Sequence[ComparedNumber]) -> dict[str, str]:
     """The names of the certain changes that requirements measure too, by requirement."""
-    causes = {each.key: each.name for each in changes if each.finding and each.cause is None}
-    same = {key.requirement: causes[each.key] for each in changes if each.key in causes for key in each.same}
-    explained = {each.requirement: causes[each.cause] for each in changes if each.cause in causes}
+    causes = {change.key: change.name for change in changes if change.finding and change.cause is None}
+    same = {key.requirement: causes[change.key] for change in changes if change.key in causes for key in change.same}
+    explained = {change.requirement: causes[change.cause] for change in changes if change.cause in causes}
     return {**explained, **same}
 
 
 def _folded(change: ComparedNumber, changes: Sequence[ComparedNumber]) -> str:
     """What is the same change, or comes of it."""
-    of = [each for each in changes if each.cause == change.key and each.direction == change.direction]
-    of.sort(key=lambda each: each.before)  # what is inside takes less time
-    keys = [*change.same, *(key for each in of for key in (each.key, *each.same))]
+    effects = [effect for effect in changes if effect.cause == change.key and effect.direction == change.direction]
+    effects.sort(key=lambda effect: effect.before)  # what is inside takes less time
+    keys = [*change.same, *(key for effect in effects for key in (effect.key, *effect.same))]
     nodes = [key.node for key in keys if not key.requirement]
     requirements = sorted({key.requirement for key in keys if key.requirement})
     parts = [f"{counted(len(nodes), 'node')} above it: {first_of(nodes)}"] if nodes else []
@@ -139,10 +142,10 @@ def _numbers(change: ComparedNumber, comparison: RunComparison) -> str:
         return f"{verb} in {before} runs → {after}"
     differs = ", ".join(filter(None, (_signed(change.difference, change), percent(change))))
     if change.interval is not None:
-        low, high = (_signed(each, change) for each in change.interval)
+        low, high = (_signed(si, change) for si in change.interval)
         differs += f"; 95 % interval {low} to {high}"
-    what = "robots" if comparison.over == "robots" else "groups" if comparison.group > 1 else "runs"
-    over = f"over {change.units[0]:,} and {change.units[1]:,} {what}"
+    shuffled = "robots" if comparison.over == "robots" else "groups" if comparison.group > 1 else "runs"
+    over = f"over {change.units[0]:,} and {change.units[1]:,} {shuffled}"
     return f"mean {_shown(change.before, change)} → {_shown(change.after, change)} ({differs}) {over}"
 
 
@@ -162,6 +165,74 @@ def _shown(si: float, change: ComparedNumber) -> str:
     return duration(si) if is_time(change.unit) else quantity(si, parse_unit(change.unit))
 
 
+def heading(comparison: RunComparison, sides: tuple[str, str]) -> str:
+    """What is compared, and when it was."""
+    if not all(comparison.runs):
+        ran, other = sides if comparison.runs[0] else sides[::-1]
+        return f"{comparison.mission}: {counted(max(comparison.runs), 'run')} of {ran}, none of {other}, not compared"
+    over = f"groups of {comparison.group:,} {comparison.over}" if comparison.group > 1 else comparison.over
+    if comparison.over == "robots":
+        over += f" ({comparison.robots[0]} and {comparison.robots[1]})"
+    runs = ", ".join(
+        f"{counted(number, 'run')} of {side}" + (f" ({period(*times)})" if times is not None else "")
+        for number, side, times in zip(comparison.runs, sides, comparison.times, strict=True)
+    )
+    return f"{comparison.mission}: {runs}, durations compared by {over}"
+
+
+def remarks(comparison: RunComparison, sides: tuple[str, str]) -> Iterator[str]:
+    """What was compared and not found to have changed, what could not be compared, and what has too few runs."""
+    if not all(comparison.runs):
+        return
+    if comparison.labels:
+        ran = (
+            f"{side} ran {', '.join(f'{label or _NO_LABEL} ({number:,})' for label, number in labels.items())}"
+            for side, labels in zip(sides, comparison.labels, strict=True)
+        )
+        yield f"several labels are compared at once: {'; '.join(ran)}; --label LABEL takes the runs of one"
+    changes = comparison.changes
+    more = sum(change.p <= LEVEL for change in changes)
+    yield f"{more} of {counted(len(changes), 'comparison')} differ by more than chance explains"
+    small = [change for change in changes if change.p <= LEVEL and not change.finding]
+    if small:
+        named = first_of([f"{change.name} ({percent(change)})" for change in small])
+        yield f"less than {share(comparison.at_least)}, so no change (--at-least): {named}"
+    for edit in comparison.edited:
+        whose = f"{edit.requirement} at {edit.node}" if edit.node else edit.requirement
+        old, new = (
+            f"{text} ({k:,} of {n:,} violated)"
+            for text, k, n in zip((edit.before, edit.after), edit.violated, edit.counted, strict=True)
+        )
+        yield f"the bound of {whose} was changed from {old} to {new}, so this says nothing about the robots"
+    alone = zip(comparison.one_sided, sides, strict=True)
+    if one_sided := ", ".join(f"{counted(number, 'node')} active only in {side}" for number, side in alone if number):
+        yield f"not compared: {one_sided}"
+    for names, side in zip(comparison.only, sides, strict=True):
+        if names:
+            noun = "requirements" if len(names) > 1 else "requirement"
+            yield f"not compared: {noun} only in {side}: {', '.join(names)}"
+    if comparison.unknown:
+        yield f"unknown on both sides, as btq verify explains: {', '.join(comparison.unknown)}"
+    if why := untestable(comparison):
+        yield f"means: {why}"
+    certain = {change.name for change in changes if change.finding}
+    few = [name for name in dict.fromkeys(change.name for change in changes if change.too_few) if name not in certain]
+    if few:
+        yield f"too few to show any change: {', '.join(few)}"
+
+
+def untestable(comparison: RunComparison) -> str:
+    """Why no measure can show a change; empty if one can, or none is compared."""
+    measures = [change for change in comparison.changes if change.failed is None]
+    if not measures or not all(change.too_few for change in measures):
+        return ""
+    first, second = comparison.robots if comparison.over == "robots" else comparison.runs
+    noun = "robot" if comparison.over == "robots" else "run"
+    return f"not testable with {f'{first} and ' if first != second else ''}{counted(second, noun)}"
+
+
 _AT_WORK: Final = "includes what changed at {}, so more runs may show it"
 _MOST: Final = 5  # differences that chance may explain
 _LIKELY: Final = 0.5  # p-values of differences that are none
+BY_CHANCE: Final = "what differs most where chance may explain it"
+_NO_LABEL: Final = "no label"

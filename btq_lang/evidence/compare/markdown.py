@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from btq_lang.evidence.compare.lines import DifferenceLine, by_chance, certain
+from btq_lang.evidence.compare.lines import BY_CHANCE, DifferenceLine, by_chance, certain, heading, remarks
 from btq_lang.evidence.compare.model import RunComparison
-from btq_lang.evidence.compare.words import BY_CHANCE, heading, remarks
 from btq_lang.render.gfm import code, escaped, table
 
 
-def render(found: Sequence[RunComparison], by: str, sides: tuple[str, str]) -> str:
+def render(comparisons: Sequence[RunComparison], by: str, sides: tuple[str, str]) -> str:
     """The comparisons of all missions."""
-    return "\n\n".join("\n".join(_lines(each, sides)) for each in found) + "\n"
+    return "\n\n".join("\n".join(_lines(comparison, sides)) for comparison in comparisons) + "\n"
 
 
 def _lines(comparison: RunComparison, sides: tuple[str, str]) -> Iterator[str]:
@@ -29,10 +28,10 @@ def _lines(comparison: RunComparison, sides: tuple[str, str]) -> Iterator[str]:
 def _table(lines: Sequence[DifferenceLine]) -> Iterator[str]:
     rows = [
         (
-            f"**{each.finding}**" if each.is_worse else each.finding,
-            code(each.name),
-            "<br>".join(escaped(text) for text in (each.text, each.more) if text),
+            f"**{line.finding}**" if line.is_worse else line.finding,
+            code(line.name),
+            "<br>".join(escaped(text) for text in (line.text, line.more) if text),
         )
-        for each in lines
+        for line in lines
     ]
     yield from table(("Finding", "Of", "Change"), rows)

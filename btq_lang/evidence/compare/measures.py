@@ -69,13 +69,15 @@ def difference(measure: Measure, sides: tuple[str, str]) -> Difference:
     weights = [len(first) * len(second) / (len(first) + len(second)) for first, second in means]
     weight = sum(weights)
     before, after = (
-        sum(share * sum(of) / len(of) for share, of in zip(weights, side, strict=True)) / weight
+        sum(share * sum(values) / len(values) for share, values in zip(weights, side, strict=True)) / weight
         for side in zip(*means, strict=True)
     )
-    freedom = sum(len(of) - 1 for pair in means for of in pair)
+    freedom = sum(len(values) - 1 for pair in means for values in pair)
     if freedom < _FEW:
         return Difference(before, after, None)
-    squares = sum(sum((each - sum(of) / len(of)) ** 2 for each in of) for pair in means for of in pair)
+    squares = sum(
+        sum((value - sum(values) / len(values)) ** 2 for value in values) for pair in means for values in pair
+    )
     reach = _student(freedom) * sqrt(squares / freedom / weight)
     return Difference(before, after, (after - before - reach, after - before + reach))
 
@@ -94,10 +96,12 @@ def probability(
         number: of shuffles.
     """
     sides = grouped((unit.stratum, unit.side) for unit in measure)
-    ranks = grouped((unit.stratum, of.rank) for unit, of in measure.items() if len({*sides[unit.stratum]}) > 1)
-    middles = {stratum: sum(of) / len(of) for stratum, of in ranks.items()}
+    ranks = grouped((unit.stratum, values.rank) for unit, values in measure.items() if len({*sides[unit.stratum]}) > 1)
+    middles = {stratum: sum(values) / len(values) for stratum, values in ranks.items()}
     scores = [
-        of.rank - middles[unit.stratum] if (of := measure.get(unit)) is not None and unit.stratum in middles else 0.0
+        values.rank - middles[unit.stratum]
+        if (values := measure.get(unit)) is not None and unit.stratum in middles
+        else 0.0
         for unit in units
     ]
     first = sum(score for unit, score in zip(units, scores, strict=True) if unit.side == units[0].side)
@@ -107,13 +111,13 @@ def probability(
 def rest(measure: Measure, parts: Sequence[Measure]) -> Measure:
     """What is left of the sum of a unit's values without those of the parts, and the ranks of that."""
     sums = {
-        unit: of.number * of.mean - sum(part[unit].number * part[unit].mean for part in parts if unit in part)
-        for unit, of in measure.items()
+        unit: values.number * values.mean - sum(part[unit].number * part[unit].mean for part in parts if unit in part)
+        for unit, values in measure.items()
     }
     ranks: dict[ShuffledUnit, float] = {}
     for units in grouped((unit.stratum, unit) for unit in sums).values():
         places = grouped((sums[unit], place) for place, unit in enumerate(sorted(units, key=sums.__getitem__)))
-        ranks |= {unit: sum(of := places[sums[unit]]) / len(of) for unit in units}
+        ranks |= {unit: sum(same_places := places[sums[unit]]) / len(same_places) for unit in units}
     return {unit: Values(1, value, ranks[unit], measure[unit].end) for unit, value in sums.items()}
 
 
@@ -125,9 +129,9 @@ def sizes(measure: Measure, sides: tuple[str, str]) -> list[tuple[int, int]]:
 
 def _means(measure: Measure, sides: tuple[str, str]) -> list[tuple[list[float], list[float]]]:
     """The means of the units of each side, in each stratum that both have."""
-    found = grouped(((unit.stratum, unit.side), of.mean) for unit, of in measure.items())
-    strata = {stratum: None for stratum, side in found if side == sides[0] and (stratum, sides[1]) in found}
-    return [(found[stratum, sides[0]], found[stratum, sides[1]]) for stratum in strata]
+    means = grouped(((unit.stratum, unit.side), values.mean) for unit, values in measure.items())
+    strata = {stratum: None for stratum, side in means if side == sides[0] and (stratum, sides[1]) in means}
+    return [(means[stratum, sides[0]], means[stratum, sides[1]]) for stratum in strata]
 
 
 def _student(freedom: int) -> float:

@@ -39,9 +39,9 @@ class Numbers:
             runs: of each side, the answer to `questions.RUNS`.
         """
         self.sides: Final = sides
-        first, second = (set(of["robots"]) for of in runs)
+        first, second = (set(row["robots"]) for row in runs)
         self.over: Final[Over] = _over(first, second)
-        self.group: Final = 1 if self.over == "robots" else -(-min(of["runs"] for of in runs) // _MOST_UNITS)
+        self.group: Final = 1 if self.over == "robots" else -(-min(row["runs"] for row in runs) // _MOST_UNITS)
         stratum = "robot" if self.over == "runs of each robot" else "''"
         by_run = questions.BY_RUN.format(by=by, stratum=stratum, size=self.group)
         self._ask: Final = ask
@@ -56,10 +56,11 @@ class Numbers:
         }
         self._symbols: Final = {_key(row): row["unit"] or "1" for row in self._asked(questions.UNITS)}
         rows = grouped((_key(row), row) for row in self._asked(questions.MEASURES))
-        self.measures: Final = {key: of for key, each in rows.items() if self._is_in_both(of := _measure(each))}
+        measures = {key: _measure(of_key) for key, of_key in rows.items()}
+        self.measures: Final = {key: measure for key, measure in measures.items() if self._is_in_both(measure)}
         self.leaves: Final = {key for key in self.measures if any(row["leaf"] for row in rows[key])}
-        found = {unit for of in self.measures.values() for unit in of}
-        self.units: Final = sorted(found, key=lambda unit: (unit.side != sides[0], unit.stratum, unit.number))
+        units = {unit for measure in self.measures.values() for unit in measure}
+        self.units: Final = sorted(units, key=lambda unit: (unit.side != sides[0], unit.stratum, unit.number))
         first_units, second_units = ([unit.stratum for unit in self.units if unit.side == side] for side in sides)
         self.shuffles: Final = Shuffles(first_units, second_units)
         self.failures: Final[Sequence[FailedRuns]] = failed_runs(self._asked(questions.FAILURES), sides)
@@ -88,7 +89,7 @@ class Numbers:
 
     def _is_in_both(self, measure: Measure) -> bool:
         sides = grouped((unit.stratum, unit.side) for unit in measure)
-        return any(len({*of}) > 1 for of in sides.values())
+        return any(len({*sides_of_stratum}) > 1 for sides_of_stratum in sides.values())
 
     def _asked(self, question: str, **words: object) -> Sequence[Row]:
         return self._ask(question.format(**self._words, **words))

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 def clause_of(edited: Sequence[Edited]) -> str:
     """A clause in the words of the second side: what is measured is the same, whatever the bound."""
     cases = [
-        f"WHEN (requirement, clause, node) = ({quoted(each.requirement)}, {quoted(each.before)}, {quoted(each.node)})"
-        f" THEN {quoted(each.after)}"
-        for each in edited
+        f"WHEN (requirement, clause, node) = ({quoted(edit.requirement)}, {quoted(edit.before)}, {quoted(edit.node)})"
+        f" THEN {quoted(edit.after)}"
+        for edit in edited
     ]
     return f"CASE {' '.join(cases)} ELSE clause END" if cases else "clause"
 

@@ -57,14 +57,18 @@ class Edited(Record):
 
 def verdicts(ask: Ask, by: str, side: str) -> Mapping[str, Verdicts]:
     """The verdicts of a side that come from its runs, by mission."""
-    found = summary(only(ask, f"{by} = {quoted(side)}"), "").missions
-    judged = {mission.name: [each for each in mission.requirements if each.verdict != OPEN] for mission in found}
-    return {name: {each.id: each for each in requirements} for name, requirements in judged.items()}
+    missions = summary(only(ask, f"{by} = {quoted(side)}"), "").missions
+    return {
+        mission.name: {
+            requirement.id: requirement for requirement in mission.requirements if requirement.verdict != OPEN
+        }
+        for mission in missions
+    }
 
 
 def edited(before: Verdicts, after: Verdicts) -> tuple[Edited, ...]:
     """The clauses of a mission that differ in their numbers only, at the same nodes."""
-    found = []
+    edits = []
     for name in before.keys() & after.keys():
         texts = [{(clause.path, clause.text) for clause in side[name].clauses} for side in (before, after)]
         old = {
@@ -77,29 +81,32 @@ def edited(before: Verdicts, after: Verdicts) -> tuple[Edited, ...]:
             if (clause.path, clause.text) not in texts[0] and key in old:
                 was = old.pop(key)
                 counts = (was.violated, clause.violated), (was.counted, clause.counted)
-                found.append(Edited(name, clause.path, was.text, clause.text, *counts))
-    return tuple(sorted(found, key=lambda each: (each.requirement, each.node)))
+                edits.append(Edited(name, clause.path, was.text, clause.text, *counts))
+    return tuple(sorted(edits, key=lambda edit: (edit.requirement, edit.node)))
 
 
 def turned(before: Verdicts, after: Verdicts, edits: Sequence[Edited]) -> list[Newly]:
     """The requirements of a mission that only one side violates, by clauses that were not edited."""
-    old = {(each.requirement, each.node, each.before) for each in edits}
-    new = {(each.requirement, each.node, each.after) for each in edits}
-    found = []
+    old = {(edit.requirement, edit.node, edit.before) for edit in edits}
+    new = {(edit.requirement, edit.node, edit.after) for edit in edits}
+    requirements = []
     for name in {**after, **before}:
         pair = [
-            [each for each in side[name].clauses if (name, each.path, each.text) not in left] if name in side else None
-            for side, left in ((before, old), (after, new))
+            [clause for clause in side[name].clauses if (name, clause.path, clause.text) not in edited_clauses]
+            if name in side
+            else None
+            for side, edited_clauses in ((before, old), (after, new))
         ]
-        first, second = (worst_of(each.verdict for each in of) if of else _NOT_JUDGED for of in pair)
+        first, second = (worst_of(clause.verdict for clause in clauses) if clauses else _NOT_JUDGED for clauses in pair)
         if (first == VIOLATED) != (second == VIOLATED):
             title = (after.get(name) or before[name]).title
             violated, counts = (
-                [sum(getattr(each, what) for each in of or ()) for of in pair] for what in ("violated", "counted")
+                [sum(getattr(clause, what) for clause in clauses or ()) for clauses in pair]
+                for what in ("violated", "counted")
             )
             numbers = (violated[0], violated[1]), (counts[0], counts[1])
-            found.append(Newly(name, title, first, second, *numbers, None, False))
-    return found
+            requirements.append(Newly(name, title, first, second, *numbers, None, False))
+    return requirements
 
 
 def _without_numbers(clause: ClauseVerdict) -> str:

@@ -15,6 +15,7 @@ from btq_lang.evidence.model import LoggedTree, LogSession, NamedLog, SampleSeri
 from btq_lang.evidence.readers import bag, btlog, sqlite, tree_log
 from btq_lang.evidence.readers.topics import Clock
 from btq_lang.evidence.readers.tree import NotALog as NotALog
+from btq_lang.evidence.readers.truncated_bags import MCAP
 
 if TYPE_CHECKING:
     from btq_lang.workspace.project_evidence import SignalSource
@@ -43,7 +44,7 @@ def trees(path: str) -> list[LoggedTree]:
         NotALog, OSError: as `read` does.
     """
     reader = _reader(path)
-    return tree_log.trees(path) if reader is tree_log else [each.tree for each in reader.read(path)]
+    return tree_log.trees(path) if reader is tree_log else [session.tree for session in reader.read(path)]
 
 
 def samples_of_bags(
@@ -53,7 +54,7 @@ def samples_of_bags(
 
     A file that cannot be read is skipped; `read` reports it.
     """
-    found: dict[str, SampleSeries] = {}
+    series_by_signal: dict[str, SampleSeries] = {}
     remarks: list[str] = []
     bags = set()
     for path in paths if any(source.topic for source in sources) else ():
@@ -65,10 +66,10 @@ def samples_of_bags(
             bags.add(path)
             remarks += samples[1]
             for signal, series in samples[0].items():
-                into = found.setdefault(signal, SampleSeries(series.unit))
+                into = series_by_signal.setdefault(signal, SampleSeries(series.unit))
                 for time, value in zip(series.times, series.values, strict=True):
                     into.add(time, value)
-    return found, remarks, bags
+    return series_by_signal, remarks, bags
 
 
 def clocks(path: str) -> dict[str, Clock]:
@@ -90,7 +91,7 @@ def _reader(path: str) -> ModuleType:
         raise NotALog("the file is empty")
     if start.startswith(btlog.MAGIC):
         return btlog
-    if start.startswith(bag.MCAP) or (start.startswith(sqlite.MAGIC) and sqlite.is_bag(path)):
+    if start.startswith(MCAP) or (start.startswith(sqlite.MAGIC) and sqlite.is_bag(path)):
         return tree_log
     if start.startswith(sqlite.MAGIC):
         return sqlite
@@ -102,14 +103,14 @@ def _reader(path: str) -> ModuleType:
 
 def whole_bags(paths: Iterable[str]) -> tuple[str, ...]:
     """Paths with the files of a bag replaced by the bag's folder, where its `metadata.yaml` is among them."""
-    given = dict.fromkeys(paths)
+    wanted = dict.fromkeys(paths)
     files = {
         file: folder
-        for folder in (os.path.dirname(path) for path in given if os.path.basename(path) == bag.METADATA)
+        for folder in (os.path.dirname(path) for path in wanted if os.path.basename(path) == bag.METADATA)
         for file in bag.files_in(folder)
     }
-    kept = (path for path in given if path in files or not path.endswith(bag.METADATA))
+    kept = (path for path in wanted if path in files or not path.endswith(bag.METADATA))
     return tuple(dict.fromkeys(files.get(path, path) for path in kept))
 
 
-_LONGEST: Final = max(map(len, (btlog.MAGIC, sqlite.MAGIC, bag.MCAP)))
+_LONGEST: Final = max(map(len, (btlog.MAGIC, sqlite.MAGIC, MCAP)))

@@ -1,7 +1,7 @@
 """ROS 2 bags, read by `rosbags`: folders with a metadata.yaml, MCAP files and rosbag2's SQLite files.
 
-One invariant: any failure of `rosbags` is one NotALog, or, after the first message, one remark; of a truncated
-recording, all complete messages are read.
+One invariant: any failure of `rosbags` is one NotALog, or, after the first message, one remark.  A chunk or message
+that is too large is an error before it is in memory, whatever size it declares.
 
 Only the definitions of requested types are parsed, so a type that `rosbags` cannot read does not affect the rest of its
 bag.
@@ -13,20 +13,16 @@ import os
 from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from functools import lru_cache
-from io import BufferedReader, RawIOBase
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from btq_lang.evidence.readers import sqlite
-from btq_lang.evidence.readers.bag_database import BagDatabase
 from btq_lang.evidence.readers.tree import NotALog
-from btq_lang.evidence.readers.unpacking import limit_chunks, unpacked
-from btq_lang.util.record import Record
+from btq_lang.evidence.readers.truncated_bags import MCAP, BagDatabase, WholeFile
 
 if TYPE_CHECKING:
     from rosbags.interfaces import Connection
 
-MCAP: Final = b"\x89MCAP0\r\n"
 METADATA: Final = "metadata.yaml"
 TREE_LOG: Final = "nav2_msgs/msg/BehaviorTreeLog"
 TEXT: Final = "std_msgs/msg/String"
@@ -36,21 +32,23 @@ class Bag:
     """An open bag: its topics with their types, and notes about the file, complete when the messages have been read."""
 
     def __init__(self, storages: list[Any], remarks: list[str]) -> None:
-        self.connections: Final[list[Connection]] = [each for storage in storages for each in storage.connections]
+        self.connections: Final[list[Connection]] = [
+            connection for storage in storages for connection in storage.connections
+        ]
         self.remarks: Final = remarks
         self._storages: Final = storages
-        self._packed: Final = [each for each in storages if _unpacks_by_itself(each)]
+        self._packed: Final = [storage for storage in storages if _unpacks_by_itself(storage)]
 
     def of_type(self, name: str) -> list[Connection]:
         """The topics of a type."""
-        return [each for each in self.connections if each.msgtype == name]
+        return [connection for connection in self.connections if connection.msgtype == name]
 
     def messages(self, connections: Collection[Connection]) -> Iterator[tuple[str, int, Any]]:
         """The messages of topics in order of reception: topic, time of reception in ns, message."""
-        decoders = {each.msgtype: _decoder(each) for each in connections}
+        decoders = {connection.msgtype: _decoder(connection) for connection in connections}
         unread = 0
         for storage in self._storages:
-            raw = storage.messages([each for each in storage.connections if each in connections])
+            raw = storage.messages([connection for connection in storage.connections if connection in connections])
             while True:
                 try:
                     connection, received, data = next(raw)
@@ -63,7 +61,7 @@ class Bag:
                     break
                 try:
                     received = int(received)
-                    message = decoders[connection.msgtype](unpacked(data) if storage in self._packed else data)
+                    message = decoders[connection.msgtype](_unpacked(data) if storage in self._packed else data)
                 except Exception:  # likewise
                     unread += 1
                 else:
@@ -99,20 +97,20 @@ def _folder(path: str, remarks: list[str]) -> list[Any]:
     """The storages of a folder; if its metadata and files disagree, as in a truncated recording, one for each file."""
     from rosbags.rosbag2 import Reader
 
-    databases = sorted(each for each in os.listdir(path) if each.endswith(".db3"))
-    if any(sqlite.is_unfinished(os.path.join(path, each)) for each in databases):  # `rosbags` does not read that
-        return [_file(os.path.join(path, each), remarks) for each in databases]
+    databases = sorted(name for name in os.listdir(path) if name.endswith(".db3"))
+    if any(sqlite.is_unfinished(os.path.join(path, name)) for name in databases):  # `rosbags` does not read that
+        return [_file(os.path.join(path, name), remarks) for name in databases]
     storage = Reader.STORAGE_PLUGINS["dir"](Path(path))
     try:
         storage.open()
     except OSError:
         raise
     except Exception as error:  # whatever the metadata's fault is
-        files = sorted(each for each in os.listdir(path) if each.endswith((".mcap", ".db3")))
+        files = sorted(name for name in os.listdir(path) if name.endswith((".mcap", ".db3")))
         if not files:
             raise NotALog(f"the bag cannot be read: {_message(error)}") from error
         remarks.append(f"its files are read without {METADATA}: {_message(error)}")
-        return [_file(os.path.join(path, each), remarks) for each in files]
+        return [_file(os.path.join(path, name), remarks) for name in files]
     return [storage]
 
 
@@ -139,7 +137,7 @@ def _file(path: str, remarks: list[str]) -> Any:
     storage: Any
     try:
         if is_mcap:
-            storage = Reader.STORAGE_PLUGINS[".mcap"](_WholeFile(path, remarks))  # type: ignore[arg-type]  # only opened
+            storage = Reader.STORAGE_PLUGINS[".mcap"](WholeFile(path, remarks))  # type: ignore[arg-type]  # only opened
             storage.open()
             return storage
         needs_sqlite = sqlite.missing_bytes(path) > 0 or sqlite.is_unfinished(path)
@@ -233,93 +231,41 @@ uint32 nanosec
 _IDL_RULE: Final = f"{'=' * 80}\n"
 
 
-# ---- truncated recordings ----
+# ---- decompression, up to a limit that no sane bag exceeds ----
 
 
-class _WholeFile(Record):
-    """An MCAP file for `rosbags` to open; a truncated one appears as its complete records followed by an end."""
+def limit_chunks() -> None:
+    """Make `rosbags` decompress chunks of MCAP files up to MOST_UNPACKED; it has no limit by itself."""
+    from lz4.frame import LZ4FrameDecompressor  # type: ignore[import-untyped]  # it has no stubs
+    from rosbags.rosbag2 import storage_mcap
 
-    path: str
-    remarks: list[str]
-
-    def open(self, _: str) -> BinaryIO:
-        file = open(self.path, "rb")  # noqa: SIM115  # `rosbags` closes it
-        size = os.fstat(file.fileno()).st_size
-        file.seek(max(0, size - len(MCAP)))
-        if file.read() == MCAP and size > len(MCAP):  # it has an end
-            file.seek(0)
-            return file
-        parts = _whole_records(file, size)
-        self.remarks.append(f"cut off: the last {size - parts[-1][1]} bytes are not a whole record and are left out")
-        return BufferedReader(_Parts(file, parts))
-
-    def __str__(self) -> str:
-        return self.path
+    storage_mcap.DECOMPRESSORS["zstd"] = _unpacked
+    storage_mcap.DECOMPRESSORS["lz4"] = lambda data, size: _whole(data, LZ4FrameDecompressor, size)
 
 
-def _whole_records(file: BinaryIO, size: int) -> list[tuple[int, int]]:
-    """The ranges of complete records: those before the cut, and those in a truncated, uncompressed chunk."""
-    end, kind = _records(file, len(MCAP), size)
-    parts = [(0, min(end, size))]
-    if kind == _CHUNK:
-        file.seek(end + _RECORD_HEAD + 28)  # skips two times, a size and a checksum
-        compression = int.from_bytes(file.read(4), "little")
-        begin = end + _RECORD_HEAD + 28 + 4 + 8
-        if compression == 0 and begin <= size:
-            inside, _ = _records(file, begin, size)
-            parts.append((begin, inside))
-    return parts
+def _unpacked(data: bytes, size: int | None = None) -> bytes:
+    """Decompress data that zstd compressed, to the size that the bag declares, if it does.
+
+    Raises:
+        ValueError: it is larger.
+    """
+    from rosbags.rosbag2.storage_mcap import zstd  # type: ignore[attr-defined]  # whichever module this Python has
+
+    return _whole(data, zstd.ZstdDecompressor, size)
 
 
-def _records(file: BinaryIO, begin: int, size: int) -> tuple[int, bytes]:
-    """Where the last complete record ends, and the type of the record after it, if any."""
-    while True:
-        file.seek(begin)
-        head = file.read(_RECORD_HEAD)
-        after = begin + _RECORD_HEAD + int.from_bytes(head[1:], "little")
-        if len(head) < _RECORD_HEAD or after > size:
-            return begin, head[:1]
-        begin = after
+def _whole(data: bytes, decompressor: Any, size: int | None) -> bytes:
+    most = MOST_UNPACKED if size is None else min(size, MOST_UNPACKED)
+    content = b""
+    while data:  # one frame follows another
+        frame = decompressor()
+        content += frame.decompress(data, max_length=most + 1 - len(content))
+        if len(content) > most:
+            raise ValueError(f"{len(data)} packed bytes are more than {most} when unpacked")
+        if not frame.eof:
+            raise EOFError("what is packed has no end")
+        data = frame.unused_data
+    return content
 
 
-class _Parts(RawIOBase):
-    """Parts of a file, concatenated, followed by the end of an MCAP file without an index."""
-
-    def __init__(self, file: BinaryIO, parts: list[tuple[int, int]]) -> None:
-        self._file: Final = file
-        self._parts: Final = parts
-        self._size: Final = sum(end - begin for begin, end in parts) + len(_NO_INDEX)
-        self._position = 0
-
-    def readable(self) -> bool:
-        return True
-
-    def seekable(self) -> bool:
-        return True
-
-    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
-        self._position = {os.SEEK_CUR: self._position, os.SEEK_END: self._size}.get(whence, 0) + offset
-        return self._position
-
-    def readinto(self, buffer: Any) -> int:
-        data = self._at(self._position, len(buffer))
-        buffer[: len(data)] = data
-        self._position += len(data)
-        return len(data)
-
-    def _at(self, position: int, wanted: int) -> bytes:
-        for begin, end in self._parts:
-            if position < end - begin:
-                self._file.seek(begin + position)
-                return self._file.read(min(wanted, end - begin - position))
-            position -= end - begin
-        return _NO_INDEX[position : position + wanted]
-
-    def close(self) -> None:
-        self._file.close()
-        super().close()
-
-
-_CHUNK: Final = b"\x06"
-_RECORD_HEAD: Final = 9  # its type, and its length in 64 bits
-_NO_INDEX: Final = b"\x02" + (20).to_bytes(8, "little") + bytes(20) + MCAP
+MOST_UNPACKED: Final = 1 << 28  # bytes; rosbag2 writes chunks of less than 1 MB, or of one message

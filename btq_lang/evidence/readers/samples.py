@@ -1,23 +1,27 @@
 """Samples of signals in a CSV or Parquet file: a column with times, the first one by default, and columns of values.
 
 One invariant: a cell that is empty, or not a finite number, is not a sample, and a time that cannot be read is an
-error with its line.
+error with its line.  DuckDB reads Parquet; any of its failures is one NoSamples.
 """
 
 from __future__ import annotations
 
 import csv
 import os
-from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Final
+from collections.abc import Iterable, Iterator, Sequence
+from decimal import Decimal
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, Final
 
 from btq_lang.evidence.model import SampleSeries, SampleValue, is_sample
-from btq_lang.evidence.readers import parquet
-from btq_lang.evidence.readers.parquet import NoSamples as NoSamples
 from btq_lang.util.spelling import did_you_mean, near
 
 if TYPE_CHECKING:
     from btq_lang.workspace.project_evidence import SignalSource
+
+
+class NoSamples(Exception):
+    """A file that is not a table of samples; the message says what was expected."""
 
 
 def read(path: str, time: str = "") -> dict[str, SampleSeries]:
@@ -31,9 +35,9 @@ def read(path: str, time: str = "") -> dict[str, SampleSeries]:
         OSError: it cannot be read.
     """
     with open(path, "rb") as file:
-        is_parquet = file.read(len(parquet.MAGIC)) == parquet.MAGIC
+        is_parquet = file.read(len(_PARQUET)) == _PARQUET
     if is_parquet:
-        names, rows = parquet.read(path)
+        names, rows = _parquet_columns(path)
         return _table(names, time, ((f"row {number}", row) for number, row in enumerate(rows, start=1)))
     with open(path, encoding="utf-8-sig", errors="replace", newline="") as text:
         lines = csv.reader(text)
@@ -53,17 +57,17 @@ def _table(names: list[str], time: str, rows: Iterable[tuple[str, Sequence[objec
     """The columns of a table; rows: each with its place in the file."""
     if len(names) < 2:
         raise NoSamples(_NAMES)
-    at = names.index(_known(time, names)) if time else 0
-    others = [name for column, name in enumerate(names) if column != at]
+    time_column = names.index(_checked_column(time, names)) if time else 0
+    others = [name for column, name in enumerate(names) if column != time_column]
     if twice := next((name for name in others if others.count(name) > 1), None):
         raise NoSamples(f"two columns are named `{twice}`")
-    found = {name: SampleSeries() for name in others}
+    series = {name: SampleSeries() for name in others}
     for place, row in rows:
-        moment = _time(row[at] if at < len(row) else None, place)
+        moment = _time(row[time_column] if time_column < len(row) else None, place)
         for column, value in enumerate(row[: len(names)]):
-            if column != at and isinstance(value, bool | int | float | str) and is_sample(value):
-                found[names[column]].add(moment, value)
-    return found
+            if column != time_column and isinstance(value, bool | int | float | str) and is_sample(value):
+                series[names[column]].add(moment, value)
+    return series
 
 
 def read_sources(sources: Iterable[SignalSource], folder: str) -> dict[str, SampleSeries]:
@@ -74,7 +78,7 @@ def read_sources(sources: Iterable[SignalSource], folder: str) -> dict[str, Samp
         OSError: it cannot be read.
     """
     files: dict[tuple[str, str], dict[str, SampleSeries]] = {}
-    found: dict[str, SampleSeries] = {}
+    series_by_signal: dict[str, SampleSeries] = {}
     for source in sources:
         if not source.file:
             continue
@@ -82,13 +86,13 @@ def read_sources(sources: Iterable[SignalSource], folder: str) -> dict[str, Samp
         try:
             if key not in files:
                 files[key] = read(os.path.join(folder, source.file), source.time)
-            column = files[key][_known(source.column, files[key])]
+            column = files[key][_checked_column(source.column, files[key])]
         except NoSamples as error:
             raise NoSamples(f"{source.file}: {error}") from error
-        series = found[source.signal] = SampleSeries(source.unit)
+        series = series_by_signal[source.signal] = SampleSeries(source.unit)
         for time, value in zip(column.times, column.values, strict=True):
             series.add(time, scaled(value, source))
-    return found
+    return series_by_signal
 
 
 def scaled(value: SampleValue | None, source: SignalSource) -> SampleValue | None:
@@ -98,7 +102,7 @@ def scaled(value: SampleValue | None, source: SignalSource) -> SampleValue | Non
     return value * source.scale + source.offset
 
 
-def _known(column: str, names: Iterable[str]) -> str:
+def _checked_column(column: str, names: Iterable[str]) -> str:
     if column not in (there := [*names]):
         meant = did_you_mean(near(column, there, 1)) or f"; it has {', '.join(there)}"
         raise NoSamples(f"no column `{column}`{meant}")
@@ -119,5 +123,57 @@ def _value(cell: str) -> SampleValue | None:
         return cell or None
 
 
+def _parquet_columns(path: str) -> tuple[list[str], Iterator[tuple[Any, ...]]]:
+    """The names of the columns, and the rows; timestamps are in seconds since the epoch.
+
+    Raises:
+        NoSamples: DuckDB is missing, or cannot read the file, also while the rows are read.
+    """
+    try:
+        import duckdb
+
+        database = _engine().cursor()
+    except ImportError as error:
+        raise NoSamples("Parquet is read with duckdb; install it with pip install 'btq-lang[evidence]'") from error
+    try:
+        columns = database.execute("DESCRIBE SELECT * FROM read_parquet(?)", [path]).fetchall()
+    except duckdb.Error as error:
+        raise NoSamples(_message(error)) from error
+    names = [str(name) for name, *_ in columns]
+    expressions = ", ".join(_expression(str(name), str(kind)) for name, kind, *_ in columns)
+
+    def rows() -> Iterator[tuple[Any, ...]]:
+        try:
+            result = database.execute(f"SELECT {expressions} FROM read_parquet(?)", [path])
+            while block := result.fetchmany(_ROWS_AT_ONCE):
+                for row in block:
+                    yield tuple(float(value) if isinstance(value, Decimal) else value for value in row)
+        except duckdb.Error as error:
+            raise NoSamples(_message(error)) from error
+        finally:
+            database.close()
+
+    return names, rows()
+
+
+@lru_cache(1)
+def _engine() -> Any:
+    """A connection to DuckDB; with a single thread, because starting others takes longer than reading most files."""
+    import duckdb
+
+    return duckdb.connect(config={"threads": 1})
+
+
+def _expression(name: str, kind: str) -> str:
+    quoted = '"' + name.replace('"', '""') + '"'
+    return f"epoch_us({quoted}) / 1e6" if kind.startswith(("TIMESTAMP", "DATE")) else quoted
+
+
+def _message(error: Exception) -> str:
+    return " ".join(str(error).split())
+
+
 _NAMES: Final = "expected a line of column names, separated by commas: the time first, then signals or their entries"
 _LATEST: Final = 9e12  # s since the epoch, in µs still 64 bits
+_PARQUET: Final = b"PAR1"
+_ROWS_AT_ONCE: Final = 4096

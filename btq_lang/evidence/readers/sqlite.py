@@ -113,7 +113,7 @@ def _copied(path: str, stack: ExitStack) -> str:
         NotALog: there is no room for a copy, or the database was written meanwhile.
     """
     files = {f"{path}{suffix}": f"log.db3{suffix}" for suffix in ("", *BESIDE) if os.path.exists(f"{path}{suffix}")}
-    before = [_version(each) for each in files]
+    before = [_version(file) for file in files]
     folder = why = ""
     try:
         folder = stack.enter_context(TemporaryDirectory(prefix="btq-"))
@@ -121,7 +121,7 @@ def _copied(path: str, stack: ExitStack) -> str:
             copyfile(source, os.path.join(folder, name))
     except OSError as error:
         why = f"it needs a temporary copy, which cannot be made: {error.strerror or error}; TMPDIR says where"
-    if before != [_version(each) for each in files]:
+    if before != [_version(file) for file in files]:
         why = "it was written while it was copied; read it again"
     if why:
         raise NotALog(why)
@@ -142,7 +142,7 @@ def is_unfinished(path: str, beside: Sequence[str] = BESIDE) -> bool:
     killed.
     """
     versions = (_version(f"{os.path.realpath(path)}{suffix}") for suffix in beside)
-    return any(each is not None and each[0] > 0 for each in versions)
+    return any(version is not None and version[0] > 0 for version in versions)
 
 
 def missing_bytes(path: str) -> int:

@@ -49,7 +49,7 @@ class Clock:
         from numpy import array as numbers
 
         mapped = None if self.is_of_the_bag else _mapped(numbers(times, "int64"), self._stamped, self._received)
-        return times if mapped is None else [int(each) for each in mapped]
+        return times if mapped is None else [int(time) for time in mapped]
 
     def overlaps(self, times: Times) -> bool:
         """Whether times are close to when the tree ran."""
@@ -57,19 +57,19 @@ class Clock:
         return begin <= int(times.max()) and int(times.min()) <= end
 
 
-def _mapped(times: Times, of: Times, to: Times) -> Times | None:
-    """Converts times of one clock to another, both of which are known at some moments; None if they are too few."""
+def _mapped(times: Times, from_clock: Times, to_clock: Times) -> Times | None:
+    """Converts times of one clock to another, by moments that are known on both; None if they are too few."""
     from numpy import argsort, interp, unique
 
-    order = argsort(of, kind="stable")
-    known, first = unique(of[order], return_index=True)
-    there = to[order][first]
-    if len(known) < 2:
-        return times + (there[0] - known[0]) if len(of) == 1 else None
-    rate = (there[-1] - there[0]) / (known[-1] - known[0])
-    placed = interp(times, known, there)
-    placed[times < known[0]] = there[0] + (times[times < known[0]] - known[0]) * rate
-    placed[times > known[-1]] = there[-1] + (times[times > known[-1]] - known[-1]) * rate
+    order = argsort(from_clock, kind="stable")
+    sources, first = unique(from_clock[order], return_index=True)
+    targets = to_clock[order][first]
+    if len(sources) < 2:
+        return times + (targets[0] - sources[0]) if len(from_clock) == 1 else None
+    rate = (targets[-1] - targets[0]) / (sources[-1] - sources[0])
+    placed = interp(times, sources, targets)
+    placed[times < sources[0]] = targets[0] + (times[times < sources[0]] - sources[0]) * rate
+    placed[times > sources[-1]] = targets[-1] + (times[times > sources[-1]] - sources[-1]) * rate
     return placed.astype("int64")
 
 
@@ -78,11 +78,11 @@ class Topics:
 
     def __init__(self, sources: Iterable[SignalSource], topics: Iterable[str], namespaces: Iterable[str]) -> None:
         """Find those of a bag's topics that sources name, first in the namespaces of its robots."""
-        there = set(topics)
+        present = set(topics)
         self._of: Final[dict[str, list[_Field]]] = {}
-        self._sources: Final = [each for each in sources if each.topic]
+        self._sources: Final = [source for source in sources if source.topic]
         for source in self._sources:
-            for topic in {_inside(namespace, source.topic) for namespace in ("", *namespaces)} & there:
+            for topic in {_inside(namespace, source.topic) for namespace in ("", *namespaces)} & present:
                 self._of.setdefault(topic, []).append(_Field(source, topic))
         self.names: Final = frozenset(self._of)
         self.remarks: Final[list[str]] = []
@@ -102,16 +102,16 @@ class Topics:
         Raises:
             NotALog: they cannot be placed on the clock.
         """
-        found: dict[str, SampleSeries] = {}
+        series_by_signal: dict[str, SampleSeries] = {}
         for source in self._sources:
             for topic in (_inside(namespace, source.topic), source.topic):
-                fields = [each for each in self._of.get(topic, ()) if each.source is source]
+                fields = [field for field in self._of.get(topic, ()) if field.source is source]
                 if fields:
-                    found[source.signal] = fields[0].series(clock, self.remarks)
+                    series_by_signal[source.signal] = fields[0].series(clock, self.remarks)
                     break
             else:
                 self.remarks.append(f"no topic {source.topic}, where the samples of `{source.signal}` should be")
-        return found
+        return series_by_signal
 
 
 def _inside(namespace: str, topic: str) -> str:
@@ -153,12 +153,12 @@ class _Field:
         """The samples in the order of their times."""
         from numpy import argsort
 
-        found = SampleSeries(self.source.unit)
+        series = SampleSeries(self.source.unit)
         if self._values:
             times = self._placed(clock, remarks)
             for index in argsort(times, kind="stable").tolist():
-                found.add(int(times[index]), scaled(self._values[index], self.source))
-        return found
+                series.add(int(times[index]), scaled(self._values[index], self.source))
+        return series
 
     def _placed(self, clock: Clock, remarks: list[str]) -> Times:
         from numpy import array as numbers
@@ -190,7 +190,7 @@ class _Field:
         return placed
 
     def _attribute(self, value: Any, name: str) -> Any:
-        fields = [each for each in getattr(value, "__dataclass_fields__", ()) if each != "__msgtype__"]
+        fields = [field for field in getattr(value, "__dataclass_fields__", ()) if field != "__msgtype__"]
         if name not in fields:
             names = did_you_mean(near(name, fields, 1)) or (f"; it has {', '.join(fields)}" if fields else "")
             raise NotALog(self._about(f"no field `{name}` for `{self.source.signal}`{names}"))

@@ -51,13 +51,13 @@ def _numbered(tops: dict[int, tuple[Element, str]]) -> tuple[list[tuple[int, str
     """uid, kind, path and parent of each node, in the order of the document with subtrees in their places; and by uid
     how long the Delays wait.
     """
-    found: list[tuple[int, str, str, int]] = []
+    nodes: list[tuple[int, str, str, int]] = []
     delays: dict[int, int] = {}
     waiting = [(*tops.pop(ROOT), 0)]
     while waiting:
         element, prefix, parent = waiting.pop()
         uid = _uid(element)
-        found.append((uid, kind_of(element), _path(element, uid, prefix), parent))
+        nodes.append((uid, kind_of(element), _path(element, uid, prefix), parent))
         if (delay := delay_of(element)) is not None:
             delays[uid] = delay
         if element.tag == "SubTree":
@@ -65,7 +65,7 @@ def _numbered(tops: dict[int, tuple[Element, str]]) -> tuple[list[tuple[int, str
                 waiting.append((*tops.pop(uid + 1), uid))
         else:
             waiting += [(child, prefix, uid) for child in reversed([*element.elements])]
-    return found, delays
+    return nodes, delays
 
 
 def _uid(element: Element) -> int:

@@ -29,28 +29,32 @@ def read(path: str, sources: Iterable[SignalSource] = ()) -> Iterator[NamedLog]:
         OSError: it cannot be read.
     """
     with opened(path) as bag:
-        logs = {each.topic: _Changes() for each in bag.of_type(TREE_LOG)}
+        logs = {connection.topic: _Changes() for connection in bag.of_type(TREE_LOG)}
         if not logs:
             raise NotALog(f"expected a topic of type {TREE_LOG}, such as /behavior_tree_log; the bag has none")
-        topics = Topics(sources, [each.topic for each in bag.connections], map(_namespace, logs))
-        found: dict[str, dict[str, LoggedTree]] = {}
+        topics = Topics(sources, [connection.topic for connection in bag.connections], map(_namespace, logs))
+        trees_by_robot: dict[str, dict[str, LoggedTree]] = {}
         malformed = 0
         wanted = [*bag.of_type(TREE_LOG), *bag.of_type(TEXT)]
-        wanted += [each for each in bag.connections if each.topic in topics.names and each not in wanted]
+        wanted += [
+            connection
+            for connection in bag.connections
+            if connection.topic in topics.names and connection not in wanted
+        ]
         for topic, received, message in bag.messages(wanted):
             if topic in logs:
                 malformed += logs[topic].add(received, message)
                 continue
             if topic in topics.names:
                 topics.add(topic, received, message)
-            if wrong := _add_tree(message, found.setdefault(_namespace(topic), {})):
+            if wrong := _add_tree(message, trees_by_robot.setdefault(_namespace(topic), {})):
                 bag.remarks.append(f"{topic}: {wrong}")
         remarks = bag.remarks
         if malformed:
             remarks.append(f"status changes that are not as Nav2 defines them, left out: {malformed}")
-    every = [tree for of_robot in found.values() for tree in of_robot.values()]
+    every = [tree for of_robot in trees_by_robot.values() for tree in of_robot.values()]
     for topic, changes in logs.items():
-        own = found.get(_namespace(topic))
+        own = trees_by_robot.get(_namespace(topic))
         signals = topics.series(_namespace(topic), changes.clock())
         named = [*own.values()] if own else every
         yield changes.log(topic, len(logs) > 1, named, signals, [*remarks, *topics.remarks])
@@ -64,19 +68,19 @@ def trees(path: str) -> list[LoggedTree]:
         NotALog: it is not a bag.
         OSError: it cannot be read.
     """
-    found: dict[str, LoggedTree] = {}
+    trees_by_text: dict[str, LoggedTree] = {}
     with opened(path) as bag:
         for _, _, message in bag.messages(bag.of_type(TEXT)):
-            _add_tree(message, found)
-    return [*found.values()]
+            _add_tree(message, trees_by_text)
+    return [*trees_by_text.values()]
 
 
-def _add_tree(message: Any, found: dict[str, LoggedTree]) -> str:
+def _add_tree(message: Any, trees_by_text: dict[str, LoggedTree]) -> str:
     """Add the tree in a message, if it has a new one; returns what is wrong with it."""
     text = getattr(message, "data", "")
-    if isinstance(text, str) and "_uid" in text and text not in found:
+    if isinstance(text, str) and "_uid" in text and text not in trees_by_text:
         try:
-            found[text] = read_tree(text)
+            trees_by_text[text] = read_tree(text)
         except NotALog as error:
             return str(error)
     return ""
@@ -90,13 +94,13 @@ def samples(path: str, sources: Iterable[SignalSource]) -> tuple[dict[str, Sampl
         OSError: it cannot be read.
     """
     with opened(path) as bag:
-        topics = Topics(sources, [each.topic for each in bag.connections], ())
+        topics = Topics(sources, [connection.topic for connection in bag.connections], ())
         if bag.of_type(TREE_LOG) or not topics.names:
             return None
-        for message in bag.messages([each for each in bag.connections if each.topic in topics.names]):
+        for message in bag.messages([connection for connection in bag.connections if connection.topic in topics.names]):
             topics.add(*message)
-        found = topics.series("", Clock(array("q"), array("q")))
-        return found, [*bag.remarks, *topics.remarks]
+        series = topics.series("", Clock(array("q"), array("q")))
+        return series, [*bag.remarks, *topics.remarks]
 
 
 def clocks(path: str) -> dict[str, Clock]:
@@ -107,7 +111,7 @@ def clocks(path: str) -> dict[str, Clock]:
         OSError: it cannot be read.
     """
     with opened(path) as bag:
-        logs = {each.topic: _Changes() for each in bag.of_type(TREE_LOG)}
+        logs = {connection.topic: _Changes() for connection in bag.of_type(TREE_LOG)}
         for topic, received, message in bag.messages(bag.of_type(TREE_LOG)):
             logs[topic].add(received, message)
     return {topic: changes.clock() for topic, changes in logs.items()}

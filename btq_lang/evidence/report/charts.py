@@ -16,8 +16,7 @@ from btq_lang.render.chart import Chart, ChartMark, ChartSeries, Level, drawn
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.report.measures import MeasureTrend
-    from btq_lang.evidence.report.trends import Steps, Values
+    from btq_lang.evidence.report.trends import MeasureTrend, Steps, Values
     from btq_lang.render.pages import PageData
 
 
@@ -38,7 +37,7 @@ def bars(
         return "", f"always {shown(0.0)}"
     dates = [date(steps.begin(place), steps.name) for place in range(len(values))]
     change = f"{shown(begin)} from {dates[first]}, {shown(end)} from {dates[last]}"
-    titles = tuple("" if each is None else f"{day}: {shown(each)}" for day, each in zip(dates, values, strict=True))
+    titles = tuple("" if value is None else f"{day}: {shown(value)}" for day, value in zip(dates, values, strict=True))
     began = _began([(name, date(start, steps.name)) for name, start in labels])
     chart = Chart(
         kind="trend",
@@ -58,28 +57,28 @@ def measure_figures(measured: Sequence[MeasureTrend], keys: Mapping[str, str]) -
     Args:
         keys: the ids of the rows of requirements on the page, by name.
     """
-    figures = [_figure(each, keys) for each in measured]
+    figures = [_figure(trend, keys) for trend in measured]
     more = figures[_SHOWN:]
     return {"first": figures[:_SHOWN], "more": more, "summary": counted(len(more), "more measure")}
 
 
-def _figure(measured: MeasureTrend, keys: Mapping[str, str]) -> PageData:
+def _figure(trend: MeasureTrend, keys: Mapping[str, str]) -> PageData:
     return {
-        "measured": measured,
-        "key": keys[measured.requirement],
-        "node": "" if measured.node in measured.clause else measured.node,
-        "drawing": _chart(measured),
-        "change": _change(measured),
+        "measured": trend,
+        "key": keys[trend.requirement],
+        "node": "" if trend.node in trend.clause else trend.node,
+        "drawing": _chart(trend),
+        "change": _change(trend),
     }
 
 
 def _chart(measured: MeasureTrend) -> str:
     unit = measured.unit
-    dates = [date(each, measured.by) for each in measured.starts]
+    dates = [date(start, measured.by) for start in measured.starts]
 
-    def titles(values: Values, of: str) -> tuple[str, ...]:
+    def titles(values: Values, label: str) -> tuple[str, ...]:
         pairs = zip(dates, values, strict=True)
-        return tuple("" if each is None else f"{day}: {of}{written(each, unit)}" for day, each in pairs)
+        return tuple("" if value is None else f"{day}: {label}{written(value, unit)}" for day, value in pairs)
 
     series = [ChartSeries("dots", measured.worst, titles(measured.worst, "worst "))]
     middle = measured.medians if measured.medians is not None else measured.worst
@@ -94,7 +93,7 @@ def _chart(measured: MeasureTrend) -> str:
             label=_change(measured) + _began([(name, dates[int(place)]) for name, place in measured.labels]),
             size=_LARGE,
             series=tuple(series),
-            ticks=tuple((to_si(each, unit), _number(each, unit.symbol)) for each in ticks),
+            ticks=tuple((to_si(tick, unit), _number(tick, unit.symbol)) for tick in ticks),
             ends=(dates[0], dates[-1]),
             levels=tuple(levels),
             marks=tuple(ChartMark(place, name or NO_NAME) for name, place in measured.labels),
@@ -109,13 +108,13 @@ def _number(value: float, symbol: str) -> str:
 def _change(measured: MeasureTrend) -> str:
     """The first and the last values in words, the extreme ones, and what they are compared with."""
 
-    def words(values: Values, of: str) -> str:
-        numbers = [each for each in values if each is not None]
+    def words(values: Values, label: str) -> str:
+        numbers = [value for value in values if value is not None]
         first, last, least, most = (
-            written(each, unit) for each in (numbers[0], numbers[-1], min(numbers), max(numbers))
+            written(value, unit) for value in (numbers[0], numbers[-1], min(numbers), max(numbers))
         )
         between = f", between {least} and {most}" if {least, most} != {first, last} else ""
-        return f"{of} from {first} to {last}{between}" if len(numbers) > 1 else f"{of} {first}"
+        return f"{label} from {first} to {last}{between}" if len(numbers) > 1 else f"{label} {first}"
 
     unit = measured.unit
     parts = [words(measured.worst, f"the worst of each {measured.by}")]
@@ -126,7 +125,7 @@ def _change(measured: MeasureTrend) -> str:
 
 
 def _began(labels: Sequence[tuple[str, str]]) -> str:
-    """When labels began, for who cannot see the dotted lines."""
+    """When labels began, for readers who cannot see the dotted lines."""
     return "".join(f"; {name or NO_NAME} begins {when}" for name, when in labels)
 
 

@@ -9,8 +9,7 @@ from collections.abc import Iterable, Sequence
 
 from btq_lang.evidence.compare.comparison import UnknownSide, compare
 from btq_lang.evidence.compare.model import RunComparison
-from btq_lang.evidence.report.measures import MeasureTrend, measures
-from btq_lang.evidence.report.trends import Steps, Trends, steps_of, trends
+from btq_lang.evidence.report.trends import MeasureTrend, Steps, Trends, measures, steps_of, trends
 from btq_lang.evidence.store.queries import OVERVIEW, Ask, Row, only
 from btq_lang.evidence.store.summary import parted
 from btq_lang.evidence.store.tables import quoted
@@ -41,7 +40,7 @@ class RunGroup(Record):
     @property
     def violated(self) -> int:
         """How many requirements are."""
-        return sum(each.verdict == VIOLATED for each in self.verdicts.requirements)
+        return sum(requirement.verdict == VIOLATED for requirement in self.verdicts.requirements)
 
 
 class ReportedNode(Record):
@@ -92,7 +91,7 @@ class StoreOverview(Record):
     @property
     def is_worse(self) -> bool:
         """Whether something got worse between the last two labels."""
-        return any(each.is_worse for each in self.comparisons)
+        return any(comparison.is_worse for comparison in self.comparisons)
 
 
 def overview(ask: Ask, store: str, by: Sequence[str], sides: Sequence[str] = ()) -> StoreOverview:
@@ -124,15 +123,15 @@ def overview(ask: Ask, store: str, by: Sequence[str], sides: Sequence[str] = ())
     failures, active = (grouped((row["mission"], row) for row in ask(OVERVIEW[name])) for name in ("failures", "nodes"))
     missions = []
     for name, parts in _parts(ask, store, names if "label" in by else None).items():
-        labels = [each.name for each in parts] if "label" in by else None
-        began, ran = (_nodes(found.get(name, ()), labels) for found in (failures, active))
+        labels = [part.name for part in parts] if "label" in by else None
+        began, ran = (_nodes(rows_of.get(name, ()), labels) for rows_of in (failures, active))
         missions.append(
             MissionOverview(
                 name=name,
                 parts=tuple(parts),
                 robots=tuple(_robots(ask, store, name, labels)) if "robot" in by else (),
-                failures=tuple(sorted(began, key=lambda each: ([-number for number in each.runs[::-1]], each.name))),
-                nodes=tuple(sorted(ran, key=lambda each: (each.runs[-1], each.name))),
+                failures=tuple(sorted(began, key=lambda node: ([-number for number in node.runs[::-1]], node.name))),
+                nodes=tuple(sorted(ran, key=lambda node: (node.runs[-1], node.name))),
                 trends=of_time[name],
                 measures=tuple(measured.get(name, ())),
             )
@@ -151,14 +150,14 @@ def _parts(ask: Ask, store: str, labels: Sequence[str] | None) -> dict[str, list
         (row["mission"], row.get("label", "")): int(row["nodes"])
         for row in ask(OVERVIEW["exercised"].format(by=", ".join(("mission", *by))))
     }
-    found: dict[str, list[RunGroup]] = {}
+    parts_of: dict[str, list[RunGroup]] = {}
     for row, verdicts in parted(ask, store, by, 1):
         label = row.get("label", "")
         part = _part(row, verdicts, label, exercised.get((row["mission"], label), 0))
-        found.setdefault(row["mission"], []).append(part)
-    for parts in found.values():
-        parts.sort(key=lambda each: labels.index(each.name) if labels is not None else 0)
-    return found
+        parts_of.setdefault(row["mission"], []).append(part)
+    for parts in parts_of.values():
+        parts.sort(key=lambda part: labels.index(part.name) if labels is not None else 0)
+    return parts_of
 
 
 def _robots(ask: Ask, store: str, mission: str, labels: Sequence[str] | None) -> Sequence[RunGroup]:
@@ -166,8 +165,8 @@ def _robots(ask: Ask, store: str, mission: str, labels: Sequence[str] | None) ->
     with the most failures.
     """
     runs = f"mission = {quoted(mission)}" + (f" AND label = {quoted(labels[-1])}" if labels is not None else "")
-    found = [_part(row, verdicts, row["robot"]) for row, verdicts in parted(only(ask, runs), store, ("robot",), 1)]
-    return sorted(found, key=lambda each: (-each.violated, -each.failed / each.runs, each.name))
+    robots = [_part(row, verdicts, row["robot"]) for row, verdicts in parted(only(ask, runs), store, ("robot",), 1)]
+    return sorted(robots, key=lambda robot: (-robot.violated, -robot.failed / robot.runs, robot.name))
 
 
 def _part(row: Row, verdicts: MissionVerdicts, name: str, exercised: int = 0) -> RunGroup:
@@ -178,8 +177,8 @@ def _part(row: Row, verdicts: MissionVerdicts, name: str, exercised: int = 0) ->
 def _nodes(rows: Iterable[Row], labels: Sequence[str] | None) -> list[ReportedNode]:
     """The runs of each node, by label or all together."""
     places = {label: place for place, label in enumerate(labels or ())}
-    found: dict[str, list[int]] = {}
+    runs_of: dict[str, list[int]] = {}
     for row in rows:
-        runs = found.setdefault(row["node"] or "", [0] * max(len(places), 1))
+        runs = runs_of.setdefault(row["node"] or "", [0] * max(len(places), 1))
         runs[places.get(row["label"], 0)] += int(row["runs"])
-    return [ReportedNode(name, tuple(runs)) for name, runs in found.items()]
+    return [ReportedNode(name, tuple(runs)) for name, runs in runs_of.items()]

@@ -8,9 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.compare.lines import DifferenceLine, by_chance, certain
+from btq_lang.evidence.compare.lines import BY_CHANCE, DifferenceLine, by_chance, certain, heading, remarks, untestable
 from btq_lang.evidence.compare.model import WORSE, RunComparison
-from btq_lang.evidence.compare.words import BY_CHANCE, heading, remarks, untestable
 from btq_lang.evidence.report.charts import NO_NAME, bars, measure_figures
 from btq_lang.evidence.sentences import explained, result, worst_violation
 from btq_lang.evidence.verdicts import NEVER, OPEN, VIOLATED, WORST_FIRST, ClauseVerdict, RequirementVerdict
@@ -39,11 +38,11 @@ def render(overview: StoreOverview) -> str:
 def _extent(overview: StoreOverview) -> str:
     """What is in the store."""
     sources = [source for mission in overview.missions for part in mission.parts for source in part.verdicts.sources]
-    times = period(min(each.begin or 0 for each in sources), max(each.end or 0 for each in sources))
+    times = period(min(source.begin or 0 for source in sources), max(source.end or 0 for source in sources))
     labels = ", ".join(name or NO_NAME for name, _ in overview.labels[-_LABELS:])
     more = len(overview.labels) - _LABELS
     named = f"{counted(len(overview.labels), 'label')}: {f'{more} others, ' if more > 0 else ''}{labels}"
-    runs = sum(each.runs for each in sources)
+    runs = sum(source.runs for source in sources)
     return f"{runs:,} {'run' if runs == 1 else 'runs'}, {times}, {named}"
 
 
@@ -54,9 +53,9 @@ def _tiles(overview: StoreOverview) -> list[tuple[str, int | str, str]]:
     """The numbers of what got worse, where something is compared, and of what is violated: class, number and words."""
     tiles: list[tuple[int | str, str]] = []
     if compared := overview.comparisons:
-        findings = [line.finding for each in compared for line in certain(each)]
+        findings = [line.finding for comparison in compared for line in certain(comparison)]
         tiles = [(findings.count(word), word) for word in ("newly violated", *reversed(WORSE))]
-        if all(whys := [untestable(each) for each in compared if all(each.runs)]):
+        if all(whys := [untestable(comparison) for comparison in compared if all(comparison.runs)]):
             tiles[-1] = (_NOT_TESTED, f"slower: {whys[0]}")
     last = [mission.parts[-1] for mission in overview.missions]
     requirements = counted(sum(len(part.verdicts.requirements) for part in last), "requirement")
@@ -80,7 +79,7 @@ def _changes(overview: StoreOverview) -> PageData | None:
 
 def _comparison(comparison: RunComparison, sides: tuple[str, str], keys: dict[str, str]) -> PageData:
     lines = certain(comparison) if all(comparison.runs) else ()
-    worse, others = ([each for each in lines if each.is_worse is is_worse] for is_worse in (True, False))
+    worse, others = ([line for line in lines if line.is_worse is is_worse] for is_worse in (True, False))
     chance = BY_CHANCE.capitalize()
     folded = (
         (counted(len(others), "other change"), "Other changes", others),
@@ -90,9 +89,9 @@ def _comparison(comparison: RunComparison, sides: tuple[str, str], keys: dict[st
         "heading": heading(comparison, sides),
         "mission": comparison.mission,
         "is_compared": all(comparison.runs),
-        "worse": _folded([_difference(each, keys) for each in worse]),
+        "worse": _folded([_difference(line, keys) for line in worse]),
         "folded": [
-            (summary, f"{caption} in {comparison.mission}", [_difference(each, keys) for each in lines])
+            (summary, f"{caption} in {comparison.mission}", [_difference(line, keys) for line in lines])
             for summary, caption, lines in folded
             if lines
         ],
@@ -129,10 +128,10 @@ class _Mission:
         self._keys: Final = _keys(overview, mission.name)
 
     def values(self) -> PageData:
-        left = len(self._mission.parts) - len(self._parts)
+        hidden = len(self._mission.parts) - len(self._parts)
         return {
             "name": self._mission.name,
-            "earlier": counted(left, "earlier label") if left else "",
+            "earlier": counted(hidden, "earlier label") if hidden else "",
             "heads": {
                 "requirements": self._heads("Requirement", f"Violations by {self._overview.steps.name}"),
                 "runs": self._heads("Measure", f"Trend by {self._overview.steps.name}"),
@@ -152,14 +151,14 @@ class _Mission:
         return (first, *self._names, *trend)
 
     def _requirements(self) -> list[PageData]:
-        by_part = [{each.id: each for each in part.verdicts.requirements} for part in self._parts]
+        by_part = [{requirement.id: requirement for requirement in part.verdicts.requirements} for part in self._parts]
         last = by_part[-1]
         names = dict.fromkeys(name for requirements in reversed(by_part) for name in requirements)
         rows = []
-        for name in sorted(names, key=lambda each: WORST_FIRST.index(last[each].verdict) if each in last else _LATE):
+        for name in sorted(names, key=lambda name: WORST_FIRST.index(last[name].verdict) if name in last else _LATE):
             of_parts = [requirements.get(name) for requirements in by_part]
             cells = [*map(_standing, of_parts[:-1]), _standing(of_parts[-1], is_last=True)]
-            head = next(each for each in reversed(of_parts) if each is not None)
+            head = next(verdict for verdict in reversed(of_parts) if verdict is not None)
             values = self._mission.trends.violated.get(name, ())
             rows.append({**_demand(head, self._keys), **self._row(cells, values, share)})
         return rows
@@ -196,10 +195,13 @@ class _Mission:
         if "robot" not in self._overview.by:
             return None
         label = f" with {_name(self._last, self._overview)}" if "label" in self._overview.by else ""
-        return {"label": label, **_folded([_robot(each, self._keys) for each in self._mission.robots])}
+        return {"label": label, **_folded([_robot(robot, self._keys) for robot in self._mission.robots])}
 
     def _coverage(self) -> list[PageData]:
-        judged = [[each for each in part.verdicts.requirements if each.verdict != OPEN] for part in self._parts]
+        judged = [
+            [requirement for requirement in part.verdicts.requirements if requirement.verdict != OPEN]
+            for part in self._parts
+        ]
         return [
             {"head": "Nodes", **self._row([Cell(_exercised(part)) for part in self._parts])},
             {"head": "Requirements", **self._row([*map(_covered, judged)])},
@@ -242,9 +244,9 @@ def _standing(requirement: RequirementVerdict | None, is_last: bool = False) -> 
     clause = _worst(requirement.clauses)
     text = result(clause)
     if len(requirement.clauses) > 1:
-        same = sum(each.verdict == clause.verdict for each in requirement.clauses)
-        at = f"{clause.path}: " if clause.path else ""
-        text = f"{at}{text}; {same} of {counted(len(requirement.clauses), 'clause')}"
+        same = sum(other.verdict == clause.verdict for other in requirement.clauses)
+        place = f"{clause.path}: " if clause.path else ""
+        text = f"{place}{text}; {same} of {counted(len(requirement.clauses), 'clause')}"
     is_explained = is_last and clause.verdict == VIOLATED and clause.violations
     more = (explained(clause, worst_violation(clause), {}),) if is_explained else ()
     return Cell(verdict=clause.verdict, lines=(text, *more))
@@ -261,10 +263,12 @@ def _worst(clauses: Sequence[ClauseVerdict]) -> ClauseVerdict:
 
 
 def _robot(robot: RunGroup, keys: dict[str, str]) -> PageData:
-    violated = [each for each in robot.verdicts.requirements if each.verdict == VIOLATED]
+    violated = [requirement for requirement in robot.verdicts.requirements if requirement.verdict == VIOLATED]
     return {
         "head": robot.name or NO_NAME,
-        "violated": [(keys[each.id], each.id, result(_worst(each.clauses))) for each in violated],
+        "violated": [
+            (keys[requirement.id], requirement.id, result(_worst(requirement.clauses))) for requirement in violated
+        ],
         "numbers": (
             ("Runs", f"{robot.runs:,}"),
             ("Failed", _of(robot.failed, robot.runs)),
@@ -282,7 +286,7 @@ def _exercised(part: RunGroup) -> str:
 
 
 def _covered(judged: Sequence[RequirementVerdict]) -> Cell:
-    never = [each.id for each in judged if each.verdict == NEVER]
+    never = [requirement.id for requirement in judged if requirement.verdict == NEVER]
     text = f"{len(judged) - len(never)} of {len(judged)}"
     return Cell(text, lines=(f"never: {', '.join(never)}",) if never else ())
 
@@ -301,9 +305,9 @@ def _number(value: float) -> str:
 
 def _keys(overview: StoreOverview, mission: str) -> dict[str, str]:
     """The ids of the rows of a mission's requirements on the page."""
-    names = [each.name for each in overview.missions]
-    (of_name,) = (each for each in overview.missions if each.name == mission)
-    ids = dict.fromkeys(each.id for part in of_name.parts for each in part.verdicts.requirements)
+    names = [mission_overview.name for mission_overview in overview.missions]
+    (of_name,) = (mission_overview for mission_overview in overview.missions if mission_overview.name == mission)
+    ids = dict.fromkeys(requirement.id for part in of_name.parts for requirement in part.verdicts.requirements)
     return {name: f"r{names.index(mission) + 1}-{number}" for number, name in enumerate(ids, 1)}
 
 

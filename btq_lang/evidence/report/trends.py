@@ -1,10 +1,17 @@
-"""What happened in each step of the time: minutes, hours, days or weeks, by the length of it."""
+"""What happened in each step of the time, and what clauses measured: by run while there are few, else by step.
+
+A step is a minute, an hour, a day or some weeks, by the length of the time.
+
+One invariant: the engine counts; what is loaded are at most as many values of a clause as its drawing has places.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from operator import itemgetter
 from typing import Final, TypeAlias
 
+from btq_lang.catalog.units import ONE, Unit, parse_unit
 from btq_lang.evidence.store.queries import OVERVIEW, Ask, Row
 from btq_lang.util.grouping import grouped
 from btq_lang.util.record import Record
@@ -82,11 +89,97 @@ def _trends(runs: Sequence[Row], verdicts: Sequence[Row], steps: Steps) -> Trend
 
 
 def _values(rows: Sequence[Row], steps: Steps, value: Callable[[Row], float]) -> Values:
-    found = {int(row["place"]): float(value(row)) for row in rows}
-    return tuple(found.get(place) for place in range(steps.number))
+    by_place = {int(row["place"]): float(value(row)) for row in rows}
+    return tuple(by_place.get(place) for place in range(steps.number))
+
+
+class MeasureTrend(Record):
+    """What a clause measured.
+
+    Attributes:
+        node: where it is judged.
+        by: what each place is: `run`, or a step of the time: `day`.
+        starts: of the places, in µs since the epoch.
+        worst: of each place the value furthest beyond the bound, or closest to it.
+        medians: of each step; None by run.
+        levels: the bounds and the goal, in SI, each with what it is.
+        labels: in which place the first run of each begins.
+    """
+
+    requirement: str
+    clause: str
+    node: str
+    unit: Unit
+    by: str
+    starts: tuple[int, ...]
+    worst: Values
+    medians: Values | None
+    levels: tuple[tuple[str, float], ...]
+    labels: tuple[tuple[str, float], ...]
+
+
+def measures(ask: Ask, steps: Steps, labels: Sequence[tuple[str, int]]) -> Mapping[str, Sequence[MeasureTrend]]:
+    """What the clauses of each mission measured, in the order of the clauses.
+
+    Args:
+        labels: in the order of time, with when the first run of each began.
+    """
+    words = {"origin": steps.origin, "step": steps.length, "runs": FEW_RUNS}
+    of_clause = itemgetter("mission", "requirement", "clause", "node")
+    runs, times = (
+        grouped((of_clause(row), row) for row in ask(OVERVIEW[name].format(**words)))
+        for name in ("measured_runs", "measured_steps")
+    )
+    of_missions = []
+    for row in ask(OVERVIEW["measured"]):
+        if key := runs.get(of_clause(row)):
+            of_missions.append((row["mission"], _by_run(row, key)))
+        elif key := times.get(of_clause(row)):
+            of_missions.append((row["mission"], _by_step(row, key, steps, labels)))
+    return grouped(of_missions)
+
+
+def _by_run(clause: Row, rows: Sequence[Row]) -> MeasureTrend:
+    rows = sorted(rows, key=itemgetter("run_start_us", "log", "run"))
+    labels: dict[str, float] = {}
+    for place, row in enumerate(rows):
+        labels.setdefault(row["run_label"], place)
+    starts, worst = (tuple(row[name] for row in rows) for name in ("run_start_us", "measured_si"))
+    return _measured(clause, "run", starts, worst, None, tuple(labels.items()))
+
+
+def _by_step(clause: Row, rows: Sequence[Row], steps: Steps, labels: Sequence[tuple[str, int]]) -> MeasureTrend:
+    by_place = {int(row["place"]): row for row in rows}
+    worst, medians = (
+        tuple(by_place[place][name] if place in by_place else None for place in range(steps.number))
+        for name in ("worst_si", "median_si")
+    )
+    starts = tuple(map(steps.begin, range(steps.number)))
+    began = tuple((name, (start - steps.origin) / steps.length) for name, start in labels)
+    return _measured(clause, steps.name, starts, worst, medians, began)
+
+
+def _measured(
+    clause: Row,
+    by: str,
+    starts: tuple[int, ...],
+    worst: Values,
+    medians: Values | None,
+    labels: tuple[tuple[str, float], ...],
+) -> MeasureTrend:
+    both = [("lower bound", clause["lower_si"]), ("upper bound", clause["upper_si"])]
+    levels = [(kind, si) for kind, si in both if si is not None]
+    levels = levels or [("bound", si) for si in dict.fromkeys((clause["least_si"], clause["most_si"]))]
+    if clause["goal_si"] is not None:
+        levels.append(("goal", clause["goal_si"]))
+    unit = parse_unit(clause["unit"]) if clause["unit"] else ONE
+    assert unit is not None, "a unit of the table, as it was written"
+    whose = clause["requirement"], clause["clause"], clause["node"], unit
+    return MeasureTrend(*whose, by, starts, worst, medians, tuple(levels), labels)
 
 
 _DAY: Final = 86_400_000_000  # µs
 _LENGTHS: Final = ((_DAY // 1440, "minute"), (_DAY // 24, "hour"), (_DAY, "day"), (7 * _DAY, "week"))
 _MOST: Final = 40  # steps
 _MONDAY: Final = 4 * _DAY  # the first one of the epoch
+FEW_RUNS: Final = 60

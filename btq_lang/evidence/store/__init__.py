@@ -3,12 +3,10 @@
 One invariant: of each log there is one set of files, whole or not at all, named by the SHA-256 of the log.
 
     tables.py      the tables and their columns
-    rows.py        what is found in a log, as rows of text, while it is judged
-    node_names.py  names of nodes that do not depend on their numbers
-    sets.py        a log's set of files, published at once; what writers that were killed leave is removed
-    engine.py      DuckDB, which writes the files and is asked for rows
+    rows.py        the findings of a log, as rows of text, while it is judged; nodes have names without numbers
+    sets.py        a log's set of files, published at once; what killed writers leave is removed
+    engine.py      DuckDB, which writes the files and is asked for rows, and other engines, asked through Ibis
     damage.py      files that are missing, damaged or of another table
-    fleet.py       other engines, asked through Ibis
     queries.py     the questions, as SQL
     summary.py     the report of a whole store
 """

@@ -18,13 +18,13 @@ def incomplete(connection: Any, store: str) -> str | None:
 
     if os.path.isfile(store):
         return f"{store}: expected a folder, found a file"
-    found = _files(connection, store)
-    if not found:
+    files = _files(connection, store)
+    if not files:
         return f"{store}: no verdicts are kept there; keep some with btq verify LOG --store {store}"
-    folders = sorted({file.rpartition("/")[0] for file in found})
+    folders = sorted({file.rpartition("/")[0] for file in files})
     for folder in folders:
         for table in ROWS:
-            if (file := f"{folder}/{table}.parquet") not in found:
+            if (file := f"{folder}/{table}.parquet") not in files:
                 return f"{file}: missing; {_AGAIN}"
     lacking: dict[str, set[tuple[str, str]]] = {}
     for table in ROWS:
@@ -35,7 +35,7 @@ def incomplete(connection: Any, store: str) -> str | None:
         try:
             for file, columns in connection.execute(question).fetchall():
                 if names := wanted.keys() - columns:
-                    lacking[file.replace("\\", "/")] = {wanted[each] for each in names}
+                    lacking[file.replace("\\", "/")] = {wanted[name] for name in names}
         except duckdb.Error:
             return damage(connection, store)
     for folder in folders:
@@ -76,7 +76,7 @@ def _lacking(file: str, name: str, kind: str) -> str:
 def _files(connection: Any, store: str) -> list[str]:
     """The files of all tables."""
     patterns = [quoted(files_of(store, table)) for table in ROWS]
-    question = " UNION ALL ".join(f"SELECT file FROM glob({each})" for each in patterns)
+    question = " UNION ALL ".join(f"SELECT file FROM glob({pattern})" for pattern in patterns)
     return sorted(file.replace("\\", "/") for (file,) in connection.execute(question).fetchall())
 
 

@@ -1,6 +1,8 @@
-"""DuckDB, which writes the files of a set and answers questions about a store.
+"""The engines: DuckDB, which writes the files of a set and answers questions about a store, and others through Ibis.
 
 One invariant: nothing else imports DuckDB for the store; any failure is an OSError, or a NoEngine with one sentence.
+
+For another engine, Ibis translates the questions from DuckDB's SQL, and the engine reads the files itself.
 """
 
 from __future__ import annotations
@@ -13,7 +15,7 @@ from collections.abc import Callable, Mapping
 from functools import lru_cache
 from typing import Any, Final
 
-from btq_lang.evidence.store.damage import damage, incomplete
+from btq_lang.evidence.store.damage import LATER, damage, incomplete, judged_earlier
 from btq_lang.evidence.store.queries import REPEATED
 from btq_lang.evidence.store.rows import file_of
 from btq_lang.evidence.store.tables import COMMON, OF_CLAUSE, OPTIONAL, ROWS, files_of, quoted
@@ -43,8 +45,8 @@ def write_parquet(folder: str, common: Mapping[str, str]) -> None:
                 cursor.execute("RESET memory_limit")
                 cursor.execute(_copy(folder, table, common))
     except duckdb.Error as error:
-        if found := re.search(r'"errno":"(\d+)"', str(error)):
-            raise OSError(int(found[1]), os.strerror(int(found[1]))) from error
+        if match := re.search(r'"errno":"(\d+)"', str(error)):
+            raise OSError(int(match[1]), os.strerror(int(match[1]))) from error
         raise NoEngine(" ".join(str(error).split())) from error
     finally:
         cursor.close()
@@ -64,7 +66,7 @@ def asked(store: str, label: str | None = None) -> Callable[[str], list[dict[str
     spilled = os.path.join(tempfile.gettempdir(), f"btq-{uuid.uuid4().hex}")
     connection = duckdb.connect(config={"memory_limit": _MOST, "temp_directory": spilled})
 
-    def found_by(question: str) -> Any:
+    def executed(question: str) -> Any:
         try:
             return connection.execute(question)
         except duckdb.OutOfMemoryException:  # not all that a question needs can be on the disk
@@ -73,9 +75,9 @@ def asked(store: str, label: str | None = None) -> Callable[[str], list[dict[str
 
     def ask(question: str) -> list[dict[str, Any]]:
         try:
-            found = found_by(question)
-            names = [str(column[0]) for column in found.description]
-            return [dict(zip(names, row, strict=True)) for row in found.fetchall()]
+            result = executed(question)
+            names = [str(column[0]) for column in result.description]
+            return [dict(zip(names, row, strict=True)) for row in result.fetchall()]
         except duckdb.Error as error:
             raise NoEngine(damage(connection, store) or f"{store}: {' '.join(str(error).split())}") from error
 
@@ -143,6 +145,53 @@ def _rows(folder: str, table: str) -> str:
     form = "header = false, auto_detect = false, delim = ',', quote = '\"', escape = '\"', nullstr = ''"
     form += f", buffer_size = {_BUFFER}"
     return f"read_csv({quoted(file_of(folder, table))}, columns = {{{types}}}, {form}, parallel = false) AS {table}"
+
+
+def asked_by(url: str, store: str) -> Callable[[str], list[dict[str, Any]]]:
+    """A function that gives an engine a question about a store, and returns the rows by the names of their columns.
+
+    Args:
+        url: of the engine, as Ibis takes it: `polars://`.
+
+    Raises:
+        NoEngine: Ibis or the engine is missing, or the engine fails; so does the function.
+    """
+    try:
+        import ibis
+    except ImportError as error:
+        raise NoEngine("other engines are asked with ibis; install it with pip install 'btq-lang[fleet]'") from error
+
+    def ask(question: str) -> list[dict[str, Any]]:
+        try:
+            rows: list[dict[str, Any]] = connection.sql(question, dialect="duckdb").to_pyarrow().to_pylist()
+        except Exception as error:  # each engine has errors of its own
+            raise _failed(url, error) from error
+        return rows
+
+    try:
+        connection = ibis.connect(url)
+        tables = {table: connection.read_parquet(files_of(store, table), table_name=table) for table in ROWS}
+        for table, columns in LATER.items():
+            if not {name for name, _ in columns} <= {*tables[table].columns}:
+                raise NoEngine(f"{store}: {judged_earlier('logs in it', store)}")
+        for table, names in OPTIONAL.items():
+            lacking = {name: ibis.null("float64") for name in names if name not in tables[table].columns}
+            tables[table] = tables[table].mutate(**lacking) if lacking else tables[table]
+        left_out = ibis.memtable(ask(REPEATED), schema={"log": "string", "run": "int32"})
+        kept = {name: rows.anti_join(left_out, ["log", "run"]) for name, rows in tables.items() if name != "clauses"}
+        kept["clauses"] = tables["clauses"].semi_join(kept["runs"], ["log", "mission", "robot"])
+        repeated = tables["runs"].semi_join(left_out, ["log", "run"])
+        for table, view in {"repeated": repeated, **kept}.items():  # what names a table, before that is replaced
+            connection.create_view(table, view, overwrite=True)
+    except NoEngine:
+        raise
+    except Exception as error:  # likewise
+        raise _failed(url, error) from error
+    return ask
+
+
+def _failed(url: str, error: Exception) -> NoEngine:
+    return NoEngine(f"{url}: {' '.join(str(error).split()) or type(error).__name__}")
 
 
 # The rows of a group are in memory together: fewer than DuckDB's 122 880 take less, and a few bytes more on the disk.

@@ -1,7 +1,10 @@
-"""What is found in a log, as rows of text, written while the log is judged.
+"""The findings in a log as rows of text, written while the log is judged.
 
-One invariant: the rows depend on nothing but what was found, not on the name of the log, so that a log that is judged
-again has the same rows unless something is found that is new.
+One invariant: the rows depend on the findings alone, not on the name of the log, so a log that is judged again has the
+same rows unless there is a new finding.
+
+The names of nodes do not depend on their numbers: two trees have a name in common only if both have equally many nodes
+that it could mean.
 """
 
 from __future__ import annotations
@@ -16,9 +19,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from btq_lang.evidence.identity import Joined, without_number
-from btq_lang.evidence.model import Activation
-from btq_lang.evidence.open_verdicts import open_clauses, open_reason
-from btq_lang.evidence.store.node_names import node_names
+from btq_lang.evidence.model import Activation, LoggedTree
+from btq_lang.evidence.outline import open_clauses, open_reason
 from btq_lang.evidence.store.tables import ROWS
 from btq_lang.evidence.verdicts import OPEN, OUTCOMES, SATISFIED, UNKNOWN, VIOLATED
 from btq_lang.util.record import replace
@@ -73,10 +75,10 @@ class MissionRows:
         self._tree = hashlib.sha256(named.encode()).hexdigest()[:_DIGITS], len(tree.nodes), joined.number
         names = node_names(tree)
         self._nodes = {
-            uid: (uid, each.path, names[uid], each.kind, uid in tree.leaves) for uid, each in tree.nodes.items()
+            uid: (uid, node.path, names[uid], node.kind, uid in tree.leaves) for uid, node in tree.nodes.items()
         }
-        for uid, each in tree.nodes.items():
-            self._names.setdefault(each.path, {})[names[uid]] = None
+        for uid, node in tree.nodes.items():
+            self._names.setdefault(node.path, {})[names[uid]] = None
         if not self._clauses:
             self._clauses.extend(_Clause(self._rows.clauses + index) for index in range(len(clauses)))
             self._rows.clauses += len(clauses)
@@ -84,14 +86,17 @@ class MissionRows:
                 odds = clause.requirement.odds
                 of_runs = odds is not None and odds.experiments == "runs"
                 clause.record(partial(self._judged, written, of_runs))
-            self._open = [each for each in joined.mission.requirements.all.values() if open_reason(each)]
+            self._open = [
+                requirement for requirement in joined.mission.requirements.all.values() if open_reason(requirement)
+            ]
 
     def see(self, activation: Activation) -> None:
         """Write an activation that has ended."""
         self._activations += 1
         each = activation
-        of = (*self._whose, self._rows.run, *self._nodes[each.uid])
-        self._rows.write["activations"]((*of, each.begin, each.end, OUTCOMES[each.outcome], each.timing, each.earliest))
+        row_start = (*self._whose, self._rows.run, *self._nodes[each.uid])
+        row_end = each.begin, each.end, OUTCOMES[each.outcome], each.timing, each.earliest
+        self._rows.write["activations"]((*row_start, *row_end))
 
     def end_run(self, root: Activation, retries: int, recoveries: int, failure: int | None) -> None:
         """Write the open run, which has ended.
@@ -106,23 +111,23 @@ class MissionRows:
                     self._rows.write["verdicts"](_counted(row, row is decisive))
                 clause.open.clear()
         counts = self._activations, retries, recoveries, self._nodes[failure][_NAME] if failure is not None else None
-        of = (*self._whose, self._rows.run)
-        self._rows.write["runs"]((*of, root.begin, root.end, OUTCOMES[root.outcome], *counts, *self._tree))
+        row_start = (*self._whose, self._rows.run)
+        self._rows.write["runs"]((*row_start, root.begin, root.end, OUTCOMES[root.outcome], *counts, *self._tree))
         self._rows.run += 1
         self._activations = 0
 
     def end(self, clauses: Sequence[JudgedClause]) -> None:
         """Write the clauses, when the log has been read."""
-        known: Counter[tuple[str, str, str]] = Counter()
+        times_seen: Counter[tuple[str, str, str]] = Counter()
         for written, clause in zip(self._clauses, clauses, strict=True):
-            found, verdict, requirement = clause.found, clause.verdict(), clause.requirement
-            paths = [self._names.get(path, {without_number(path): None}) for path in found.paths]
+            findings, verdict, requirement = clause.findings, clause.verdict(), clause.requirement
+            paths = [self._names.get(path, {without_number(path): None}) for path in findings.paths]
             node = ", ".join(dict.fromkeys(name for names in paths for name in names))
             same = requirement.name, verdict.text, node
-            known[same] += 1  # a requirement with parameters may be applied to a node twice
-            text = verdict.text if known[same] == 1 else f"{verdict.text} ({known[same]})"
+            times_seen[same] += 1  # a requirement with parameters may be applied to a node twice
+            text = verdict.text if times_seen[same] == 1 else f"{verdict.text} ({times_seen[same]})"
             row = replace(verdict, text=text, path=node)
-            self._write(written, requirement, row, found.has_run, found.missing, clause.marks())
+            self._write(written, requirement, row, findings.has_run, findings.missing, clause.marks())
         for requirement in self._open:
             for verdict in open_clauses(requirement):
                 self._write(_Clause(self._rows.clauses), requirement, verdict, False, verdict.why, {})
@@ -140,8 +145,8 @@ class MissionRows:
         """Write a clause.
 
         Args:
-            has_run, missing: as of `ClauseFindings`.
-            marks: as of `Histogram`.
+            has_run, missing: as in `ClauseFindings`.
+            marks: as in `Histogram`.
         """
         odds, window = requirement.odds, requirement.window
         named = (requirement.name, " ".join((requirement.title or "").split()), verdict.text, verdict.path)
@@ -150,8 +155,8 @@ class MissionRows:
         counts = OPEN if verdict.verdict == OPEN else verdict.unit
         means = (verdict.of, counts, clause.unit, *of_odds, requirement.confidence, *of_window)
         marked = (marks[kind].si if kind in marks else None for kind in ("lower bound", "upper bound", "goal"))
-        found = has_run, verdict.cut_off, missing
-        self._rows.write["clauses"]((*self._whose, clause.index, *named, *means, *found, *marked))
+        state = has_run, verdict.cut_off, missing
+        self._rows.write["clauses"]((*self._whose, clause.index, *named, *means, *state, *marked))
 
     def _judged(self, clause: _Clause, of_runs: bool, judgement: Judgement, begin: int, end: int, path: str) -> None:
         verdict = UNKNOWN if judgement.holds is None else SATISFIED if judgement.holds else VIOLATED
@@ -160,9 +165,9 @@ class MissionRows:
         if measure is not None and clause.unit is None and measure.unit is not None:
             clause.unit = measure.unit.symbol
         why = None if judgement.holds else judgement.sentence
-        at = judgement.at if verdict == VIOLATED else None
+        violated_at = judgement.at if verdict == VIOLATED else None
         most = judgement.most.si if judgement.most is not None else None
-        row = (clause.index, self._rows.run, path, begin, end, verdict, True, at, *numbers, why, most)
+        row = (clause.index, self._rows.run, path, begin, end, verdict, True, violated_at, *numbers, why, most)
         if of_runs:
             clause.open.append(row)
         else:
@@ -192,17 +197,41 @@ def file_of(folder: str, table: str) -> str:
 
 def digest(folder: str) -> str:
     """The SHA-256 of all rows."""
-    found = hashlib.sha256()
+    digest_of_rows = hashlib.sha256()
     for name in ROWS:
         with open(file_of(folder, name), "rb") as file:
             while block := file.read(_BLOCK):
-                found.update(block)
-        found.update(b"\0")
-    return found.hexdigest()
+                digest_of_rows.update(block)
+        digest_of_rows.update(b"\0")
+    return digest_of_rows.hexdigest()
 
 
 def _counted(row: tuple[Any, ...], is_counted: bool) -> tuple[Any, ...]:
     return (*row[: _VERDICT + 1], is_counted, *row[_VERDICT + 2 :])
+
+
+def node_names(tree: LoggedTree) -> dict[int, str]:
+    """The names of all nodes, by uid: their paths without numbers.
+
+    Where several nodes below one path would have the same, it says which of them: `Move (2 of 3)`.
+    """
+    alike: dict[tuple[str, str], dict[tuple[str, int], None]] = {}  # by the path above and the own name
+    paths: dict[int, tuple[str, int]] = {}  # each with how many nodes before have the same
+    numbers: dict[str, int] = {}
+    for uid, node in tree.nodes.items():
+        numbers[node.path] = numbers.get(node.path, -1) + 1
+        paths[uid] = node.path, numbers[node.path]
+        parts = node.path.split("/")
+        above = ("/".join(parts[:end]) for end in range(1, len(parts)))
+        for path in (*((path_above, 0) for path_above in above), paths[uid]):
+            parent, _, own = path[0].rpartition("/")
+            alike.setdefault((parent, without_number(own)), {})[path] = None
+    names: dict[tuple[str, int], str] = {}
+    for (parent, own), places in alike.items():  # parents before what is below them
+        before = f"{names[parent, 0]}/" if (parent, 0) in names else ""
+        for place, path in enumerate(places, start=1):
+            names[path] = f"{before}{own} ({place} of {len(places)})" if len(places) > 1 else f"{before}{own}"
+    return {uid: names[path] for uid, path in paths.items()}
 
 
 _NAME: Final = 2  # its column, of a node

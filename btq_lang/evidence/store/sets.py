@@ -31,11 +31,11 @@ from btq_lang.util.record import Record
 
 
 class NotKept(Exception):
-    """What was found in a log cannot be kept; the message says why."""
+    """The findings in a log cannot be kept; the message says why."""
 
 
 class Keeping(Record):
-    """Where what is found is kept, and as what.
+    """Where findings are kept, and under which names.
 
     Attributes:
         folder: of the store.
@@ -62,7 +62,7 @@ class Draft:
     """The set of a log while it is written.
 
     Attributes:
-        rows: takes what is found.
+        rows: receives the findings.
         robot: of the log, unless it names its robots.
     """
 
@@ -102,7 +102,7 @@ class Draft:
         with open(os.path.join(self._folder, ABOUT), "w", encoding="utf-8") as file:
             json.dump(now, file, indent=1)
         _take_place(self._folder, self._target)
-        return tuple(f"the {each} {before[each]}" for each in whose if before.get(each, "") not in ("", whose[each]))
+        return tuple(f"the {name} {before[name]}" for name in whose if before.get(name, "") not in ("", whose[name]))
 
 
 @contextmanager
@@ -156,13 +156,13 @@ def prepare(store: str) -> None:
 
 
 def about(folder: str) -> dict[str, Any]:
-    """What a set says about itself; empty if there is none, or none of this version."""
+    """The description of a set; empty if there is no set, or none of this version."""
     try:
         with open(os.path.join(folder, ABOUT), encoding="utf-8") as file:
-            found = json.load(file)
+            content = json.load(file)
     except (OSError, ValueError):
         return {}
-    return found if isinstance(found, dict) else {}
+    return content if isinstance(content, dict) else {}
 
 
 def _take_place(folder: str, target: str) -> None:
@@ -179,21 +179,21 @@ def _take_place(folder: str, target: str) -> None:
         aside.append(os.path.join(store, f"{_OLD}{name}-{uuid.uuid4().hex}"))
         with suppress(FileNotFoundError):  # another writer is replacing it
             os.rename(target, aside[-1])
-    for each in aside:
-        shutil.rmtree(each, ignore_errors=True)
+    for folder_aside in aside:
+        shutil.rmtree(folder_aside, ignore_errors=True)
 
 
 def sha256(log: str) -> str:
     """The SHA-256 of a file with what is unfinished beside it, or of all files of a bag, with their names."""
-    found = hashlib.sha256()
+    digest_of_files = hashlib.sha256()
     for path in files_of_log(log):
         if path != log:
             name = path.removeprefix(log).lstrip(os.sep)
-            found.update(f"{name}\0{os.path.getsize(path)}\0".encode(errors="surrogateescape"))
+            digest_of_files.update(f"{name}\0{os.path.getsize(path)}\0".encode(errors="surrogateescape"))
         with open(path, "rb") as file:
             while block := file.read(_BLOCK):
-                found.update(block)
-    return found.hexdigest()
+                digest_of_files.update(block)
+    return digest_of_files.hexdigest()
 
 
 def files_of_log(log: str) -> Sequence[str]:
@@ -206,7 +206,7 @@ def files_of_log(log: str) -> Sequence[str]:
 def _changed(folder: str) -> float:
     """When a file in a folder last changed, in seconds since the epoch; now if the folder is gone."""
     try:
-        return max(os.stat(path).st_mtime for path in (folder, *(each.path for each in os.scandir(folder))))
+        return max(os.stat(path).st_mtime for path in (folder, *(entry.path for entry in os.scandir(folder))))
     except OSError:
         return time.time()
 

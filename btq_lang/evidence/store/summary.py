@@ -53,7 +53,7 @@ def summary(ask: Ask, store: str, parts: Sequence[str] = (), *, by_run: bool = F
         ask: gives an engine a question.
         store: its name, as people read it.
         parts: `label` and `robot`, as far as those have verdicts of their own.
-        by_run: as of `parted`.
+        by_run: as in `parted`.
     """
     return VerdictReport(tuple(mission for _, mission in parted(ask, store, parts, by_run=by_run)), (), ())
 
@@ -68,16 +68,18 @@ def parted(
         by_run: what the last runs show of each clause is asked for, too.
     """
     by = ("mission", *parts)
-    columns = {"by": ", ".join(by), "by_verdicts": ", ".join(f"verdicts.{each}" for each in by)}
+    columns = {"by": ", ".join(by), "by_verdicts": ", ".join(f"verdicts.{column}" for column in by)}
     columns["violations"], columns["most"] = str(violations), str(MOST_RUNS)
-    found = {name: ask(text.format(**columns)) for name, text in QUERIES.items()}
+    rows_by_question = {name: ask(text.format(**columns)) for name, text in QUERIES.items()}
     part_of, clause_of = itemgetter(*by), itemgetter(*by, "requirement", "clause", "node")
-    counts = {clause_of(row): row for row in found["verdicts"]}
-    broken, recent = (grouped((clause_of(row), row) for row in found[name]) for name in ("violations", "recent"))
+    counts = {clause_of(row): row for row in rows_by_question["verdicts"]}
+    broken, recent = (
+        grouped((clause_of(row), row) for row in rows_by_question[name]) for name in ("violations", "recent")
+    )
     runs = grouped((clause_of(row), row) for row in ask(BY_RUN.format(**columns))) if by_run else {}
-    clauses = grouped((part_of(row), row) for row in found["clauses"])
-    repeated = {part_of(row): row for row in found["repeated"]}
-    for part in found["runs"]:
+    clauses = grouped((part_of(row), row) for row in rows_by_question["clauses"])
+    repeated = {part_of(row): row for row in rows_by_question["repeated"]}
+    for part in rows_by_question["runs"]:
         judged: dict[str, list[ClauseVerdict]] = {}
         titles = {}
         for row in clauses.get(part_of(part), ()):
@@ -86,7 +88,7 @@ def parted(
             judged.setdefault(row["requirement"], []).append(verdict)
             titles[row["requirement"]] = row["title"] or ""
         requirements = [
-            RequirementVerdict(name, titles[name], worst_of(each.verdict for each in verdicts), tuple(verdicts))
+            RequirementVerdict(name, titles[name], worst_of(verdict.verdict for verdict in verdicts), tuple(verdicts))
             for name, verdicts in judged.items()
         ]
         yield part, _mission(part, parts, store, requirements, repeated.get(part_of(part)))
@@ -96,7 +98,7 @@ def _mission(
     part: Row, parts: Sequence[str], store: str, requirements: Sequence[RequirementVerdict], repeated: Row | None
 ) -> MissionVerdicts:
     """A mission in a part of the store; `repeated`: the runs that are not counted."""
-    named = [f"{each} {part[each] or '(none)'}" for each in parts]
+    named = [f"{part_name} {part[part_name] or '(none)'}" for part_name in parts]
     identity = [counted(int(part["logs"]), "log")]
     if part["partly_joined"]:
         identity.append(f"{counted(int(part['partly_joined']), 'run')} of another version")
@@ -120,7 +122,7 @@ def _mission(
         file="",
         sources=(source,),
         requirements=tuple(requirements),
-        outcomes=tuple((each, int(part[each])) for each in OUTCOMES.values() if part[each]),
+        outcomes=tuple((outcome, int(part[outcome])) for outcome in OUTCOMES.values() if part[outcome]),
         nodes=(),
         contexts=(),
         retries=Repeats(int(part["retries"]), int(part["most_retries"]), None),
@@ -144,9 +146,7 @@ def _verdict(
     assert unit is not None, "a unit of the table, as it was written"
     is_windowed = row["last_number"] is not None or row["last_seconds"] is not None
     tally = _recent(row, recent, unit) if is_windowed else _counted(row, counts, broken, unit)
-    tally.by_run.extend(
-        RunValue(each["run"], each["run_start_us"], _RANKS[each["worst_rank"]], each["si"]) for each in runs
-    )
+    tally.by_run.extend(RunValue(run["run"], run["run_start_us"], _RANKS[run["worst_rank"]], run["si"]) for run in runs)
     verdict, why = verdict_of(tally, row["missing"] or "", bool(row["exercised"]))
     is_open = row["counts"] == OPEN
     return ClauseVerdict(
@@ -170,7 +170,7 @@ def _counted(row: Row, counts: Row | None, broken: Sequence[Row], unit: Unit) ->
     tally.violated, tally.unknown = int(counts["violated"]), int(counts["unclear"])
     tally.counted = int(counts["kept"]) + tally.violated
     tally.why = counts["why"] or ""
-    tally.violations.extend(_violation(each, unit) for each in broken)
+    tally.violations.extend(_violation(violation, unit) for violation in broken)
     if counts["bounded"]:
         si, bound = counts["bounded_si"], counts["bounded_bound_si"]
         tally.bounded = Bounded(int(counts["bounded"]), si, measured(si, unit, bound))
@@ -195,13 +195,13 @@ def _closest(counts: Row, unit: Unit) -> Worst | None:
 def _recent(row: Row, judgements: Sequence[Row], unit: Unit) -> Tally:
     """The tally of a clause of whose judgements only the last ones count."""
     tally = _tally(row)
-    for (_, number), found in groupby(judgements, key=lambda each: (each["log"], each["run"])):
-        of_run = [*found]
-        for each in of_run:
-            holds = None if each["verdict"] == UNKNOWN else each["verdict"] == SATISFIED
-            most = _measure({**each, "measured_si": each["most_si"]}, unit)
-            judgement = Judgement(holds, each["at_us"] or 0, each["why"] or "", _measure(each, unit), most=most)
-            tally.add(judgement, each["path"], each["end_us"], ())
+    for (_, number), rows_of_run in groupby(judgements, key=lambda row: (row["log"], row["run"])):
+        of_run = [*rows_of_run]
+        for judged in of_run:
+            holds = None if judged["verdict"] == UNKNOWN else judged["verdict"] == SATISFIED
+            most = _measure({**judged, "measured_si": judged["most_si"]}, unit)
+            judgement = Judgement(holds, judged["at_us"] or 0, judged["why"] or "", _measure(judged, unit), most=most)
+            tally.add(judgement, judged["path"], judged["end_us"], ())
         first = of_run[0]
         tally.end_run(Run(number, first["source"], first["run_start_us"], first["run_end_us"]))
     return tally

@@ -47,7 +47,7 @@ ROWS: Final = {
         "nodes": "INTEGER",
         "joined": "INTEGER",
     },
-    # An activation of a node.  `path`: as the engine names it; `node`: as in other trees (`node_names.py`).
+    # An activation of a node.  `path`: as the engine names it; `node`: as in other trees (`rows.node_names`).
     # `timing`: `exact`; `latest`, if it may have ended before; `broken`, if the clock was set
     # back meanwhile; `late`, if it began before; `lost`, if the rest of the run was lost; `part`, if both.
     # `earliest_us`: when it may have begun before `start_us`, equal to that if it is known when it began.

@@ -16,7 +16,7 @@ from seeds import share_of
 
 from btq_lang.evidence.compare.chance import Shuffles, exact, holm, is_too_few, shuffles_for
 from btq_lang.evidence.compare.comparison import compare
-from btq_lang.evidence.compare.words import remarks
+from btq_lang.evidence.compare.lines import remarks
 from btq_lang.evidence.store import engine
 from btq_lang.evidence.store.rows import file_of
 from btq_lang.evidence.store.tables import ROWS

@@ -23,7 +23,7 @@ from test_identity import DEMANDS
 
 from btq_lang.cli import main
 from btq_lang.evidence.model import NamedLog
-from btq_lang.evidence.readers import read, unpacking
+from btq_lang.evidence.readers import bag, read
 
 zstd = import_module("compression.zstd" if sys.version_info >= (3, 14) else "backports.zstd")  # as rosbags does
 SCHEMA = json.loads((Path(__file__).parents[3] / "btq_lang/evidence/verdicts.schema.json").read_text(encoding="utf-8"))
@@ -283,7 +283,7 @@ def test_what_is_packed_is_unpacked_up_to_a_limit(
     compression: Literal["storage", "message"], remark: str, small: Verify, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A few bytes may be gigabytes of blanks."""
-    monkeypatch.setattr(unpacking, "MOST", 100_000)
+    monkeypatch.setattr(bag, "MOST_UNPACKED", 100_000)
     logs = tree_log(rows(TWO_RUNS), NAMES)
     write_bag(small.folder / "bag", [*logs, text("/tree", START, " " * 10**6)], "mcap", compression)
     (log,) = read(str(small.folder / "bag"))
@@ -295,7 +295,7 @@ def test_what_is_packed_is_unpacked_up_to_a_limit(
 
 @pytest.mark.parametrize("pack", [zstd.compress, lz4.frame.compress])
 def test_a_chunk_that_unpacks_to_more_than_it_says(pack: Callable[[bytes], bytes]) -> None:
-    unpacking.limit_chunks()
+    bag.limit_chunks()
     unpack = storage_mcap.DECOMPRESSORS["zstd" if pack is zstd.compress else "lz4"]
     packed = pack(bytes(10**6))
     assert unpack(packed, 10**6) == bytes(10**6)

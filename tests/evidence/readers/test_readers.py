@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 from evidence_logs import MAIN, MAIN_XML, START, Verify, btlog, rows, sessions_of, write_db3
 
-from btq_lang.commands.verdict_formats import FORMATS, write
+from btq_lang.commands.verdict_report import write
+from btq_lang.commands.verify_options import FORMATS
 from btq_lang.evidence.identity import Candidate
 from btq_lang.evidence.judging import Means
 from btq_lang.evidence.runs import activations

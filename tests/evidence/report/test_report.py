@@ -15,7 +15,7 @@ from in_process import run_btq
 
 from btq_lang.evidence.report.trends import steps_of
 from btq_lang.evidence.store import engine
-from btq_lang.evidence.store.fleet import asked_by
+from btq_lang.evidence.store.engine import asked_by
 from btq_lang.evidence.store.queries import OVERVIEW
 
 MISSION = 'QualityReq quick : safety "Be <quick>"\n    Move takes at most 15 ms\n' + MAIN

@@ -10,7 +10,7 @@ from evidence_logs import START, btlog
 from in_process import run_btq
 
 from btq_lang.evidence.model import LoggedTree
-from btq_lang.evidence.store.node_names import node_names
+from btq_lang.evidence.store.rows import node_names
 
 MOVES = {"v1": ("Move", "Move", "Move"), "v2": ("Beep", "Move", "Move", "Move")}
 MORE = {"v1": ("Move", "Move"), "v2": ("Move", "Move", "Move")}

@@ -10,7 +10,7 @@ from evidence_logs import MAIN, MAIN_XML, START, Row, btlog, rows, write_db3
 from in_process import run_btq
 
 from btq_lang.evidence.store import engine
-from btq_lang.evidence.store.fleet import asked_by
+from btq_lang.evidence.store.engine import asked_by
 from btq_lang.evidence.store.summary import summary
 
 MISSION = "QualityReq rq : safety\n    Move takes at most 100 ms\n" + MAIN

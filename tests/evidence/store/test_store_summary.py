@@ -20,7 +20,7 @@ from seeds import seeds, share_of
 from btq_lang.evidence.evaluate import MissionEvaluation
 from btq_lang.evidence.model import LogSession
 from btq_lang.evidence.store import engine
-from btq_lang.evidence.store.fleet import asked_by
+from btq_lang.evidence.store.engine import asked_by
 from btq_lang.evidence.store.rows import Rows
 from btq_lang.evidence.store.summary import summary
 from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts
@@ -41,7 +41,7 @@ def judged_and_kept(made: Case, store: Path) -> MissionVerdicts:
             read = one.read(LogSession(made.joined.tree, iter(transitions)), made.joined, made.series, 1, "log")
             one.end()
         engine.write_parquet(str(folder), {"log": folder.name, "label": "", "source": f"log {number}"})
-        evaluation.found.add(one.found, runs)
+        evaluation.findings.add(one.findings, runs)
         runs += read
     return evaluation.result()
 

@@ -5,7 +5,7 @@ gets a hook.  Whatever comes over the network, the answer is a session, a note i
 
     messages.py    requests and replies as bytes
     publisher.py   asks a publisher, through pyzmq
-    following.py   what a publisher says from one request to the next, compared: rows, gaps, other trees
+    following.py   the replies of a publisher, compared with those before: rows, gaps, other trees
     sessions.py    the sessions for the judge, from a thread that follows the publisher
 
 Source: src/loggers/groot2_publisher.cpp and include/behaviortree_cpp/loggers/groot2_protocol.h.

@@ -53,7 +53,7 @@ class Notice(Record):
 
 
 class Passed(Record):
-    """All that the robot had done by this time, on its clock, has been said."""
+    """All that the robot did up to this time, on its clock, has been reported."""
 
     time: int
 
@@ -62,7 +62,7 @@ Event: TypeAlias = Began | Came | Sampled | LostTransitions | Notice | Passed
 
 
 class Following:
-    """What a publisher said so far.
+    """A publisher, by its replies so far.
 
     Attributes:
         pause: how long to wait before the next step, in seconds.
@@ -98,7 +98,7 @@ class Following:
         self._at_rest: dict[int, int] | None = None  # all statuses, after the last transitions
         self._is_halting = False
         self._values: dict[str, SampleValue | None] = {}
-        self._said = ""
+        self._last_notice = ""
 
     def step(self) -> Iterator[Event]:
         """Ask once for all that is new."""
@@ -117,15 +117,15 @@ class Following:
         self.passed = None
         text = why or ("the publisher does not answer any more" if self._publisher else "no publisher yet")
         self._is_there = False
-        if text != self._said:
-            self._said = text
+        if text != self._last_notice:
+            self._last_notice = text
             yield Notice(f"{text}; waiting for one at {self._address}")
 
     def _connect(self) -> Iterator[Event]:
         """Take the tree of a publisher, and make it record from now on."""
         try:
-            found = self._ask(messages.TREE)
-            text = found.content.decode("utf-8", "replace")
+            answer = self._ask(messages.TREE)
+            text = answer.content.decode("utf-8", "replace")
             tree = read_tree(text)
         except (BadReply, NotALog) as error:
             self.refused = "" if self._publisher else str(error)
@@ -134,8 +134,8 @@ class Following:
         self._record()
         after = self._all_statuses(tree)
         is_amid = before != after or RUNNING in after.values()
-        is_same = found.publisher == self._publisher
-        self._publisher, self._tree, self._is_there, self._said = found.publisher, tree, True, ""
+        is_same = answer.publisher == self._publisher
+        self._publisher, self._tree, self._is_there, self._last_notice = answer.publisher, tree, True, ""
         self._boards = [*_boards(text)]
         self._values = {}
         self.pause, self.passed = _PAUSE, None
@@ -158,11 +158,11 @@ class Following:
 
     def _poll(self) -> Iterator[Event]:
         asked = self._clock()
-        found = self._ask(messages.TRANSITIONS)
-        if found.publisher != self._publisher:
+        answer = self._ask(messages.TRANSITIONS)
+        if answer.publisher != self._publisher:
             yield from self._connect()
             return
-        rows = [(self._started + time, uid, status) for time, uid, status in messages.transitions(found.content)]
+        rows = [(self._started + time, uid, status) for time, uid, status in messages.transitions(answer.content)]
         since, self._asked = self._asked, asked
         yield from self._new(rows, since) if rows else self._quiet(since)
         self._pass(asked)
@@ -198,11 +198,11 @@ class Following:
 
     def _follow(self, rows: Sequence[Transition]) -> bool:
         """Whether each transition changes the status that its node is known to have."""
-        known = dict(self._statuses)
+        statuses = dict(self._statuses)
         for _, uid, status in rows:
-            if known.get(uid) == status:
+            if statuses.get(uid) == status:
                 return False
-            known[uid] = status
+            statuses[uid] = status
         return True
 
     def _quiet(self, since: int) -> Iterator[Event]:
@@ -230,15 +230,15 @@ class Following:
 
     def _samples(self) -> Iterator[Event]:
         asked = self._clock()
-        found: Mapping[str, SampleValue] = {}
+        entries: Mapping[str, SampleValue] = {}
         try:
             content = self._ask(messages.BLACKBOARD, ";".join(self._boards)).content
-            found = messages.blackboard(content, self._boards)
+            entries = messages.blackboard(content, self._boards)
         except BadReply as error:  # the verdicts that need no samples do not suffer
             self._boards = ()
             yield Notice(f"{error}; signals have no samples from now on")
-        values: dict[str, SampleValue | None] = {key: found.get(key) for key in self._entries if key in found}
-        values |= {key: None for key, value in self._values.items() if value is not None and key not in found}
+        values: dict[str, SampleValue | None] = {key: entries.get(key) for key in self._entries if key in entries}
+        values |= {key: None for key, value in self._values.items() if value is not None and key not in entries}
         changed = {key: value for key, value in values.items() if not _is_same(value, self._values.get(key))}
         if changed:
             self._values |= changed
@@ -256,8 +256,8 @@ def _boards(xml: str) -> Iterator[str]:
             yield tree.get("_fullpath") or tree.get("ID") or ""
 
 
-def _is_same(one: SampleValue | None, other: SampleValue | None) -> bool:
-    return type(one) is type(other) and one == other
+def _is_same(value: SampleValue | None, before: SampleValue | None) -> bool:
+    return type(value) is type(before) and value == before
 
 
 _PAUSE: Final = 0.05  # s

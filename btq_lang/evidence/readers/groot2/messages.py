@@ -92,12 +92,12 @@ def blackboard(content: bytes, boards: Sequence[str]) -> dict[str, SampleValue]:
     import msgpack
 
     try:
-        found = msgpack.unpackb(content, strict_map_key=False, unicode_errors="replace")
+        boards_by_name = msgpack.unpackb(content, strict_map_key=False, unicode_errors="replace")
     except _NOT_MESSAGEPACK as error:
         raise BadReply("the blackboard is not MessagePack") from error
-    if not isinstance(found, dict | None):
+    if not isinstance(boards_by_name, dict | None):
         raise BadReply("expected a map of blackboards")
-    entries = {name: board for name, board in (found or {}).items() if isinstance(board, dict)}
+    entries = {name: board for name, board in (boards_by_name or {}).items() if isinstance(board, dict)}
     values = by_entry(entries, boards[0] if boards else None)
     return {key: value for key, value in values.items() if isinstance(key, str) and is_sample(value)}
 

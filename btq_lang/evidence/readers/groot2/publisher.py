@@ -76,14 +76,14 @@ class Publisher:
         try:
             self._socket.send_multipart(parts, self._zmq.NOBLOCK)
             self._wait()
-            found = self._socket.recv_multipart(self._zmq.NOBLOCK)
+            answer = self._socket.recv_multipart(self._zmq.NOBLOCK)
         except self._zmq.ZMQError as error:
             self._forget()
             if not (self._has_answered or self._is_over()):
                 self._look_who_is_there()
             raise NoAnswer from error
         self._has_answered = True
-        return reply(found, parts[0])
+        return reply(answer, parts[0])
 
     def close(self) -> None:
         """Ask nothing more."""
@@ -102,17 +102,17 @@ class Publisher:
 
     def _look_who_is_there(self) -> None:
         """Find out what does not answer, by a connection of its own."""
-        found = _greeted(self._address)
-        if found is None:
+        greeting = _greeted(self._address)
+        if greeting is None:
             self._silences = 0
             return
         self._silences += 1
-        if found and not (found[:1] == _SIGNATURE[:1] and found[9:10] == _SIGNATURE[9:]):
-            line = found.splitlines()[0].decode("utf-8", "replace")
+        if greeting and not (greeting[:1] == _SIGNATURE[:1] and greeting[9:10] == _SIGNATURE[9:]):
+            line = greeting.splitlines()[0].decode("utf-8", "replace")
             raise NotAPublisher(f"{_EXPECTED}, found something else, which says {line!r}")
         if self._silences > 1:
-            what = "a ZeroMQ socket of another type" if found else "something"
-            raise NotAPublisher(f"{_EXPECTED}, found {what} that does not answer; {_OTHER_PORTS}")
+            listener = "a ZeroMQ socket of another type" if greeting else "something"
+            raise NotAPublisher(f"{_EXPECTED}, found {listener} that does not answer; {_OTHER_PORTS}")
 
     def _forget(self) -> None:
         """Drop the socket: one that waits for a reply cannot ask again."""
@@ -142,7 +142,7 @@ MOST: Final = 1 << 24  # bytes of a part of a reply; larger ones end the connect
 _SLICE: Final = 100  # ms between two looks at whether to go on waiting
 _PATIENCE: Final = 2.0  # s
 _LAST_PATIENCE: Final = 0.3  # s, when nothing more will be asked
-_SIGNATURE: Final = b"\xff\0\0\0\0\0\0\0\1\x7f"  # the first bytes that a ZeroMQ socket says
+_SIGNATURE: Final = b"\xff\0\0\0\0\0\0\0\1\x7f"  # the first bytes that a ZeroMQ socket sends
 _EXPECTED: Final = "expected a Groot2Publisher of BehaviorTree.CPP 4"
 _OTHER_PORTS: Final = "Groot2Publisher has the port 1667 unless the program names another one"
 _SHOWN: Final = 60  # bytes

@@ -1,6 +1,6 @@
 """The sessions of a running robot, for the judge; a thread follows the publisher meanwhile, whatever judging takes.
 
-One invariant: all that the judge and the screen are given, they are given in one thread, in the order in which it came.
+One invariant: the judge and the screen receive everything in one thread, in the order in which it came.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def sessions(
         stop: ends the last session.
         tell: given what happens to the connection.
         wait: called several times a second.
-        look: as of `sessions_of`.
+        look: as in `sessions_of`.
     """
     yield from sessions_of(_followed(address, entries, stop, wait), tell, look)
 

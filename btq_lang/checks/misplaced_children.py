@@ -1,0 +1,166 @@
+"""Children in the wrong place: on the line of their parent (`Inverter Dark`, where the language reads a label, and
+`Sequence Go, Turn`), too deep, or several where one must be; and the fixes that move them.
+
+One invariant: only a node that must have children and has none below it is said to have one on its line.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Final
+
+from btq_lang.catalog.kinds import CHILDREN
+from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.nodes import lookup
+from btq_lang.checks import lookups
+from btq_lang.checks.view import View
+from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place
+from btq_lang.grammar.cursor import QUOTES
+from btq_lang.grammar.nodes import CHILD
+from btq_lang.lexer import tokens
+from btq_lang.syntax.scan import line_end, line_start
+from btq_lang.syntax.suggestions import CHILDREN as ON_LINES
+from btq_lang.syntax.tokens import NAME, NODE_CLAUSES
+from btq_lang.syntax.tree import Node, Tree, Verbatim, is_name
+from btq_lang.util.record import replace
+from btq_lang.util.text import LINE_END, Span
+from btq_lang.workspace.resolved import ResolvedNode
+
+
+def label_as_child(view: View, resolved: ResolvedNode, tag: str = "") -> tuple[tuple[str, ...], tuple[Fix, ...]]:
+    """The note and the fix for a node without children whose label is probably its child; empty if it has none.
+
+    Args:
+        tag: the built-in that the fix writes in place of the node's kind.
+    """
+    node = resolved.node
+    if not has_bare_label(view, node) or node.label is None:
+        return (), ()
+    notes = (f"btq reads `{node.label.raw}` as the label of `{node.head.text}`; {CHILD}",)
+    has_own_ports = resolved.kind is not None and any(resolved.kind.port(pair.key.text) for pair in node.attributes)
+    fixes = () if has_own_ports or node.clauses else _on_lines(view, node, (node.label.start,))
+    if tag:
+        title = f"Write `{tag}`, and `{node.label.raw}` on a line of its own"
+        fixes = tuple([Fix(title, (FixEdit(Place(node.head.span), tag), *fix.changes)) for fix in fixes])
+    return notes, fixes
+
+
+def has_bare_label(view: View, node: Node) -> bool:
+    """Whether a node has no children, and after its kind a word that may be meant as one."""
+    return node.label is not None and node.label.kind == NAME and not (node.children or view.is_xml)
+
+
+def on_own_lines(view: View, reported: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+    """The parser's diagnostics of an item, reworded where the parser took a child for a label."""
+    for diagnostic in reported:
+        yield (
+            _on_own_line(view, diagnostic)
+            if isinstance(view.item, Tree) and diagnostic.notes[:1] in _REPORTED
+            else diagnostic
+        )
+
+
+def _on_own_line(view: View, reported: Diagnostic) -> Diagnostic:
+    text, offset = view.text, reported.span.start
+    resolved = view.node_before(offset)
+    if resolved is None or resolved.behavior is None or resolved.behavior.children[0] == 0:
+        return reported
+    end = line_end(text, resolved.node.start)
+    if offset > end:
+        return reported
+    node = resolved.node
+    if reported.notes == (CHILD,):
+        word = text[offset : reported.span.end]
+        if node.label is not None or not is_name(word) or (node.children and not _is_node(view, word)):
+            return reported
+        fixes = () if node.children else _on_lines(view, node, (offset,))
+        return replace(reported, message=CHILD, notes=(), fixes=fixes)
+    names = _NAMES.match(text, node.head.end, end)
+    words = [*_NAME.finditer(text, node.head.end, names.end(1))] if names is not None else []
+    if node.children or not words or not NODE_CLAUSES.isdisjoint(word[0] for word in words):
+        return reported
+    return replace(reported, message=ON_LINES, notes=(), fixes=_on_lines(view, node, [word.start() for word in words]))
+
+
+def _is_node(view: View, word: str) -> bool:
+    return (
+        lookup(word) is not None
+        or view.ask(lookups.is_defined, Kind.MODEL, word)
+        or view.ask(lookups.is_defined, Kind.TREE, word)
+    )
+
+
+def _on_lines(view: View, node: Node, starts: Sequence[int]) -> tuple[Fix, ...]:
+    """The fix that begins lines of their own at some words after a node's kind, one step deeper."""
+    text = view.text
+    line = line_start(text, 0, node.start)
+    margin = text[line : node.start]
+    step = "\t" if margin.startswith("\t") else "    "
+    gaps = [Span(line + len(text[line:start].rstrip(" \t,")), start) for start in starts]
+    changes = [FixEdit(Place(gap), f"\n{margin}{step}") for gap in gaps]
+    title = "Put it on a line of its own" if len(starts) == 1 else "Put them on lines of their own"
+    return () if margin.strip() else (Fix(title, tuple(changes)),)
+
+
+def sequence_above(view: View, children: Sequence[Node | Verbatim]) -> tuple[Fix, ...]:
+    """The fix that writes `->` above children of one parent; none if their lines cannot be indented."""
+    margin, step, starts = _movable_lines(view, children)
+    if not starts:
+        return ()
+    above = FixEdit(Place(Span(starts[0], starts[0])), f"{margin}->\n{step}")
+    return (Fix("Put them below a Sequence `->`", (above, *_indented(starts[1:], step))),)
+
+
+def below(view: View, parent: Node, siblings: Sequence[Node | Verbatim]) -> tuple[Fix, ...]:
+    """The fix that indents the nodes after a parent without children, so that they are its children."""
+    _, step, starts = _movable_lines(view, siblings)
+    title = f"Indent {'it' if len(siblings) == 1 else 'them'} below `{parent.head.text}`"
+    return (Fix(title, tuple(_indented(starts, step))),) if starts else ()
+
+
+def dedented(view: View, resolved: ResolvedNode, children: Sequence[Node | Verbatim]) -> tuple[Fix, ...]:
+    """The fix that dedents some children of a node to its level; none if its parent takes no more."""
+    parent = resolved.parent
+    category = parent.stated_category if parent is not None else None
+    if parent is None or (
+        category and (parent.behavior.children if parent.behavior else CHILDREN[category])[1] is not None
+    ):
+        return ()
+    margin, _, starts = _movable_lines(view, children)
+    outer = view.text[line_start(view.text, 0, resolved.node.start) : resolved.node.start]
+    if not margin.startswith(outer) or not all(view.text.startswith(margin, start) for start in starts):
+        return ()
+    changes = [FixEdit(Place(Span(start + len(outer), start + len(margin))), "") for start in starts]
+    title = f"Dedent {'it' if len(children) == 1 else 'them'} to the level of `{resolved.node.head.text}`"
+    return (Fix(title, tuple(changes)),) if changes else ()
+
+
+def _indented(starts: Sequence[int], step: str) -> list[FixEdit]:
+    return [FixEdit(Place(Span(start, start)), step) for start in starts]
+
+
+def _movable_lines(view: View, children: Sequence[Node | Verbatim]) -> tuple[str, str, list[int]]:
+    """The margin of some children, an indentation step, and where their lines begin; no lines if they cannot move."""
+    if view.is_xml or view.entry.diagnostics or not children:
+        return "", "", []
+    text = view.text
+    first, end = line_start(text, 0, children[0].start), max(map(_end, children))
+    margin = text[first : children[0].start]
+    if margin.strip() or any(LINE_END.search(token.text.strip()) for token in tokens(text[first:end])):
+        return "", "", []  # a string or a comment over several lines
+    starts = [first, *[match.end() for match in LINE_END.finditer(text, first, end)]]
+    filled = [start for start in starts if text[start:end].partition("\n")[0].strip()]
+    return margin, "\t" if margin.startswith("\t") else "    ", filled
+
+
+def _end(child: Node | Verbatim) -> int:
+    """Where a node and all that is below it ends."""
+    below = [part for node in child.walk() for part in (node, *node.children)] if isinstance(child, Node) else []
+    return max(part.end for part in (child, *below))
+
+
+_REPORTED: Final = ((CHILD,), (ON_LINES,), (QUOTES,))
+_NAME: Final = re.compile(r"[^\W\d]\w*")
+_NAMES: Final = re.compile(r"((?:[ \t,]+[^\W\d]\w*)+)[ \t]*(?=#|\r?\n|\Z|\r)")
+TOO_FAR: Final = "what is below it may be indented too far"
