@@ -83,22 +83,22 @@ def tokens(text: str) -> tuple[Token, ...]:
     """All tokens of a text, blanks and comments included, INDENT and DEDENT where blocks open and close."""
     lexer = Lexer(text)
     comments = lexer.comments
-    found: list[Token] = []
+    result: list[Token] = []
     end = level = added = 0
     while lexer.open_line():
         lexer.scan()
-        added = _fill(found, text, end, lexer.starts[0], comments, added)
+        added = _fill(result, text, end, lexer.starts[0], comments, added)
         end = lexer.starts[0]
         step = INDENT if lexer.level > level else DEDENT
-        found += [Token(step, end, "")] * abs(lexer.level - level)
+        result += [Token(step, end, "")] * abs(lexer.level - level)
         level = lexer.level
         for kind, start, raw in zip(lexer.kinds, lexer.starts, lexer.raws, strict=True):
-            added = _fill(found, text, end, start, comments, added)
-            found.append(Token(kind, start, raw))
+            added = _fill(result, text, end, start, comments, added)
+            result.append(Token(kind, start, raw))
             end = start + len(raw)
-    _fill(found, text, end, len(text), comments, added)
-    found += [Token(DEDENT, len(text), "")] * level
-    return tuple(found)
+    _fill(result, text, end, len(text), comments, added)
+    result += [Token(DEDENT, len(text), "")] * level
+    return tuple(result)
 
 
 def pieces(text: str) -> list[tuple[int, int, str]]:
@@ -107,7 +107,7 @@ def pieces(text: str) -> list[tuple[int, int, str]]:
     """
     lexer = Lexer(text)
     comments = lexer.comments
-    found: list[tuple[int, int, str]] = []
+    result: list[tuple[int, int, str]] = []
     added = 0
     while lexer.open_line():
         lexer.scan()
@@ -116,9 +116,9 @@ def pieces(text: str) -> list[tuple[int, int, str]]:
             of_line += [(COMMENT, start, text[start:end]) for start, end in comments[added:]]
             of_line.sort(key=itemgetter(1))
             added = len(comments)
-        found += [piece for piece in of_line if piece[0] not in _SILENT]
-    found += [(COMMENT, start, text[start:end]) for start, end in comments[added:]]
-    return found
+        result += [piece for piece in of_line if piece[0] not in _SILENT]
+    result += [(COMMENT, start, text[start:end]) for start, end in comments[added:]]
+    return result
 
 
 class Lexer(StrangeCharacters):
@@ -273,7 +273,7 @@ class Lexer(StrangeCharacters):
         return line_end(self.text, self.position)
 
     def _is_root_line(self) -> bool:
-        """Whether the current line, of which at least one token is read, begins a `Root` block."""
+        """Whether the current line begins a `Root` block; its first token must have been read."""
         return self.raws[0] == "Root" and self.kinds[0] == NAME and self.level in (0, self._root_level)
 
     # ---- tokens, each from its first character to the position after it ----
@@ -384,12 +384,12 @@ class Lexer(StrangeCharacters):
                 )
                 return
 
-    def _quote_this(self, at: int) -> int:
+    def _quote_this(self, offset: int) -> int:
         """Report a comment sign, or a word before one, where no comment may begin: the word around it needs quotes;
         after anything but a word a blank is missing.
         """
         text = self.text
-        start, end = self._whole_word(at)
+        start, end = self._whole_word(offset)
         sign = _COMMENT_SIGN.search(text, start)
         assert sign is not None, "there is a sign: that is why we are here"
         message = f"`{sign[0]}` begins a comment only after a space"
@@ -462,15 +462,15 @@ class Lexer(StrangeCharacters):
         brackets early.
         """
         text = self.text
-        start, at = line_opening(text, self.maps.ink, position)
-        blanks = self._line_blanks = text[start:at]
-        if at >= self.size:
-            return at
-        code: i64 = ord(text[at])
-        if code in (CLOSING, HASH) or (code == SLASH and text.startswith(_COMMENT_SIGNS, at)):
-            return at
-        if self._at_top_column(blanks) and TOP_LINE.match(text, at):
-            self._end_brackets(len(self._brackets), position, at)
+        start, next_word = line_opening(text, self.maps.ink, position)
+        blanks = self._line_blanks = text[start:next_word]
+        if next_word >= self.size:
+            return next_word
+        code: i64 = ord(text[next_word])
+        if code in (CLOSING, HASH) or (code == SLASH and text.startswith(_COMMENT_SIGNS, next_word)):
+            return next_word
+        if self._at_top_column(blanks) and TOP_LINE.match(text, next_word):
+            self._end_brackets(len(self._brackets), position, next_word)
             return position
         ended = 0
         for _, opened in reversed(self._brackets):
@@ -479,9 +479,9 @@ class Lexer(StrangeCharacters):
             else:
                 break
         if not ended:
-            return at
-        self._end_brackets(ended, position, at)
-        return at if self._brackets else position
+            return next_word
+        self._end_brackets(ended, position, next_word)
+        return next_word if self._brackets else position
 
     def _at_top_column(self, blanks: str) -> bool:
         """Whether an item may begin at this indentation; after `Root (` without `)`, at any that its block may have."""
@@ -516,7 +516,7 @@ class Lexer(StrangeCharacters):
         self.problems.append(Diagnostic("unclosed-bracket", span, message, related=related, fixes=(fix,)))
 
     def _missed_at(self, opened: int) -> int:
-        """Where a `)` was probably forgotten: at the end of a line after which no attribute begins."""
+        """The place of a probably forgotten `)`: the end of a line after which no attribute begins."""
         end = opened
         for index in range(bisect_left(self.starts, opened), len(self.starts)):
             start, raw = self.starts[index], self.raws[index]
@@ -530,7 +530,7 @@ class Lexer(StrangeCharacters):
 # ---- all tokens ----
 
 
-def _fill(found: list[Token], text: str, end: int, start: int, comments: list[tuple[int, int]], added: int) -> int:
+def _fill(result: list[Token], text: str, end: int, start: int, comments: list[tuple[int, int]], added: int) -> int:
     """Add what the lexer skipped between two tokens: blanks, comments and invalid characters.
 
     Args:
@@ -542,11 +542,11 @@ def _fill(found: list[Token], text: str, end: int, start: int, comments: list[tu
     """
     while added < len(comments) and comments[added][0] < start:
         comment, after = comments[added]
-        found += _gaps(text, end, comment)
-        found.append(Token(COMMENT, comment, text[comment:after]))
+        result += _gaps(text, end, comment)
+        result.append(Token(COMMENT, comment, text[comment:after]))
         end = after
         added += 1
-    found += _gaps(text, end, start)
+    result += _gaps(text, end, start)
     return added
 
 

@@ -189,24 +189,24 @@ class Parser(ItemParser):
     def item(self, level: int, in_root: bool) -> None:
         """Item = Include | Qualities | QualityDecl | Models | Model | Signal | Context | ReqItem | Apply | Root | …"""
         self.base = self.lexer.line_start
-        found_at = self.lexer.level
+        own_level = self.lexer.level
         self.scan()
-        if found_at > level and found_at != self.stray_level:
+        if own_level > level and own_level != self.stray_level:
             self.complain(self.here(), "unexpected indentation: no block is open above this line")
-        self.stray_level = found_at if found_at > level else -1
+        self.stray_level = own_level if own_level > level else -1
         word = self.item_word()
         item: Item
         if word == "BehaviorTree":
-            item = self.tree(found_at)
+            item = self.tree(own_level)
         elif word == "Root":
-            self.root(found_at, in_root)
+            self.root(own_level, in_root)
             return
         elif word in CATEGORIES:
-            item = self.model(found_at)
+            item = self.model(own_level)
         elif word == "QualityReq":
-            item = self.req_item(found_at)
+            item = self.req_item(own_level)
         elif word == "TreeNodesModel":
-            item = self.models(found_at)
+            item = self.models(own_level)
         elif word == "include":
             item = self.include()
         elif word == "signal":
@@ -222,9 +222,9 @@ class Parser(ItemParser):
         elif word == "xml":
             item = self.verbatim()
         else:
-            item = self.skipped(found_at)
-        if self.deeper(found_at) and not self.begins_item():
-            self.no_block(found_at)
+            item = self.skipped(own_level)
+        if self.deeper(own_level) and not self.begins_item():
+            self.no_block(own_level)
         self.entry(item, in_root)
 
     def item_word(self) -> str:
@@ -253,17 +253,17 @@ class Parser(ItemParser):
 
     def entry(self, item: Item, in_root: bool) -> None:
         """Add the item, with the problems found before the open line; their offsets count from the item's start."""
-        found = self.problems + self.lexer.problems
+        problems = self.problems + self.lexer.problems
         self.problems = []
         self.lexer.problems = []
-        if found:
+        if problems:
             end = self.lexer.line_start if self.more else len(self.text) + 1
-            self.lexer.problems = [problem for problem in found if problem.span.start >= end]
-            found = sorted(
-                (shifted(problem, -self.base) for problem in found if problem.span.start < end),
+            self.lexer.problems = [problem for problem in problems if problem.span.start >= end]
+            problems = sorted(
+                (shifted(problem, -self.base) for problem in problems if problem.span.start < end),
                 key=lambda problem: problem.span,
             )
-        causes = _root_causes(found, self.inside_out - self.base) if found else ()
+        causes = _root_causes(problems, self.inside_out - self.base) if problems else ()
         self.entries.append(Entry(self.base, item, in_root, causes))
 
     def root(self, level: int, in_root: bool) -> None:
@@ -332,25 +332,25 @@ class Parser(ItemParser):
             self.expected("an item: BehaviorTree, QualityReq, include, signal, …", notes, fixes)
         end = self.end_line()
         while self.more and not self.ends_skipping(level):
-            known = len(self.lexer.problems)
+            count = len(self.lexer.problems)
             self.scan()
-            del self.lexer.problems[known:]
+            del self.lexer.problems[count:]
             self.go_to(len(self.kinds) - 1)
             end = self.end_line()
         return SkippedLines(start, end)
 
     def other_item(self, meant: str) -> Fix:
         """The fix for an item in the syntax of another language: `import stations`, `def main():`."""
-        at = self.here()
-        rest = Span(self.starts[self.index + 1], line_end(self.text, at.start))
+        word = self.here()
+        tail = Span(self.starts[self.index + 1], line_end(self.text, word.start))
         title = f"Replace `{self.raw}` with `{meant}`"
         if meant == "include" and self.kinds[self.index + 1] == NAME and self.kinds[self.index + 2] == NEWLINE:
-            end = path_end(self.text, rest.start)
-            name = self.text[rest.start : end]
-            return replace_fix(title, Span(at.start, end), f"include {quote(name if '.' in name else f'{name}.btq')}")
-        if meant == "BehaviorTree" and (head := _PYTHON_HEAD.match(self.text, rest.start)):
-            return replace_fix(title, Span(at.start, head.end()), f"BehaviorTree {head[1]}")
-        return replace_fix(title, at, meant)
+            end = path_end(self.text, tail.start)
+            name = self.text[tail.start : end]
+            return replace_fix(title, Span(word.start, end), f"include {quote(name if '.' in name else f'{name}.btq')}")
+        if meant == "BehaviorTree" and (head := _PYTHON_HEAD.match(self.text, tail.start)):
+            return replace_fix(title, Span(word.start, head.end()), f"BehaviorTree {head[1]}")
+        return replace_fix(title, word, meant)
 
     def ends_skipping(self, level: int) -> bool:
         """Whether the open line is an item, is probably meant as one, or has less indentation."""
@@ -374,20 +374,20 @@ _OTHER_ITEMS: Final = {  # words of other languages, in lower case
 _PYTHON_HEAD: Final = re.compile(r"([^\W\d]\w*)[ \t]*(?:\([^()\r\n]*\))?[ \t]*:(?=[ \t]*[\r\n])")
 
 
-def _root_causes(found: list[Diagnostic], inside_out: int) -> tuple[Diagnostic, ...]:
+def _root_causes(problems: list[Diagnostic], inside_out: int) -> tuple[Diagnostic, ...]:
     """If a quote is missing and makes what follows invalid, only the string that lacks it is reported.
 
     Args:
         inside_out: where the parser noticed that.
     """
     kept: list[Diagnostic] = []
-    for index, problem in enumerate(found):
+    for index, problem in enumerate(problems):
         if problem.span.start >= inside_out:
             break
         if problem.rule == "string-over-items":
-            if any(other.rule in ("syntax-error", "unclosed-string") for other in found[index + 1 :]):
+            if any(other.rule in ("syntax-error", "unclosed-string") for other in problems[index + 1 :]):
                 notes = ("add the closing quote",)
                 return (*kept, replace(problem, rule="unclosed-string", notes=notes))
-            return (*found[: index + 1], *(other for other in found[index + 1 :] if other.rule != problem.rule))
+            return (*problems[: index + 1], *(other for other in problems[index + 1 :] if other.rule != problem.rule))
         kept.append(problem)
     return tuple(kept)

@@ -16,7 +16,7 @@ from btq_lang.lexer import tokens
 from btq_lang.parser import Parsed, parse
 from btq_lang.syntax.tokens import BLANK, CLOSE, COMMENT, DEDENT, ERROR, INDENT, NEWLINE, OPEN, QUANTITY, Token
 from btq_lang.syntax.tree import Requirement, Word, shape
-from btq_lang.util.fields import fields_of
+from btq_lang.util.record import fields_of
 
 # ---- what a file says -----------------------------------------------------------------------------------------------
 

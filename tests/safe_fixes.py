@@ -133,7 +133,7 @@ def _lines(text: str, span: Span) -> set[int]:
 def _xml(workspace: Workspace, path: str) -> Elements | None:
     """The elements of the XML that is built, or of XML itself; None if it cannot be built or is not well-formed."""
     xml = workspace.files[path].source
-    if workspace.files[path].origin is None:
+    if not workspace.files[path].is_foreign:
         exported = export(workspace, path)
         if exported.problems:
             return None

@@ -9,13 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
 
-from btq_lang.catalog.changes import ANY, BehaviorChange
 from btq_lang.catalog.engine_changes import ENGINE_CHANGES
 from btq_lang.catalog.nav2 import DISTRIBUTIONS, ENGINES
 from btq_lang.catalog.nav2.changes import CHANGES, INSTEAD, RENAMED, RENAMED_PORTS
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS
+from btq_lang.catalog.versions import ANY, VERSION_3, VERSIONS, BehaviorChange, at_least
 from btq_lang.catalog.versions import CHANGES as VERSION_CHANGES
-from btq_lang.catalog.versions import VERSION_3, VERSIONS, at_least
 from btq_lang.checks.target_changes import is_between
 from btq_lang.commands.explain_nav2 import models_of
 

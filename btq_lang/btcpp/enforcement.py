@@ -202,7 +202,7 @@ class _Plan:
         except Elsewhere as elsewhere:
             bundled = self._bundled.enforce(applied, claim)
             is_helped = bundled.way == "enforced"
-            is_xml = self._workspace.files[elsewhere.node.path].origin is not None
+            is_xml = self._workspace.files[elsewhere.node.path].is_foreign
             return replace(monitored, why=where_else(elsewhere.node, is_xml=is_xml) if is_helped else bundled.why)
         except NotEnforced as reason:
             return replace(monitored, why=str(reason))

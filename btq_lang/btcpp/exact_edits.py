@@ -26,15 +26,14 @@ def exact_edits(file: File, edit: Edit) -> tuple[Edit, ...] | None:
 
     XML that a build wrote has none: its source is to be changed.
     """
-    origin = file.origin
-    if origin is None or not origin.is_complete or is_generated(origin.text):
+    if file.places is None or not file.is_understood or is_generated(file.source):
         return None
-    xml, replaced = origin.text, edit.span
+    xml, replaced = file.source, edit.span
     word = file.text[replaced.start : replaced.end]
     is_string = len(word) > 2 and word[0] == word[-1] == '"'
     if is_string:  # by a word without quotes, which XML spells as it is
         replaced = Span(replaced.start + 1, replaced.end - 1)
-    for start, end, begin, stop in origin.places.containing(replaced):
+    for start, end, begin, stop in file.places.containing(replaced):
         old = file.text[start:end]
         if is_string and old == word and xml[begin - 1 : stop] == f"<{word[1:-1]}":  # in quotes here alone
             ends = [Span(begin, stop), *closing_name(xml, begin, word[1:-1])] if _is_tag(edit.text, edit.text) else []
@@ -60,10 +59,10 @@ def respelt(file: File, edits: Iterable[Edit]) -> Iterator[Edit]:
 
     Whether the result means what it should is for the caller to find.
     """
-    if file.origin is None:
+    if not file.is_foreign:
         yield from edits
         return
-    xml = file.origin.text
+    xml = file.source
     for edit in edits:
         span = file.on_disk(edit.span)
         new = escape(unquote(edit.text) if edit.text[:1] in _QUOTES else edit.text)

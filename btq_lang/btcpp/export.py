@@ -108,7 +108,7 @@ def _document(source: ExportSource, trees: Trees, included_as: IncludedAs, guess
             if head is None:
                 head = entry
                 before += source.written((*around.before, *around.within))
-                contents += source.written((*around.first, *around.behind), beside=not contents)
+                contents += source.written((*around.first, *around.after), beside=not contents)
                 end_of_block += source.written(around.last)
             continue
         if not entry.in_root:
@@ -147,7 +147,7 @@ def _models(
         message = "its models move to the first TreeNodesModel: the engine accepts only one"
         source.repair(entry, item, message)
         element = models.palettes[0]
-        contents += source.written((*around.before, *around.within, *around.behind))
+        contents += source.written((*around.before, *around.within, *around.after))
     else:
         element = Element("TreeNodesModel")
         models.palettes.append(element)

@@ -11,10 +11,8 @@ from btq_lang.workspace.workspace import Workspace
 
 def with_source(workspace: Workspace, path: str, text: str) -> Workspace:
     """The workspace after a change of the text that a file has on the disk, whatever its language."""
-    if workspace.files[path].origin is None:
-        return workspace.with_file(path, text)
-    after = file_of(path, text)
-    return workspace.with_file(path, after.text, after.origin)
+    is_foreign = workspace.files[path].is_foreign
+    return workspace.with_read(file_of(path, text)) if is_foreign else workspace.with_file(path, text)
 
 
 def file_of(path: str, text: str) -> File:

@@ -32,15 +32,15 @@ class ElementDescriptions(Record):
 
 def element_descriptions(workspace: Workspace, path: str, side: str | None) -> ElementDescriptions:
     """What the side file of an XML file says of each element, else the lines that the build has described at it."""
-    origin = workspace.files[path].origin
+    file = workspace.files[path]
     descriptions = ElementDescriptions("", {})
-    if origin is None:
+    if not file.is_foreign:
         return descriptions
     if side is not None:
         *included, _ = workspace.registered_with(path)
-        origins = (workspace.files[each].origin for each in included)
-        descriptions = descriptions_from(side, origin.text, tuple(each.text for each in origins if each is not None))
-    return replace(descriptions, lines={**dict(described(origin.text)), **descriptions.lines})
+        files = (workspace.files[each] for each in included)
+        descriptions = descriptions_from(side, file.source, tuple(each.source for each in files if each.is_foreign))
+    return replace(descriptions, lines={**dict(described(file.source)), **descriptions.lines})
 
 
 @lru_cache(maxsize=2)  # a request for each move of the mouse

@@ -26,8 +26,7 @@ from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.tree import Apply, Context, Entry, Qualities, QualityDecl, Satisfices, Tree
 from btq_lang.syntax.tree import Requirement as RequirementItem
 from btq_lang.syntax.tree import Signal as SignalItem
-from btq_lang.util.fields import fields_of
-from btq_lang.util.record import Record
+from btq_lang.util.record import Record, fields_of
 from btq_lang.workspace.file import SIDE_SUFFIX
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
@@ -261,7 +260,7 @@ class _Places:
         if place.path is None:
             return {}
         file = self._workspace.files[place.path]
-        if file.origin is not None:  # it was imported from XML, so its lines differ
+        if file.is_foreign:  # it was imported from XML, so its lines differ
             return {"file": self.name(place.path)}
         return {"file": self.name(place.path), "line": file.lines.position(file.span_of(place).start).line + 1}
 

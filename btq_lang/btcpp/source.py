@@ -73,7 +73,7 @@ class ExportSource:
     def _stays(self, tree: str) -> bool:
         """Whether a tree is in XML that is not written, so that its name cannot change."""
         definition = None if self.is_bundled else self.scope.find(Kind.TREE, tree)
-        return definition is not None and definition.path != self.path and definition.path in self.workspace.origins
+        return definition is not None and definition.path != self.path and definition.path in self.workspace.foreign
 
     def spelt_tree(self, name: Word) -> str:
         """A tree's name as the value of an attribute."""
@@ -101,7 +101,7 @@ class ExportSource:
         contents += self.written(around.before)
         contents += self.written(around.within)
         contents.append(element)
-        contents += self.written(around.behind, beside=True)
+        contents += self.written(around.after, beside=True)
 
     def written(self, remarks: tuple[SourceComment, ...], beside: bool = False) -> list[XmlComment]:
         """Comments as XML has them."""

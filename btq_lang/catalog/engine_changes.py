@@ -1,4 +1,4 @@
-"""What a release of the engine changes for trees that load in an earlier one too: one row a change.
+"""The changes of the engine's releases for trees that load in an earlier one too: one row a change.
 
 What a release refuses, and what it reads otherwise, are rows of `versions`; the nodes that it adds or removes say so
 themselves.  Determined in the sources of the releases, and seen in those before and after each change by
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from btq_lang.catalog.changes import BehaviorChange
+from btq_lang.catalog.versions import BehaviorChange
 
 _IN_TURN: Final = ("Sequence", "AsyncSequence", "SequenceWithMemory", "Fallback", "AsyncFallback")
 _LOOPS: Final = ("LoopInt", "LoopBool", "LoopDouble", "LoopString")
@@ -22,10 +22,10 @@ _WATCHES: Final = ("SkipUnlessUpdated", "WaitValueUpdate")
 _NUMBER: Final = r"-?\d+(\.\d*)?([eE][-+]?\d+)?"
 
 
-def _cases(since: str, what: str, value: str, after: str = "") -> tuple[BehaviorChange, ...]:
+def _cases(since: str, effect: str, value: str, after: str = "") -> tuple[BehaviorChange, ...]:
     instead = "write the cases and the variable in one form"
     ports = (f"case_{number}" for number in range(1, 7))
-    return tuple(BehaviorChange(since, _SWITCHES, what, instead, port, value, after=after) for port in ports)
+    return tuple(BehaviorChange(since, _SWITCHES, effect, instead, port, value, after=after) for port in ports)
 
 
 # Releases of the line 4.8, so that a file for that line meets it without moving on.

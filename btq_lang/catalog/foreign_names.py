@@ -1,7 +1,8 @@
-"""Names that other engines have for what a built-in of this one does: people who know those write them here.
+"""Other engines' names of this one's built-ins and their attributes, which people who know those engines write here.
 
-One invariant: no name here, written as its engine writes it, is a spelling of a built-in.  A node of a program may have
-any of them, so callers ask only about nodes with children that nothing declares.
+One invariant: no name of a node here, written as its engine writes it, is a spelling of a built-in.  A node of a
+program may have any of them, so callers ask only about nodes with children that nothing declares, and about attributes
+only of a built-in without a port of that name.  Nodes are named by their tags, which XML and this language share.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from btq_lang.util.record import Record
 
 
 class ForeignName(Record):
-    """What a name of other engines means.
+    """The meaning of a name in other engines.
 
     Attributes:
         tag: the built-in that does the same.
@@ -34,12 +35,12 @@ def foreign_name(word: str) -> ForeignName | None:
     if plain in _SPELLINGS:
         return None
     stem = _AFFIXES.sub("", plain)
-    known = _NAMES.get(plain) or _NAMES.get(stem)
-    return ForeignName(_SPELLINGS[stem]) if known is None and stem in _SPELLINGS else known
+    meaning = _NAMES.get(plain) or _NAMES.get(stem)
+    return ForeignName(_SPELLINGS[stem]) if meaning is None and stem in _SPELLINGS else meaning
 
 
 def statement(word: str) -> str:
-    """How a tree says what a word of programming languages does, in the words of a message; empty for other words."""
+    """The way in which a tree expresses a statement of programming languages, for a message; empty for other words."""
     return _STATEMENTS.get(word, "")
 
 
@@ -50,8 +51,17 @@ def branch(word: str) -> str:
 
 
 def is_of_leaves(word: str) -> bool:
-    """Whether programs have leaves of that name too, so that a word after it may well be a label."""
+    """Whether programs have leaves of that name too: a word after it may then be a label."""
     return _plain(word) in _OF_LEAVES
+
+
+def of_other_engines(flow: str, key: str) -> str:
+    """The replacement here of an attribute of another engine, as a sentence; empty if it is unknown.
+
+    Args:
+        flow: of the built-in that has the attribute.
+    """
+    return _PORTS.get((flow, key.casefold())) or _PORTS_ANYWHERE.get(key.casefold(), "")
 
 
 def _plain(word: str) -> str:
@@ -133,3 +143,39 @@ _SPELLINGS: Final = {
     _plain(spelling): kind.tag for kind in BUILTINS.values() for spelling in spellings(kind) if spelling[0].isalpha()
 }
 _AFFIXES: Final = re.compile(r"^bt(?:composite|decorator)?|^decorator|(?:composite|decorator|node)$")
+# Sources: the documentation of py_trees (`memory`, `policy`), Unreal Engine, Behavior Designer and Beehave.
+_PORTS: Final = {
+    **dict.fromkeys(
+        (("sequence", "memory"), ("fallback", "memory")),
+        "a Sequence or Fallback goes on with the child that is running; "
+        "a ReactiveSequence or ReactiveFallback begins with the first one at every tick",
+    ),
+    **dict.fromkeys(
+        (
+            (flow, key)
+            for flow in ("retry", "repeat")
+            for key in ("delay", "delay_msec", "wait", "interval", "period", "backoff", "sleep", "pause")
+        ),
+        "to wait before each attempt, put a Delay around its child",
+    ),
+    **dict.fromkeys(
+        (("parallel", key) for key in ("policy", "success_policy", "mode", "synchronise")),
+        "`success_count` says how many children must succeed, and -1 is all of them",
+    ),
+    **dict.fromkeys(
+        (("choice", key) for key in ("condition", "cond", "if", "test", "expression", "code")),
+        "its first child is the condition, such as a ScriptCondition",
+    ),
+}
+NAME: Final = "a node's own name is its `name`"
+_PORTS_ANYWHERE: Final = {
+    **dict.fromkeys(("timeout", "time_limit", "max_time", "deadline"), "to limit its time, put a Timeout around it"),
+    **dict.fromkeys(
+        ("retries", "max_retries", "attempts"), "to try again after a failure, put a RetryUntilSuccessful around it"
+    ),
+    **dict.fromkeys(
+        ("child", "children", "node", "nodes", "task"),
+        "children go below their parent, in XML between its tags: `<Inverter><Dock/></Inverter>`",
+    ),
+    **dict.fromkeys(("id", "label", "title", "name"), NAME),
+}

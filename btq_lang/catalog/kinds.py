@@ -105,8 +105,8 @@ class PortKind(Record):
         unit: the unit of a number in it, if known.
         role: of its value in the flow of its node.
         removes: whether the node removes the entry that it names.
-        indirect: whether braces around the name of an entry mean the entry whose name that one holds.
-        literal: the type as which a literal is read, if not `type`.
+        indirect: whether `{key}` means the entry whose name is the value of `key`.
+        literal: the type with which a literal is read, if not `type`.
         type_before: a version, and the type that every earlier one prints.
     """
 

@@ -32,7 +32,7 @@ class Phrase(Record):
 
     @property
     def sentence(self) -> str:
-        """What it means."""
+        """The meaning of the phrase."""
         meaning = f"violated when {self.meaning}" if self.part == "claim" else self.meaning
         return f"{meaning[0].upper()}{meaning[1:]}."
 
@@ -46,10 +46,10 @@ def phrases_of(words: str) -> tuple[Phrase, ...]:
     return tuple(phrase for phrase in PHRASES if wanted[0] in phrase.words.split())
 
 
-def phrase_at(line: str, at: int) -> tuple[int, str] | None:
+def phrase_at(line: str, index: int) -> tuple[int, str] | None:
     """The phrase around a place in a line, the longest if there are several: its start and its words."""
     return next(
-        ((match.start(), match[0]) for match in _words().finditer(line) if match.start() <= at <= match.end()), None
+        ((match.start(), match[0]) for match in _words().finditer(line) if match.start() <= index <= match.end()), None
     )
 
 

@@ -1,4 +1,4 @@
-"""What the engine reads from the text of a port: refused, read whole, or read in part with the rest dropped silently.
+"""The engine's reading of the text of a port: refused, read whole, or read in part with the rest dropped silently.
 
 One invariant: a type that is not known here is never refused: its converter is in the user's C++ program.  It does not
 know ports, scripts or blackboards; `{key}` is a pointer to an entry for every type.
@@ -18,7 +18,7 @@ from btq_lang.util.record import Record
 
 
 class LiteralProblem(Record):
-    """What is wrong with a literal.
+    """A problem with a literal.
 
     Attributes:
         kind: refused: an error of the engine, at load or at the latest when it reads the port; trailing-text: the
@@ -36,7 +36,7 @@ class LiteralProblem(Record):
 
 @lru_cache(1_000)  # the same values occur again and again
 def check_literal(port_type: str, text: str, version: str = DEFAULT_VERSION) -> LiteralProblem | None:
-    """What is wrong with a literal for a port of that type, in that version of the engine; None if nothing is.
+    """The problem with a literal for a port of that type, in that version of the engine; None if it has none.
 
     Args:
         port_type: as the engine prints it or as a model declares it: `unsigned int`, `std::vector<double>`, `bool` …
@@ -117,13 +117,13 @@ def _check_real(plain: str, text: str, version: str) -> LiteralProblem | None:
     value = _value(number[0])
     smallest, largest = _MAGNITUDES[plain]
     vanishes = abs(value) <= smallest and _mantissa(number[0]).strip("+-.0 \t\n\v\f\r") != ""
-    if not _named(number[0]) and (abs(value) > largest or vanishes):
+    if not _is_named(number[0]) and (abs(value) > largest or vanishes):
         return LiteralProblem("refused", f"a number in the range of {plain}")
     return _rest(text, number.end(), "a number")
 
 
 def _bare(number: str, text: str) -> str:
-    """What the type accepts; mentions a leading `+` or space if nothing else is wrong."""
+    """The values that the type accepts; mentions a leading `+` or space if nothing else is wrong."""
     digit = text.strip().removeprefix("+")[:1]
     return f"{number} without a leading `+` or space" if "0" <= digit <= "9" else number
 
@@ -146,11 +146,11 @@ def _check_list(port_type: str, item: str, text: str, version: str) -> LiteralPr
     if items[-1] == "":
         items.pop()
     reads = []
-    for one in items:
-        problem = _check_one(item, one, version)
+    for literal in items:
+        problem = _check_one(item, literal, version)
         if problem is not None and problem.kind == "refused":
-            return LiteralProblem("refused", f"{problem.expected} as each item", found=_item(one))
-        reads.append(one if problem is None else problem.reads or "")
+            return LiteralProblem("refused", f"{problem.expected} as each item", found=_item(literal))
+        reads.append(literal if problem is None else problem.reads or "")
     if reads == items:
         return None
     expected = "an integer as each item" if item == "int" else "a number as each item"
@@ -195,12 +195,12 @@ def _plain(port_type: str) -> str:
 @lru_cache(500)
 def _list_item(port_type: str) -> str | None:
     """The type of a list's items; None if the engine cannot read it as a list."""
-    found = _LIST.match(" ".join(port_type.split())) if "<" in port_type else None
-    if found is None:
+    match = _LIST.match(" ".join(port_type.split())) if "<" in port_type else None
+    if match is None:
         return None
-    if "basic_string" in found[1] or found[1] in ("string", "std::string"):
+    if "basic_string" in match[1] or match[1] in ("string", "std::string"):
         return "std::string"
-    item = _plain(found[1].strip())
+    item = _plain(match[1].strip())
     # The engine has converters for lists of these; any other is the user's own.
     return item if item in ("int", "double", "bool") else None
 
@@ -216,10 +216,10 @@ def _value(number: str) -> float:
             return float.fromhex(number)
         except OverflowError:
             return float("inf")
-    return 0.0 if _named(number) else float(number)
+    return 0.0 if _is_named(number) else float(number)
 
 
-def _named(number: str) -> bool:
+def _is_named(number: str) -> bool:
     """inf, infinity, nan, nan(…)"""
     return number.strip().lstrip("+-")[:1] in ("i", "I", "n", "N")
 

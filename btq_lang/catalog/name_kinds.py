@@ -1,4 +1,7 @@
-"""What a name can name."""
+"""The kinds of things that have names.
+
+In a module of its own because most rooms look names up by their kind and need no table of the catalog.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,7 @@ from enum import Enum
 
 
 class Kind(Enum):
-    """What a name can name."""
+    """The kind of what a name names."""
 
     TREE = "tree"
     MODEL = "node model"

@@ -30,7 +30,7 @@ def model_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
         return "it is empty"
     if name in ("Root", "root"):
         return "`Root` is a reserved name"
-    return _contained(name, _REFUSED)
+    return _refused_character(name, _REFUSED)
 
 
 def port_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
@@ -41,13 +41,13 @@ def port_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
         return "it is empty"
     if name[0] in "0123456789":
         return "it begins with a digit"
-    return _contained(name, _REFUSED) or _reserved(name)
+    return _refused_character(name, _REFUSED) or _reserved(name)
 
 
 @lru_cache(_KEPT)
 def instance_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
     """Why the engine refuses the `name` of a node; None if it does not.  Only control characters are refused."""
-    return _contained(name, _UNPRINTABLE) if NAME_RULES.holds(version) else None
+    return _refused_character(name, _UNPRINTABLE) if NAME_RULES.holds(version) else None
 
 
 @lru_cache(_KEPT)
@@ -55,7 +55,7 @@ def is_port_name(name: str, version: str = DEFAULT_VERSION) -> bool:
     """Whether the engine takes an attribute of that name for a port.  If not, it keeps it and never reads it."""
     if name[:1] not in _LETTERS or name in ("name", "ID"):
         return False
-    return not NAME_RULES.holds(version) or _contained(name, _REFUSED) is None
+    return not NAME_RULES.holds(version) or _refused_character(name, _REFUSED) is None
 
 
 def is_xml_name(name: str) -> bool:
@@ -73,7 +73,7 @@ def legal_name(name: str) -> str:
     """
     if name.isascii() and name.isidentifier() and name not in ("Root", "root"):
         return name  # nearly all are
-    plain = (each if each in "_-0123456789" or each.isalpha() else " " for each in name)
+    plain = (character if character in "_-0123456789" or character.isalpha() else " " for character in name)
     pieces = "".join(plain).split()
     legal = "_".join(kept for piece in pieces if (kept := piece.strip("-")))
     if legal in ("", "Root", "root"):
@@ -81,14 +81,14 @@ def legal_name(name: str) -> str:
     return f"_{legal}" if legal[0] in "0123456789" else legal
 
 
-def _contained(name: str, refused: frozenset[str]) -> str | None:
+def _refused_character(name: str, refused: frozenset[str]) -> str | None:
     """The first character of a name that is refused, as a reason; None if none is."""
     if refused.isdisjoint(name):
         return None
-    found = next(character for character in name if character in refused)
-    if found in _CONTROLS:
-        return f"it contains the control character U+{ord(found):04X}"
-    return "it contains a space" if found == " " else f"it contains `{found}`"
+    character = next(character for character in name if character in refused)
+    if character in _CONTROLS:
+        return f"it contains the control character U+{ord(character):04X}"
+    return "it contains a space" if character == " " else f"it contains `{character}`"
 
 
 def _reserved(name: str) -> str | None:

@@ -1,7 +1,9 @@
-"""Looking up node kinds: the engine's node for a word in a file.
+"""Looking up node kinds: the engine's node for a word in a file, and words that only look like one.
 
-One invariant: a quoted kind is the XML tag verbatim, never a symbol or an alias.  It knows neither a file's own models
-nor its placeholders: callers that have read the file decide whether an unknown name is a custom node.
+One invariant: a quoted kind is the XML tag verbatim, never a symbol or an alias, and no `KnownWord` is a tag, a symbol
+or an alias: a node with such a name is taken for its replacement if it has one, else for a custom node.  It knows
+neither a file's own models nor its placeholders: callers that have read the file decide whether an unknown name is a
+custom node.
 """
 
 from __future__ import annotations
@@ -13,15 +15,29 @@ from btq_lang.catalog.engine_nodes import ENGINE_NODES
 from btq_lang.catalog.kinds import CATEGORIES
 from btq_lang.catalog.kinds import NodeKind as NodeKind
 from btq_lang.catalog.kinds import PortKind as PortKind
-from btq_lang.catalog.versions import at_least
-from btq_lang.catalog.words import KNOWN_WORDS as KNOWN_WORDS
-from btq_lang.catalog.words import OLD_PORTS as OLD_PORTS
-from btq_lang.catalog.words import PLACEHOLDERS as PLACEHOLDERS
-from btq_lang.catalog.words import KnownWord as KnownWord
-from btq_lang.util.record import replace
+from btq_lang.catalog.versions import VERSION_3, at_least
+from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
-    from btq_lang.catalog.kinds import Flow
+    from btq_lang.catalog.kinds import Category, Flow
+
+
+class KnownWord(Record):
+    """A word that is not a node of the engine.
+
+    Attributes:
+        tag: its XML tag.
+        why: what it is, or what replaced it, as a sentence.
+        replacement: the built-in to write in its place, if there is one that needs no other change; else None.
+        until: the last version of the engine that has it; None if none is known that has.
+    """
+
+    word: str
+    category: Category
+    tag: str
+    why: str
+    replacement: str | None = None
+    until: str | None = None
 
 
 def lookup(word: str, quoted: bool = False, child_count: int | None = None) -> NodeKind | None:
@@ -48,8 +64,8 @@ def xml_tag(word: str, quoted: bool = False, child_count: int | None = None) -> 
     kind = lookup(word, quoted, child_count)
     if kind is not None:
         return kind.tag
-    known = None if quoted else KNOWN_WORDS.get(word)
-    return word if known is None else known.tag
+    old_word = None if quoted else KNOWN_WORDS.get(word)
+    return word if old_word is None else old_word.tag
 
 
 def spellings(kind: NodeKind) -> tuple[str, ...]:
@@ -75,8 +91,8 @@ def inspects_children(tag: str) -> bool:
 
 def tags_of(flow: Flow) -> frozenset[str]:
     """The tags of the built-ins of a flow, and those that older engines have for them."""
-    found = {kind.tag for kind in ENGINE_NODES if kind.flow == flow}
-    return frozenset((*found, *(known.word for known in KNOWN_WORDS.values() if known.replacement in found)))
+    tags = {kind.tag for kind in ENGINE_NODES if kind.flow == flow}
+    return frozenset((*tags, *(old.word for old in KNOWN_WORDS.values() if old.replacement in tags)))
 
 
 def of_version(port: PortKind, version: str) -> PortKind:
@@ -85,6 +101,81 @@ def of_version(port: PortKind, version: str) -> PortKind:
         return replace(port, type=port.type_before[1])
     return port
 
+
+def _custom(word: str, category: Category, why: str) -> KnownWord:
+    return KnownWord(word, category, word, why)
+
+
+def _old(word: str, category: Category, why: str, replacement: str | None = None, until: str = VERSION_3) -> KnownWord:
+    return KnownWord(word, category, word, why, replacement, until)
+
+
+_WORDS: Final = (
+    # The published language's own.
+    KnownWord(
+        "Test",
+        "Action",
+        "TestNode",
+        "TestNode is the engine's substitution placeholder and is not registered: register an action TestNode",
+    ),
+    _custom(
+        "ThreadedAction", "Action", "ThreadedAction is a C++ base class, not a node: write the name of your own action"
+    ),
+    _custom("CoroAction", "Action", "CoroAction is a C++ base class, not a node: write the name of your own action"),
+    _old("ManualSelector", "Control", "ManualSelector was a node of version 3; version 4 does not build it"),
+    _custom("ConsumeQueue", "Decorator", "ConsumeQueue is a C++ template that a program must register; see LoopDouble"),
+    _custom("PopFromQueue", "Action", "PopFromQueue is a C++ template that a program must register; see LoopDouble"),
+    # C++ names that people take for nodes.
+    _custom("QueueSize", "Action", "QueueSize is a C++ template that a program must register"),
+    _custom(
+        "StatefulAction", "Action", "StatefulAction is a C++ base class, not a node: write the name of your own action"
+    ),
+    _custom("SyncAction", "Action", "SyncAction is a C++ base class, not a node: write the name of your own action"),
+    # Older engines'.
+    _old(
+        "SequenceStar",
+        "Control",
+        "SequenceStar is the name of SequenceWithMemory in version 3, where it begins again after a halt",
+        "SequenceWithMemory",
+    ),
+    _old("FallbackStar", "Control", "FallbackStar is the name of Fallback in version 2", "Fallback", "2.5"),
+    _old(
+        "RetryUntilSuccesful",
+        "Decorator",
+        "RetryUntilSuccesful is the misspelling of RetryUntilSuccessful up to version 3.6.0",
+        "RetryUntilSuccessful",
+        "3.6",
+    ),
+    _old(
+        "SubTreePlus", "SubTree", "SubTreePlus is the name of SubTree in version 3; its __autoremap is now _autoremap"
+    ),
+    *(
+        _old(
+            f"BlackboardCheck{kind}",
+            "Decorator",
+            f"BlackboardCheck{kind} was a node of version 3: write a Precondition with a script",
+        )
+        for kind in ("Int", "Double", "String", "Bool")
+    ),
+)
+
+# By word.
+KNOWN_WORDS: Final = {known.word: known for known in _WORDS}
+
+# Version 3's names of ports: (tag, port) to the port of today.
+OLD_PORTS: Final = {
+    ("Parallel", "success_threshold"): "success_count",
+    ("Parallel", "failure_threshold"): "failure_count",
+}
+
+# Unquoted and without `code`, these mean a custom node of this category: classic files have no other way.
+PLACEHOLDERS: Final[dict[str, Category]] = {
+    "ScriptAction": "Action",
+    "Script": "Action",
+    "ScriptCondition": "Condition",
+}
+# What other libraries and textbooks call the engine's nodes.
+ELSEWHERE: Final = {"Selector": ("Fallback",)}
 
 # By XML tag.
 BUILTINS: Final[Mapping[str, NodeKind]] = {kind.tag: kind for kind in ENGINE_NODES}

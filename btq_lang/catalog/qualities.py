@@ -50,7 +50,7 @@ class Quality(Record):
 
 
 class QualityMatch(Record):
-    """What a QualityPath means.
+    """The meaning of a QualityPath.
 
     Attributes:
         kind: exact; alias: another word for it; other-edition: a name of another edition; ambiguous; unknown.
@@ -72,7 +72,7 @@ class QualityMatch(Record):
 
 @lru_cache(1000)
 def find(words: tuple[str, ...], edition: Edition = DEFAULT_EDITION) -> QualityMatch:
-    """What the parts of a QualityPath mean in an edition.
+    """The meaning of the parts of a QualityPath in an edition.
 
     Args:
         words: the path's names as written: `("performance", "time-behavior")`, `("time-behaviour",)`.
@@ -87,7 +87,7 @@ def find(words: tuple[str, ...], edition: Edition = DEFAULT_EDITION) -> QualityM
     if keys in _PAPER_NAMES:
         return QualityMatch("exact", get(_PAPER_NAMES[keys], edition))
     match = _find_word(words[0], keys[0], index) if len(words) == 1 else _find_path(words, keys, index)
-    return match or QualityMatch("unknown", near=_near(words, keys, index))
+    return match or QualityMatch("unknown", near=_similar_ids(words, keys, index))
 
 
 def get(id_: str, edition: Edition = DEFAULT_EDITION) -> Quality | None:
@@ -115,7 +115,7 @@ def parts(id_: str, edition: Edition = DEFAULT_EDITION) -> tuple[Quality, ...]:
 
 
 def successors(id_: str) -> tuple[str, ...]:
-    """What a name of 2011 became in 2023; empty if it was dropped, or 2011 does not have the name.
+    """The names of 2023 for a name of 2011; empty if it was dropped, or 2011 does not have the name.
 
     A sub-characteristic that has no successor of its own has those of its characteristic.
     """
@@ -129,7 +129,7 @@ def successors(id_: str) -> tuple[str, ...]:
 
 
 def predecessors(id_: str) -> tuple[str, ...]:
-    """What a name of 2023 was in 2011; empty if it is new."""
+    """The names of 2011 for a name of 2023; empty if it is new."""
     if get(id_, "2011") is not None and id_ not in SUCCESSORS:
         return (id_,)
     return tuple(old for old, new in SUCCESSORS.items() if id_ in new)
@@ -162,8 +162,7 @@ def _find_word(word: str, key: str, index: _Index) -> QualityMatch | None:
 
 
 def _find_path(words: tuple[str, ...], keys: tuple[str, ...], index: _Index) -> QualityMatch | None:
-    """The match of several words that are not an id: understood if the front and the last word are, and belong
-    together."""
+    """The match of several words that are not an id, if the last word names a part of what the others name."""
     other = _index("2011" if index.edition == "2023" else "2023")
     old = other.by_key.get(".".join(keys))
     if old is not None:
@@ -171,15 +170,17 @@ def _find_path(words: tuple[str, ...], keys: tuple[str, ...], index: _Index) -> 
     front = {quality.id for quality in _meanings(find(words[:-1], index.edition))}
     inside = [index.by_key.get(f"{fold(id_)}.{keys[-1]}") for id_ in front if "." not in id_]
     last = _meanings(find(words[-1:], index.edition))
-    found = tuple(dict.fromkeys([part for part in inside if part] or [one for one in last if _lies(one, front, index)]))
-    if not found:
+    matches = tuple(
+        dict.fromkeys([part for part in inside if part] or [one for one in last if _belongs(one, front, index)])
+    )
+    if not matches:
         return None
-    if len(found) > 1:
-        return QualityMatch("ambiguous", None, found, explanation=f"`{'.'.join(words)}` may mean each of these")
-    return QualityMatch("alias", found[0], found, True, f"`{'.'.join(words)}` is another word for {found[0].id}")
+    if len(matches) > 1:
+        return QualityMatch("ambiguous", None, matches, explanation=f"`{'.'.join(words)}` may mean each of these")
+    return QualityMatch("alias", matches[0], matches, True, f"`{'.'.join(words)}` is another word for {matches[0].id}")
 
 
-def _lies(quality: Quality, front: set[str], index: _Index) -> bool:
+def _belongs(quality: Quality, front: set[str], index: _Index) -> bool:
     """Whether a quality belongs under one of these ids.  A robotics quality belongs under the nearest to it."""
     if quality.parent is not None:
         return quality.parent in front
@@ -196,8 +197,8 @@ def _of_other_edition(old: Quality, index: _Index) -> QualityMatch:
     now = " or ".join(quality.id for quality in candidates)
     same = len(candidates) == 1 and _are_equal(old.id, candidates[0].id)
     where, verb = ("a name of", "is") if index.edition == "2023" else ("new in", "was")
-    here = f"in {index.edition} it {verb} {'' if same else 'nearest to '}{now}"
-    explanation = f"`{old.id}` is {where} {old.source}; {here if now else f'{index.edition} has no counterpart'}"
+    counterpart = f"in {index.edition} it {verb} {'' if same else 'nearest to '}{now}"
+    explanation = f"`{old.id}` is {where} {old.source}; {counterpart if now else f'{index.edition} has no counterpart'}"
     return QualityMatch("other-edition", candidates[0] if same else old, candidates, same, explanation)
 
 
@@ -213,8 +214,8 @@ def _alias(word: str, id_: str, index: _Index) -> QualityMatch:
     if not ids:
         new = _index("2023").by_id[id_]
         return QualityMatch("other-edition", new, explanation=f"`{word}` means {id_}, which is new in {new.source}")
-    found = index.by_id[ids[0]]
-    return QualityMatch("alias", found, (found,), True, f"`{word}` is another word for {found.id}")
+    quality = index.by_id[ids[0]]
+    return QualityMatch("alias", quality, (quality,), True, f"`{word}` is another word for {quality.id}")
 
 
 def _in_edition(id_: str, index: _Index) -> tuple[str, ...]:
@@ -228,15 +229,15 @@ def _remark(keys: tuple[str, ...]) -> str:
     return AMBIGUOUS[keys[0]][0] if len(keys) == 1 and keys[0] in AMBIGUOUS else ""
 
 
-def _near(words: tuple[str, ...], keys: tuple[str, ...], index: _Index) -> tuple[str, ...]:
+def _similar_ids(words: tuple[str, ...], keys: tuple[str, ...], index: _Index) -> tuple[str, ...]:
     """Ids for an unknown name: what its last word means, or else those similar to the whole name or its last word."""
     last = [quality.id for quality in _meanings(find(words[-1:], index.edition))] if len(words) > 1 else []
-    known: dict[str, tuple[str, ...]] = {}
-    known |= {key: (quality.id,) for key, quality in (*index.by_key.items(), *index.by_part.items())}
-    known |= {key: tuple(quality.id for quality in named) for key, named in index.by_addition.items()}
-    known |= {key: _in_edition(id_, index) for key, id_ in _ALIASES.items()}
-    looks = near(".".join(keys), known) or near(keys[-1], known)
-    ids = [*last, *(id_ for key in looks for id_ in known[key])]
+    names: dict[str, tuple[str, ...]] = {}
+    names |= {key: (quality.id,) for key, quality in (*index.by_key.items(), *index.by_part.items())}
+    names |= {key: tuple(quality.id for quality in named) for key, named in index.by_addition.items()}
+    names |= {key: _in_edition(id_, index) for key, id_ in _ALIASES.items()}
+    looks = near(".".join(keys), names) or near(keys[-1], names)
+    ids = [*last, *(id_ for key in looks for id_ in names[key])]
     return tuple(dict.fromkeys(id_ for id_ in ids if id_ in index.by_id))[:3]
 
 
@@ -283,11 +284,11 @@ def _rows(outline: str) -> list[tuple[str, str, list[tuple[str, str]]]]:
     rows: list[tuple[str, str, list[tuple[str, str]]]] = []
     for line in outline.splitlines():
         name, _, text = line.partition(":")
-        said = " ".join(text.split())
+        definition = " ".join(text.split())
         if name.startswith(" "):
-            rows[-1][2].append((name.strip(), said))
+            rows[-1][2].append((name.strip(), definition))
         else:
-            rows.append((name, said, []))
+            rows.append((name, definition, []))
     return rows
 
 

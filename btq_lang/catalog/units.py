@@ -86,11 +86,12 @@ def nearest_units(text: str, wanted: str | None = None) -> tuple[str, ...]:
     answers: dict[str, None] = {}
     for choice in range(3):  # the best for every factor, then the second best where there is one …
         words = [(operator, _nearest_words(word, len(factors) == 1, alone), power) for operator, word, power in factors]
-        if choice >= max(len(found) for _, found, _ in words) or not all(found for _, found, _ in words):
+        counts = [len(candidates) for _, candidates, _ in words]
+        if choice >= max(counts) or not all(counts):
             break
         guess = "".join(
-            f"{operator}{found[min(choice, len(found) - 1)]}{'^' if power else ''}{power}"
-            for operator, found, power in words
+            f"{operator}{candidates[min(choice, len(candidates) - 1)]}{'^' if power else ''}{power}"
+            for operator, candidates, power in words
         )
         unit = parse_unit(guess)
         if guess != written and unit is not None and (target is None or unit.dimension == target.dimension):
@@ -127,7 +128,7 @@ def convert(value: float, source: Unit, target: Unit) -> float:
 
 
 def dimension_name(unit: Unit) -> str:
-    """What a unit measures, in words: `time`, `speed`, `energy or torque`, `length^4/time`."""
+    """The dimension of a unit, in words: `time`, `speed`, `energy or torque`, `length^4/time`."""
     name = _DIMENSION_NAMES.get(unit.dimension)
     if name is not None:
         return name
@@ -138,7 +139,7 @@ def dimension_name(unit: Unit) -> str:
 
 
 def a_dimension(unit: Unit) -> str:
-    """What a unit measures, with an article: `a time`, `an angle`, `a plain number`; a formula has none."""
+    """The dimension of a unit, with an article: `a time`, `an angle`, `a plain number`; a formula has none."""
     name = dimension_name(unit)
     if name.startswith("a ") or not name.replace(" ", "").isalpha():
         return name
@@ -185,8 +186,8 @@ def _nearest_words(word: str, alone: bool, target: Unit | None) -> tuple[str, ..
         return (_MEANT[word],)
     if word[-1:] in "23" and word[:-1] in _TABLE:  # m/s2
         return (f"{_TABLE[word[:-1]][0]}^{word[-1]}",)
-    known = SYMBOLS if target is None else [name for name in SYMBOLS if _TABLE[name][1] == target.dimension]
-    return tuple(dict.fromkeys(_TABLE[name][0] for name in near(word, known)))
+    candidates = SYMBOLS if target is None else [name for name in SYMBOLS if _TABLE[name][1] == target.dimension]
+    return tuple(dict.fromkeys(_TABLE[name][0] for name in near(word, candidates)))
 
 
 # ---- the table ----

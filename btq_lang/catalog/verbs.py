@@ -7,7 +7,7 @@ in `btcpp/guards`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from btq_lang.util.record import Record
@@ -65,6 +65,17 @@ def words(
             if verb.operand in operands or verb.limits in limits or (enforced and verb.enforced == enforced)
         ]
     )
+
+
+def measured(line: Sequence[str]) -> str | None:
+    """The unit of what follows some words of a line, or one of its dimension; None if they do not determine it."""
+    is_after_case = False
+    for word in reversed(line):
+        if word in ("else", ","):
+            is_after_case = True  # `20 s if near, 30 s if slow else …`: the verb precedes all the cases
+        elif word in _UNITS and not (word == "if" and is_after_case):
+            return _UNITS[word]
+    return None
 
 
 _START: Final = "at its start"
@@ -246,4 +257,10 @@ VERBS: Final = {
             enforced="refusal",
         ),
     )
+}
+_UNITS: Final[dict[str, str | None]] = {
+    **dict.fromkeys((*words(operands=("duration",)), "within", "every", "per"), "s"),
+    **dict.fromkeys(("in", "probability", "confidence"), "%"),
+    **dict.fromkeys(words(operands=("condition", "use", "count", "rate"))),
+    **dict.fromkeys(("while", "when", "if", "context", "over", "goal", "initially")),
 }

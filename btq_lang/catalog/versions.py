@@ -1,13 +1,14 @@
 """The versions of BehaviorTree.CPP that missions are written for, and what changed between them: one row a change.
 
-One invariant: every difference between versions is a row here, a field of a row in `engine_nodes` or `words` (since or
+One invariant: every difference between versions is a row here, a field of a row in `engine_nodes` or `nodes` (since or
 until when a node exists, a port's type before), a row of `engine_changes`, where a node does something else, or in
-`syntax/script/versions.py`, where it is one of the scripting language.  Determined
-from the sources of the releases and by experiment.
+`syntax/script/versions.py`, where it is one of the scripting language.  Determined from the sources of the releases and
+by experiment.
 """
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from typing import Final, Literal
 
@@ -40,6 +41,49 @@ class VersionChange(Record):
         return at_least(version, self.since)
 
 
+class BehaviorChange(Record):
+    """A change in what a node does.
+
+    Attributes:
+        since: the first release with it.
+        nodes: those that change.
+        what: the rest of a sentence that begins with a node's name.
+        instead: what to write, or look at.
+        port: on whose value the change depends; empty for none.
+        value: the whole value of the port that changes its meaning, as a regular expression; None if the change is for
+            nodes without a value of the port.
+        breaks: whether the tree is refused, and does not only mean something else.
+        keeps: the value of `port` that keeps the old meaning.
+        until: the first release that does not do it any more; empty if all do.
+        after: the first release that did what is changed; empty if all before did.
+        when: what else there must be in the tree: a condition that checks/target_changes.py knows.
+    """
+
+    since: str
+    nodes: tuple[str, ...]
+    what: str
+    instead: str = ""
+    port: str = ""
+    value: str | None = ""
+    breaks: bool = False
+    keeps: str | None = None
+    until: str = ""
+    after: str = ""
+    when: str = ""
+
+    def concerns(self, node: str) -> bool:
+        return self.nodes == (ANY,) or node in self.nodes
+
+    def matches(self, value: str | None) -> bool:
+        """Whether a node changes whose port has a value, or None."""
+        if not self.port:
+            return True
+        if self.value is None or value is None:
+            return self.value is value
+        return re.fullmatch(self.value, value) is not None
+
+
+ANY: Final = "*"  # every node
 ENTRIES_OF_SUBTREE: Final = VersionChange(
     "4.0", "takes `key` at a port of a SubTree for a text; before, for an entry's name", "differs"
 )
@@ -86,7 +130,7 @@ def at_least(version: str, since: str) -> bool:
 
 
 def last_of(version: str) -> str:
-    """A version that no release of a line is after; a release is its own."""
+    """A version that is after all releases of a line; for a release, the release itself."""
     return version if version.count(".") > 1 else f"{version}.99"
 
 

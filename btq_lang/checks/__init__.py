@@ -289,7 +289,7 @@ def findings_of(workspace: Workspace, path: str, reported: Iterable[Reported]) -
     """The diagnostics of a file's items, without those that comments silence; those of XML are placed in the XML."""
     file_findings = FileFindings([(item, item.starts(workspace)) for item in reported])
     file = workspace.files[path]
-    if not file.has_directives and not workspace.origins:
+    if not file.has_directives and not workspace.foreign:
         return file_findings
     diagnostics: Iterable[Diagnostic] = file_findings.diagnostics
     if file.has_directives:
@@ -299,7 +299,7 @@ def findings_of(workspace: Workspace, path: str, reported: Iterable[Reported]) -
         diagnostics = [
             diagnostic for diagnostic in (*diagnostics, *suppressions.useless) if not suppressions.silence(diagnostic)
         ]
-    if workspace.origins:
+    if workspace.foreign:
         from btq_lang.checks.origins import shown_on_origins  # few workspaces have any
 
         diagnostics = shown_on_origins(workspace, path, diagnostics)

@@ -76,7 +76,8 @@ def include_with_errors(view: View, errors_in: ErrorsIn) -> Iterator[Diagnostic]
         shown = posixpath.relpath(path, posixpath.dirname(view.path) or ".")
         which = f"`{shown}`" if path == target else f"`{shown}`, which that file includes,"
         notes: tuple[str, ...] = ("`btq build` refuses every file that includes it",)
-        if len(errors) > 1 and view.store.ask(lookups.is_xml, path):  # XML in a folder is checked only if it is named
+        # XML in a folder is checked only if it is named.
+        if len(errors) > 1 and view.store.ask(lookups.is_xml, path):
             notes += (f"run `btq check {shown}` to see all of them",)
         yield Diagnostic(
             "include-with-errors",

@@ -67,7 +67,7 @@ class Declaration(Record):
 @of_name
 def ports_in_file(workspace: Workspace, path: str, kind: Kind, name: str) -> frozenset[str] | None:
     """The names of the ports of a model in a file itself; None if it has no such model."""
-    definitions = workspace.files[path].names.found.get((kind, name))
+    definitions = workspace.files[path].names.definitions.get((kind, name))
     model = definitions[0][1].target if definitions else None
     if not isinstance(model, Model):
         return None
@@ -197,8 +197,7 @@ def node_paths(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
 @of_viewpoint
 def signs(workspace: Workspace, viewpoint: str) -> Signs | None:
     """What an XML file says of its version of the engine; None for any other file."""
-    source = workspace.files[viewpoint].origin
-    return source.signs if source is not None else None
+    return workspace.files[viewpoint].signs
 
 
 @of_viewpoint
@@ -269,7 +268,7 @@ def is_run_elsewhere(workspace: Workspace, viewpoint: str, tree: str) -> bool:
     if workspace.project.pool_of(viewpoint) is None or viewpoint not in workspace.xml:
         return False
     scope = workspace.scope(viewpoint).paths
-    return any(path not in scope and tree in workspace.files[path].said(Kind.TREE) for path in workspace.xml)
+    return any(path not in scope and tree in workspace.files[path].names_used(Kind.TREE) for path in workspace.xml)
 
 
 @of_viewpoint
@@ -351,20 +350,20 @@ def taken_names(workspace: Workspace, viewpoint: str, but: str) -> dict[str, str
 @of_viewpoint
 def is_node_name(workspace: Workspace, viewpoint: str, name: str) -> bool:
     """Whether a path can name a node by this name."""
-    return any(name in workspace.files[path].said("node_names") for path in workspace.scope(viewpoint).paths)
+    return any(name in workspace.files[path].names_used("node_names") for path in workspace.scope(viewpoint).paths)
 
 
 @of_viewpoint
 def is_asked_for(workspace: Workspace, viewpoint: str, name: str) -> bool:
     """Whether a condition, a bound or an argument in the file names it."""
-    return name in workspace.files[viewpoint].said("asked_for")
+    return name in workspace.files[viewpoint].names_used("asked_for")
 
 
 @of_viewpoint
 def asked_for_in_vain(workspace: Workspace, viewpoint: str) -> frozenset[str]:
     """The names in the file's conditions, bounds and arguments that are neither signals nor contexts."""
     find = workspace.scope(viewpoint).find
-    names = workspace.files[viewpoint].said("asked_for")
+    names = workspace.files[viewpoint].names_used("asked_for")
     return frozenset([name for name in names if not (find(Kind.SIGNAL, name) or find(Kind.CONTEXT, name))])
 
 
@@ -407,7 +406,7 @@ def main_tree(workspace: Workspace, viewpoint: str) -> tuple[str, bool] | None:
     if main is None:
         return None
     name = Kind.TREE, main.symbol.name
-    return main.symbol.name, main.path == viewpoint and len(workspace.files[viewpoint].names.found[name]) == 1
+    return main.symbol.name, main.path == viewpoint and len(workspace.files[viewpoint].names.definitions[name]) == 1
 
 
 @of_viewpoint
@@ -436,7 +435,7 @@ def is_first_registered(workspace: Workspace, viewpoint: str) -> bool:
 @of_viewpoint
 def used(workspace: Workspace, viewpoint: str, kind: Kind) -> frozenset[str]:
     """The names of a kind that the file refers to."""
-    return workspace.files[viewpoint].said(kind)
+    return workspace.files[viewpoint].names_used(kind)
 
 
 @of_viewpoint
@@ -448,7 +447,7 @@ def first_user(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> F
 @of_viewpoint
 def names_unknown_requirements(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the file refers to a requirement that is defined nowhere."""
-    used = workspace.files[viewpoint].said(Kind.REQUIREMENT)
+    used = workspace.files[viewpoint].names_used(Kind.REQUIREMENT)
     return not used.issubset(workspace.scope(viewpoint).names(Kind.REQUIREMENT))
 
 
@@ -465,7 +464,7 @@ def custom_node(workspace: Workspace, viewpoint: str, name: str) -> tuple[str, t
 def most_have_models(workspace: Workspace, viewpoint: str) -> bool:
     """Whether few of the custom nodes that a file knows or uses have no model: a third at most."""
     declared = workspace.scope(viewpoint).names(Kind.MODEL)
-    unknown = workspace.files[viewpoint].said(Kind.MODEL).difference(declared)
+    unknown = workspace.files[viewpoint].names_used(Kind.MODEL).difference(declared)
     return len(declared) >= 2 and 2 * sum(lookup(name) is None for name in unknown) <= len(declared)
 
 
@@ -473,7 +472,7 @@ def most_have_models(workspace: Workspace, viewpoint: str) -> bool:
 def is_crowded(workspace: Workspace, viewpoint: str, kind: Kind) -> bool:
     """Whether so many of the names of a kind are unknown that suggestions are of no use."""
     declared = workspace.scope(viewpoint).names(kind)
-    unknown = workspace.files[viewpoint].said(kind).difference(declared)
+    unknown = workspace.files[viewpoint].names_used(kind).difference(declared)
     if kind is Kind.MODEL:
         unknown = unknown.difference(BUILTINS)
     return len(unknown) * (len(declared) + len(BUILTINS)) > _MOST_COMPARED
@@ -505,7 +504,7 @@ def is_cpp(workspace: Workspace, viewpoint: str) -> bool:
 @of_viewpoint
 def is_xml(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the file is XML that the engine loads as it is, without a build."""
-    return workspace.files[viewpoint].origin is not None
+    return workspace.files[viewpoint].is_foreign
 
 
 @of_viewpoint

@@ -20,16 +20,15 @@ from btq_lang.workspace.workspace import Workspace
 
 def shown_on_origins(workspace: Workspace, path: str, diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
     """The diagnostics of a file, with those of its own XML, if it is XML."""
-    foreign = workspace.origins
-    origin = foreign.get(path)
+    foreign, file = workspace.foreign, workspace.files[path]
 
     def on_origin(span: Span, place_path: str | None) -> Span:
         foreign_file = foreign.get(place_path or path)
-        return span if foreign_file is None else foreign_file.places.origin(span)
+        return span if foreign_file is None else foreign_file.on_disk(span)
 
     shown: list[Diagnostic] = []
     for diagnostic in diagnostics:
-        if origin is not None and diagnostic.rule in _OF_SPELLING:
+        if file.is_foreign and diagnostic.rule in _OF_SPELLING:
             continue
         related = diagnostic.related
         if diagnostic.rule not in _OF_SHOWN:
@@ -42,10 +41,10 @@ def shown_on_origins(workspace: Workspace, path: str, diagnostics: Iterable[Diag
             )
         fixes = tuple(placed for fix in diagnostic.fixes if (placed := _placed(workspace, path, fix)) is not None)
         shown.append(replace(diagnostic, span=on_origin(diagnostic.span, path), related=related, fixes=fixes))
-    if origin is None:
+    if not file.is_foreign:
         return shown
     return [
-        *(diagnostic for diagnostic in origin.diagnostics if not is_silenced_in_xml(origin.text, diagnostic)),
+        *(diagnostic for diagnostic in file.source_diagnostics if not is_silenced_in_xml(file.source, diagnostic)),
         *shown,
     ]
 
@@ -59,7 +58,7 @@ def _placed(workspace: Workspace, path: str, fix: Fix) -> Fix | None:
     is_safe = fix.safe
     for change in fix.changes:
         file = workspace.files[change.place.path or path]
-        if file.origin is None:
+        if not file.is_foreign:
             changes.append(change)
         elif edits := exact_edits(file, Edit(change.place.span, change.text)):
             changes += [FixEdit(Place(edit.span, change.place.path), edit.text) for edit in edits]

@@ -8,7 +8,7 @@ from functools import cache
 from itertools import chain
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
-from btq_lang.catalog.foreign_ports import NAME, of_other_engines
+from btq_lang.catalog.foreign_names import NAME, of_other_engines
 from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name

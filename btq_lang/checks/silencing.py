@@ -23,14 +23,14 @@ def line_to_silence(file: File, diagnostic: Diagnostic) -> int | None:
     Args:
         diagnostic: counted from the start of the file on the disk.
     """
-    start, origin = diagnostic.span.start, file.origin
+    start = diagnostic.span.start
     if diagnostic.rule in UNREADABLE:
         return None
-    if origin is None:
+    if not file.is_foreign:
         return file.lines.position(start).line
-    if any(other.rule == diagnostic.rule for other in origin.diagnostics):  # it is about the XML, not about a line
+    if any(other.rule == diagnostic.rule for other in file.source_diagnostics):  # it is about the XML, not about a line
         return None
-    offset = origin.places.made(start, exact=False)
+    offset = file.from_disk(start, exact=False)
     return None if offset is None else file.lines.position(offset).line
 
 
@@ -55,23 +55,23 @@ def above_line(file: File, line: int, rules: Sequence[str], reason: str = "") ->
 
 def before_element(file: File, line: int, rules: Sequence[str], reason: str = "") -> Edit | None:
     """A comment before the element of the XML from which a line was made."""
-    if file.origin is None:
+    if file.places is None:
         return None
-    xml, start = file.origin.text, file.lines.offset(Position(line, 0))
+    xml, start = file.source, file.lines.offset(Position(line, 0))
     end = start + len(file.lines.line(line))
-    begins = [piece[2] for piece in file.origin.places.pieces if start <= piece[0] < end]
+    begins = [piece[2] for piece in file.places.pieces if start <= piece[0] < end]
     offset = xml.rfind("<", 0, begins[0]) if begins else -1
     return _comment_before(xml, offset, rules, reason) if offset >= 0 else None
 
 
 def before_tag(file: File, diagnostic: Diagnostic, reason: str = "") -> Edit | None:
     """A comment before the tag or the text of a diagnostic about the XML itself; None for any other diagnostic."""
-    origin, start = file.origin, diagnostic.span.start
-    if origin is None or diagnostic.rule in UNREADABLE or diagnostic not in origin.diagnostics:
+    if not file.is_foreign or diagnostic.rule in UNREADABLE or diagnostic not in file.source_diagnostics:
         return None
-    tags = (tag.span() for tag in re.finditer(_TAG, origin.text, re.DOTALL))
+    start = diagnostic.span.start
+    tags = (tag.span() for tag in re.finditer(_TAG, file.source, re.DOTALL))
     offset = next((begin for begin, end in tags if begin <= start < end), start)
-    return _comment_before(origin.text, offset, (diagnostic.rule,), reason)
+    return _comment_before(file.source, offset, (diagnostic.rule,), reason)
 
 
 def _comment_before(xml: str, offset: int, rules: Sequence[str], reason: str) -> Edit:

@@ -8,14 +8,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Final, TypeVar
 
-from btq_lang.catalog.changes import BehaviorChange
 from btq_lang.catalog.engine_changes import ENGINE_CHANGES
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.nav2 import DISTRIBUTIONS, FILES
 from btq_lang.catalog.nav2.changes import CHANGES, INSTEAD, RENAMED, RENAMED_PORTS
-from btq_lang.catalog.versions import ENTRIES_OF_SUBTREE, LAST_TREE_COUNTS, at_least, last_of
+from btq_lang.catalog.versions import ENTRIES_OF_SUBTREE, LAST_TREE_COUNTS, BehaviorChange, at_least, last_of
 from btq_lang.checks import lookups
 from btq_lang.checks.entries import mentions
 from btq_lang.checks.mixed_types import entry_with_two_types

@@ -32,7 +32,7 @@ def default_instead(view: View) -> Iterator[Diagnostic]:
     distribution = view.ask(lookups.distribution)
     if distribution is None:
         return
-    from btq_lang.catalog.nav2.read_once import is_read_once  # only for Nav2
+    from btq_lang.catalog.nav2.creation import is_read_once  # only for Nav2
 
     for resolved, name, tree in of_nav2(view, distribution, view.seen.given):
         ports = port_names(view, resolved)
@@ -161,7 +161,7 @@ def _is_refused(view: View, resolved: ResolvedNode, pair: Pair, value: Word) -> 
 def _is_set_before(store: Store[Workspace], viewpoint: str, tree: str, key: str) -> bool:
     """Whether an entry of a tree has a value when the tree is created: by a literal that a SubTree gives it, or that is
     a default of the tree's port, or by the program."""
-    from btq_lang.catalog.nav2.read_once import SET_BEFORE  # only for Nav2
+    from btq_lang.catalog.nav2.creation import SET_BEFORE  # only for Nav2
     from btq_lang.requirements.nodes import callers  # only if there are such inputs
 
     if key.removeprefix("@") in SET_BEFORE:

@@ -17,7 +17,7 @@ from btq_lang.graph import FORMATS as GRAPH_FORMATS
 from btq_lang.projects.options import CheckOptions, add_server_options
 from btq_lang.render import FORMATS
 from btq_lang.trace import FORMATS as TRACE_FORMATS
-from btq_lang.util.fields import as_dict
+from btq_lang.util.record import as_dict
 from btq_lang.util.spelling import near
 from btq_lang.util.version import __version__
 

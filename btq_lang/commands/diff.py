@@ -73,7 +73,7 @@ def _warn(side: Side, messages: CommandOutput) -> None:
             if side.workspace.included_by(path, include) is None:
                 message = f"includes `{include.path.text}`, which does not exist: its content is not compared"
                 messages.remark(f"btq: {side.shown(path)}: {message}")
-        if file.origin is not None and DESCRIPTION_MARK in file.source:
+        if file.is_foreign and DESCRIPTION_MARK in file.source:
             message = "its requirements are missing: `btq build` wrote them to the .qreq.json that was beside it"
             messages.remark(f"btq: {side.shown(path)}: {message}")
         if error := _first_error(file):
@@ -81,7 +81,7 @@ def _warn(side: Side, messages: CommandOutput) -> None:
 
 
 def _first_error(file: File) -> str | None:
-    diagnostics = file.origin.diagnostics if file.origin is not None else file.parsed.diagnostics
+    diagnostics = file.source_diagnostics
     for diagnostic in diagnostics:
         if diagnostic.effective_severity is Severity.ERROR:
             line, column = file.source_lines.position(diagnostic.span.start)

@@ -11,11 +11,10 @@ from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES, AttributeKind
 from btq_lang.catalog.foreign_names import ForeignName, foreign_name
 from btq_lang.catalog.language import PHRASES, SIGNS, phrases_of
 from btq_lang.catalog.literals import is_known_type, plain_type
-from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, NodeKind, lookup, spellings
+from btq_lang.catalog.nodes import BUILTINS, ELSEWHERE, KNOWN_WORDS, NodeKind, lookup, spellings
 from btq_lang.catalog.qualities import Quality, find, parts, qualities, siblings
 from btq_lang.catalog.units import dimension_name, nearest_units, parse_unit, symbols
 from btq_lang.catalog.verdicts import VERDICTS, Verdict
-from btq_lang.catalog.words import ELSEWHERE
 from btq_lang.commands.explain_nav2 import nav2_nodes, nav2_page
 from btq_lang.commands.output import is_coloured
 from btq_lang.diagnostics.rules import RULES, by_subject, page

@@ -36,7 +36,7 @@ def run(options: FormatCommandOptions, messages: CommandOutput) -> int:
     changed = count = refused = 0
     for group in groups:
         for path in group.given:
-            if group.workspace.files[path].origin is not None:
+            if group.workspace.files[path].is_foreign:
                 why = "this is XML, which `btq format` does not change; `btq import` converts it to .btq"
                 problems.append(LoadProblem(path, why))
                 continue

@@ -77,7 +77,7 @@ def _comments_for(file: File, diagnostics: Iterable[Diagnostic], reason: str) ->
             added += [] if same else [(edit, [diagnostic])]
             for silenced in same:
                 silenced.append(diagnostic)
-    places = (at_line_end, above_line) if file.origin is None else (before_element,)
+    places = (at_line_end, above_line) if not file.is_foreign else (before_element,)
     for line, silenced_here in of_line.items():
         rules = tuple(dict.fromkeys(diagnostic.rule for diagnostic in silenced_here))
         edits = (edit for place in places if (edit := place(file, line, rules, reason)) is not None)

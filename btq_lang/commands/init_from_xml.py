@@ -163,7 +163,7 @@ def _xml_below(folder: str) -> Workspace:
         path: group.workspace.files[path]
         for group in groups
         for path in group.given
-        if group.workspace.files[path].origin is not None
+        if group.workspace.files[path].is_foreign
     }
     project = groups[0].workspace.project if groups else Workspace.of({}).project
     return Workspace(files, replace(project, pools=(folder,)))
@@ -264,7 +264,7 @@ def _connected(workspace: Workspace) -> list[list[str]]:
         for included in workspace.closure(path):
             join(path, included)
         scope = workspace.scope(path)
-        for name in file.said(Kind.TREE):
+        for name in file.names_used(Kind.TREE):
             definitions = () if scope.defines(Kind.TREE, name) else workspace.pooled(path, Kind.TREE, name)
             if len(definitions) == 1:
                 join(path, definitions[0].path)

@@ -58,7 +58,7 @@ def unused_external(groups: Iterable[FileGroup], paths: Collection[str]) -> Iter
             by_file.setdefault(group.project_file, []).append(group)
     for path, members in by_file.items():
         files = [group.workspace.files[requested_path] for group in members for requested_path in group.given]
-        run = {name for file in files for name in file.said(Kind.TREE)}
+        run = {name for file in files for name in file.names_used(Kind.TREE)}
         own = {name for file in files for name in file.names_of(Kind.TREE)}
         text = read(path)[0] or ""
         for name in members[0].project.external:

@@ -23,7 +23,7 @@ from btq_lang.evidence.verifying import judged, logs_below
 from btq_lang.projects.files import logs_of, usage_problem
 from btq_lang.projects.messages import CommandOutput
 from btq_lang.projects.options import Refused, refuse
-from btq_lang.util.fields import as_dict
+from btq_lang.util.record import as_dict
 from btq_lang.util.text import counted
 from btq_lang.workspace.loader import IS_SPECIAL, find_project, is_special, shown
 

@@ -1,4 +1,4 @@
-"""What is wrong between the ports of nodes and their code, and what cannot be seen, as diagnostics of the C++ files.
+"""Diagnostics of C++ files: differences between the ports of nodes and their code, and parts that cannot be read.
 
 One invariant: a finding is at the line of C++ that it is about, and a comment `// btq: ignore[rule]` on that line, or
 alone on the line above, silences it.
@@ -16,11 +16,11 @@ from btq_lang.diagnostics.model import Diagnostic, Tag
 from btq_lang.util.text import LineIndex, counted
 
 
-def findings(found: CppNodes, texts: Mapping[str, str]) -> dict[str, tuple[Diagnostic, ...]]:
+def findings(nodes: CppNodes, texts: Mapping[str, str]) -> dict[str, tuple[Diagnostic, ...]]:
     """The diagnostics of some files, by path; those without any are left out."""
     lines: dict[str, LineIndex] = {}
     of_path: dict[str, list[Diagnostic]] = {}
-    for rule, place, message in _all(found):
+    for rule, place, message in _rule_findings(nodes):
         index = lines.setdefault(place.path, LineIndex(texts[place.path]))
         if not _is_silenced(index, place.line - 1, rule):
             tags = (Tag.UNNECESSARY,) if rule == UNUSED else ()
@@ -36,10 +36,10 @@ def nothing_registered(texts: Mapping[str, str]) -> str:
     return f"no node is registered in {counted(len(texts), 'C++ file')}; {where}"
 
 
-def _all(found: CppNodes) -> Iterator[tuple[str, SourcePosition, str]]:
-    """Each with its rule and place; nodes that share a base class, and so a place, are named together."""
+def _rule_findings(nodes_read: CppNodes) -> Iterator[tuple[str, SourcePosition, str]]:
+    """Each finding: its rule, place and message; nodes that share a base class, and so a place, are named together."""
     nodes: dict[tuple[str, SourcePosition, str], list[str]] = {}
-    for node in found.nodes:
+    for node in nodes_read.nodes:
         for port in node.unread:
             message = f"provides the port `{port.name}`, but its code never names it"
             nodes.setdefault((UNUSED, port.place, message), []).append(node.name)
@@ -49,8 +49,8 @@ def _all(found: CppNodes) -> Iterator[tuple[str, SourcePosition, str]]:
     for (rule, place, message), names in nodes.items():
         more = f" (as {len(names) - 1} more)" if len(names) > 1 else ""
         yield rule, place, f"`{names[0]}`{more} {message}"
-    for each in found.unseen:
-        yield UNSEEN, each.place, each.message
+    for unseen in nodes_read.unseen:
+        yield UNSEEN, unseen.place, unseen.message
 
 
 def _is_silenced(lines: LineIndex, line: int, rule: str) -> bool:

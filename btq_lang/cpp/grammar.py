@@ -56,7 +56,7 @@ def walk(node: Node, outside: frozenset[str] = frozenset()) -> Iterator[Node]:
 
 
 def errors(node: Node) -> Iterator[Node]:
-    """What the grammar cannot read, and what it misses."""
+    """The nodes that the grammar cannot read, and those that it misses."""
     waiting = [node]
     while waiting:  # expressions may be deep
         node = waiting.pop()
@@ -77,12 +77,12 @@ def contents(node: Node | None) -> list[Node]:
 
 
 def arguments(call: Node) -> list[Node]:
-    """What a call passes."""
+    """The arguments of a call."""
     return contents(field(call, "arguments"))
 
 
 def callee(call: Node) -> tuple[str, str, list[str]]:
-    """What a call names: the scope before the name, the name, and the arguments of a template."""
+    """The function of a call: the scope before its name, the name, and the arguments of a template."""
     return named(field(call, "function"))
 
 
@@ -111,15 +111,15 @@ def literal(node: Node | None) -> str | None:
     if node is None:
         return None
     if node.type == "concatenated_string":
-        parts = [literal(each) for each in contents(node)]
-        return None if None in parts else "".join(each or "" for each in parts)
+        parts = [literal(part) for part in contents(node)]
+        return None if None in parts else "".join(part or "" for part in parts)
     if node.type == "user_defined_literal":
         return literal(node.named_children[0])
     if node.type == "raw_string_literal":
-        return "".join(text_of(each) for each in node.named_children if each.type == "raw_string_content")
+        return "".join(text_of(part) for part in node.named_children if part.type == "raw_string_content")
     if node.type != "string_literal":
         return None
-    return "".join(_ESCAPED.get(text_of(each), text_of(each)) for each in node.named_children)
+    return "".join(_ESCAPED.get(text_of(part), text_of(part)) for part in node.named_children)
 
 
 def enclosing(node: Node, kinds: tuple[str, ...]) -> Node | None:

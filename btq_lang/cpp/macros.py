@@ -42,7 +42,7 @@ class Failed(Record):
 
 
 class Registering(Record):
-    """Something that looks like a macro which registers its arguments, but does not show how."""
+    """A call that looks like a macro which registers its arguments, but whose definition is unknown."""
 
     name: str
     arguments: tuple[str, ...]
@@ -55,10 +55,10 @@ def macros_in(path: str, text: str) -> tuple[Macro, ...]:
     for match in _DIRECTIVE.finditer(text) if "#" in text else ():
         row = text.count("\n", 0, match.end())
         if match["undefined"]:
-            ended = [each for each in macros if each.name == match["undefined"] and each.rows.stop == _END]
-            for each in ended:
-                macros[macros.index(each)] = Macro(
-                    path, each.name, each.parameters, each.body, range(each.rows[0], row)
+            ended = [macro for macro in macros if macro.name == match["undefined"] and macro.rows.stop == _END]
+            for macro in ended:
+                macros[macros.index(macro)] = Macro(
+                    path, macro.name, macro.parameters, macro.body, range(macro.rows[0], row)
                 )
         elif match["name"]:
             listed = match["parameters"]
@@ -82,10 +82,10 @@ class Macros:
     """All macros of some files."""
 
     def __init__(self, macros: Iterable[Macro]) -> None:
-        self._by_name: Final = grouped((each.name, each) for each in macros)
-        words = {each: frozenset(_WORD(each.body)) for every in self._by_name.values() for each in every}
-        wanted = {each.name for each in words if _is_wanted(each)}
-        while more := {each.name for each, names in words.items() if each.name not in wanted and names & wanted}:
+        self._by_name: Final = grouped((macro.name, macro) for macro in macros)
+        words = {macro: frozenset(_WORD(macro.body)) for every in self._by_name.values() for macro in every}
+        wanted = {macro.name for macro in words if _is_wanted(macro)}
+        while more := {macro.name for macro, names in words.items() if macro.name not in wanted and names & wanted}:
             wanted |= more
         self._wanted: Final = frozenset(wanted)
 
@@ -94,11 +94,11 @@ class Macros:
         names = {name for name in self._wanted if name in text}
         waiting = [*names]
         for name in waiting:
-            for each in self._by_name.get(name, ()):
-                inside = {*_WORD(each.body)} & self._by_name.keys() - names
+            for macro in self._by_name.get(name, ()):
+                inside = {*_WORD(macro.body)} & self._by_name.keys() - names
                 names |= inside
                 waiting += inside
-        return tuple(each for name in sorted(names) for each in self._by_name[name])
+        return tuple(macro for name in sorted(names) for macro in self._by_name[name])
 
 
 class Expanded:
@@ -145,16 +145,16 @@ class Expanded:
                 continue
             row += text.count("\n", line_start, match.start())
             line_start = text.rfind("\n", 0, match.start()) + 1
-            given, end = _arguments(text, match.end())
+            passed, end = _arguments(text, match.end())
             if not is_macro:
-                if given:
-                    self.registering.append(Registering(name, tuple(given), self._place(match.start(), end)))
+                if passed:
+                    self.registering.append(Registering(name, tuple(passed), self._place(match.start(), end)))
                 continue
-            macro = self._meant(name, row, match.start(), end)
-            if macro is None or (macro.parameters is not None and given is None):
+            macro = self._macro_named(name, row, match.start(), end)
+            if macro is None or (macro.parameters is not None and passed is None):
                 continue
             end = end if macro.parameters is not None else match.end()
-            expansion = self._call(macro, given or [], frozenset(), self._place(match.start(), end))
+            expansion = self._call(macro, passed or [], frozenset(), self._place(match.start(), end))
             if expansion is None:
                 continue
             pieces.append(text[copied : match.start()])
@@ -169,38 +169,38 @@ class Expanded:
             copied = end
         return "".join((*pieces, text[copied:]))
 
-    def _meant(self, name: str, row: int, start: int, end: int) -> Macro | None:
+    def _macro_named(self, name: str, row: int, start: int, end: int) -> Macro | None:
         """The macro that a name means in a row; reported if it may be any of several."""
         every = self._macros[name]
-        choice = [each for each in every if each.path == self._path and row in each.rows]
+        choice = [macro for macro in every if macro.path == self._path and row in macro.rows]
         if not choice:
-            others = [each for each in every if each.path != self._path and each.rows.stop == _END]
-            included = [each for each in others if each.path.rpartition("/")[2] in self._original]
-            choice = included or [each for each in others if not each.path.endswith(_OF_ONE_FILE)]
-        choice = [each for each in choice if MATTERS(each.body)] or choice
-        first = {each.path: each for each in reversed(choice)}
-        if len({(each.parameters, each.body) for each in first.values()}) > 1:
-            places = ", ".join(sorted(f"{each.path}:{each.rows[0] + 1}" for each in first.values()))
+            others = [macro for macro in every if macro.path != self._path and macro.rows.stop == _END]
+            included = [macro for macro in others if macro.path.rpartition("/")[2] in self._original]
+            choice = included or [macro for macro in others if not macro.path.endswith(_OF_ONE_FILE)]
+        choice = [macro for macro in choice if MATTERS(macro.body)] or choice
+        first = {macro.path: macro for macro in reversed(choice)}
+        if len({(macro.parameters, macro.body) for macro in first.values()}) > 1:
+            places = ", ".join(sorted(f"{macro.path}:{macro.rows[0] + 1}" for macro in first.values()))
             message = f"`{name}` may be any of several macros: {places}; include the file that defines it"
             self._fail(message, self._place(start, end), *choice)
             return None
         return choice[0] if choice else None
 
-    def _call(self, macro: Macro, given: list[str], within: frozenset[str], place: SourcePosition) -> str | None:
-        """What a macro expands to; None if it cannot be; within: the macros that are being expanded."""
+    def _call(self, macro: Macro, passed: list[str], within: frozenset[str], place: SourcePosition) -> str | None:
+        """The expansion of a macro; None if it fails; within: the macros that are being expanded."""
         parameters = macro.parameters or ()
         is_variadic = parameters[-1:] != () and parameters[-1].endswith("...")
         if macro.parameters is not None:
-            given = [] if not parameters and given == [""] else given
+            passed = [] if not parameters and passed == [""] else passed
             least = len(parameters) - is_variadic
-            if len(given) < least or (len(given) > least and not is_variadic):
-                message = f"`{macro.name}` takes {least} arguments, and is given {len(given)}; it cannot be expanded"
+            if len(passed) < least or (len(passed) > least and not is_variadic):
+                message = f"`{macro.name}` takes {least} arguments, and is given {len(passed)}; it cannot be expanded"
                 self._fail(message, place, macro)
                 return None
-        values = dict(zip(parameters, given, strict=False))
+        values = dict(zip(parameters, passed, strict=False))
         if is_variadic:
-            rest = ", ".join(given[len(parameters) - 1 :])
-            values[parameters[-1].removesuffix("...").strip() or "__VA_ARGS__"] = rest
+            others = ", ".join(passed[len(parameters) - 1 :])
+            values[parameters[-1].removesuffix("...").strip() or "__VA_ARGS__"] = others
         inside = _VISIBILITY.sub("", "".join(self._substituted(macro.body, values, within, place)))
         return self._rescanned(inside, within | {macro.name}, place)
 
@@ -209,20 +209,20 @@ class Expanded:
     ) -> Iterator[str]:
         """The pieces of a body with its parameters replaced."""
         tokens = ["", *(match[0] for match in _TOKEN.finditer(_HASHES.sub(lambda sign: sign[0].strip(), body))), "", ""]
-        at = 1
-        while at < len(tokens) - 2:
-            before, token, after, next_but_one = tokens[at - 1 : at + 3]
+        index = 1
+        while index < len(tokens) - 2:
+            before, token, after, next_but_one = tokens[index - 1 : index + 3]
             if token == "#" and after in values:
                 yield _quoted(values[after])
-                at += 1
+                index += 1
             elif (token, after) == (",", "##") and not values.get(next_but_one, "?"):
-                at += 2  # `, ##__VA_ARGS__` without arguments
+                index += 2  # `, ##__VA_ARGS__` without arguments
             elif token in values:
                 is_pasted = "##" in (before, after)
                 yield values[token] if is_pasted else self._rescanned(values[token], within, place)
             elif token != "##":
                 yield token
-            at += 1
+            index += 1
 
     def _rescanned(self, text: str, within: frozenset[str], place: SourcePosition) -> str:
         """A text in which macros are expanded, except those that are being so."""
@@ -232,11 +232,11 @@ class Expanded:
             name = match["name"]
             if match.start() < copied or name is None or name in within or name not in self._macros:
                 continue
-            given, end = _arguments(text, match.end())
-            macro = self._meant(name, place.line - 1, match.start(), match.end())
-            if macro is None or (macro.parameters is not None and given is None):
+            passed, end = _arguments(text, match.end())
+            macro = self._macro_named(name, place.line - 1, match.start(), match.end())
+            if macro is None or (macro.parameters is not None and passed is None):
                 continue
-            expansion = self._call(macro, given or [], within, place)
+            expansion = self._call(macro, passed or [], within, place)
             if expansion is not None:
                 pieces += (text[copied : match.start()], expansion)
                 copied = end if macro.parameters is not None else match.end()
@@ -265,11 +265,11 @@ def _is_wanted(macro: Macro) -> bool:
     return MATTERS(macro.body) is not None or bool(calls_one)
 
 
-def _arguments(text: str, at: int) -> tuple[list[str] | None, int]:
-    """What is given in the brackets at an offset, and where they end; None if there are none."""
-    given: list[str] = []
-    depth, begin = 0, at
-    for match in _TOKEN.finditer(text, at):
+def _arguments(text: str, offset: int) -> tuple[list[str] | None, int]:
+    """The arguments in the brackets at an offset, and the end of these; None if there are none."""
+    passed: list[str] = []
+    depth, begin = 0, offset
+    for match in _TOKEN.finditer(text, offset):
         sign = match[0]
         if depth == 0 and sign != "(":
             if sign.isspace():
@@ -281,11 +281,11 @@ def _arguments(text: str, at: int) -> tuple[list[str] | None, int]:
         elif sign in (")", "]", "}"):
             depth -= 1
         if (sign == "," and depth == 1) or depth == 0:
-            given.append(_plain(text[begin : match.start()]))
+            passed.append(_plain(text[begin : match.start()]))
             begin = match.end()
         if depth == 0:
-            return given, match.end()
-    return None, at
+            return passed, match.end()
+    return None, offset
 
 
 def _plain(text: str) -> str:

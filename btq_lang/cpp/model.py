@@ -1,4 +1,4 @@
-"""What C++ sources say of nodes."""
+"""The nodes that C++ sources register, as plain records."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class CppNode(Record):
         complete: whether these are all of its ports.
         unread: ports that its code never names.
         undeclared: reads and writes of ports that it does not provide.
-        without: what its code does without an input that has no default: see `Use.without`.
+        without: what its code does without an input that has no default: see `PortUse.without`.
         at_once: whether it is seen to end within the tick that starts it.
     """
 
@@ -98,7 +98,7 @@ class CppNode(Record):
 
 
 class Unseen(Record):
-    """What cannot be read from the sources; hides_node: whether that may be a node."""
+    """A part of the sources that cannot be read; hides_node: whether it may register a node."""
 
     message: str
     place: SourcePosition

@@ -62,46 +62,46 @@ class _Reader:
 
     def node(self, call: RegistrationCall) -> CppNode | None:
         """The node that a call registers; None if it registers none, or none that can be seen."""
-        given = arguments(call.node)
-        if _OTHERS(call.name) or not given or _is_of_template(call):
+        passed = arguments(call.node)
+        if _OTHERS(call.name) or not passed or _is_of_template(call):
             return None
         body = self._ports.before(call.node, call.scope, call.path)
         if call.name in _SIMPLE:
-            return self._simple(call, body, given)
+            return self._simple(call, body, passed)
         if call.name == "registerBuilder" and not call.types:
-            return self._manifest(call, body, given[0])
-        if call.name == "CreateRosNodePlugin" and len(given) == 2:
-            return self._class(call, body, text_of(given[0]), given[1], None)
+            return self._manifest(call, body, passed[0])
+        if call.name == "CreateRosNodePlugin" and len(passed) == 2:
+            return self._class(call, body, text_of(passed[0]), passed[1], None)
         if not call.types:
             return None
         if call.name in _ENGINES:
-            ports = given[1] if call.name == "registerNodeType" and len(given) > 1 else None
-            return self._class(call, body, call.types[0], given[0], ports)
-        named = next((each for each in given if string(self.sources, each, body.frame) is not None), None)
+            ports = passed[1] if call.name == "registerNodeType" and len(passed) > 1 else None
+            return self._class(call, body, call.types[0], passed[0], ports)
+        named = next((argument for argument in passed if string(self.sources, argument, body.frame) is not None), None)
         return self._class(call, body, call.types[0], named, None) if named is not None else None
 
     def report_hidden(self, registered: Container[str]) -> None:
         """Report what looks like a macro that registers a class which nothing else is seen to register."""
         for source in self.sources.files.values():
-            for each in source.registering:
-                bounds = (self.sources.find(argument, (), source.path, each.place) for argument in each.arguments)
+            for macro in source.registering:
+                bounds = (self.sources.find(argument, (), source.path, macro.place) for argument in macro.arguments)
                 for bound in bounds:
                     if bound.class_ is None or bound.class_.name in registered or not self.sources.category(bound):
                         continue
-                    message = f"it cannot be seen under which ID `{each.name}` registers `{bound.name}`; {_OF_MACRO}"
-                    self.sources.report(message, each.place, hides_node=True)
+                    message = f"it cannot be seen under which ID `{macro.name}` registers `{bound.name}`; {_OF_MACRO}"
+                    self.sources.report(message, macro.place, hides_node=True)
 
-    def _simple(self, call: RegistrationCall, body: Body, given: list[Node]) -> CppNode | None:
+    def _simple(self, call: RegistrationCall, body: Body, passed: list[Node]) -> CppNode | None:
         """`registerSimpleAction("Name", function, ports)`"""
-        if (name := self._name(call, body, given[0])) is None:
+        if (name := self._name(call, body, passed[0])) is None:
             return None
         place = self.sources.place_of(call.path, call.node)
-        provided = self._ports.of_argument(given[2], body) if len(given) > 2 else Provided((), True)
+        provided = self._ports.of_argument(passed[2], body) if len(passed) > 2 else Provided((), True)
         if provided is None:
-            self.sources.report(f"it cannot be seen which ports `{name}` has: `{text_of(given[2])}`", place)
+            self.sources.report(f"it cannot be seen which ports `{name}` has: `{text_of(passed[2])}`", place)
             provided = Provided((), False)
         ports, complete = provided.ports, provided.complete
-        uses = Uses.of_function(self.sources, given[1], body.frame) if len(given) > 1 else Uses(self.sources)
+        uses = Uses.of_function(self.sources, passed[1], body.frame) if len(passed) > 1 else Uses(self.sources)
         undeclared = uses.undeclared(ports) if complete else ()
         category, without = _SIMPLE[call.name], uses.without_each(ports)
         return CppNode(name, category, "", place, place, ports, complete, uses.unread(ports), undeclared, without)
@@ -110,13 +110,13 @@ class _Reader:
         """`registerBuilder(CreateManifest<T>("Name", ports), builder)`"""
         if manifest.type == "call_expression":
             _, name, types = callee(manifest)
-            given = arguments(manifest)
-            if name == "CreateManifest" and types and given:
-                return self._class(call, body, types[0], given[0], given[1] if len(given) > 1 else None)
+            passed = arguments(manifest)
+            if name == "CreateManifest" and types and passed:
+                return self._class(call, body, types[0], passed[0], passed[1] if len(passed) > 1 else None)
         self._report(call, f"it cannot be seen which node this registers: `{text_of(manifest)}`")
         return None
 
-    def _class(self, call: RegistrationCall, body: Body, type_: str, named: Node, given: Node | None) -> CppNode | None:
+    def _class(self, call: RegistrationCall, body: Body, type_: str, named: Node, last: Node | None) -> CppNode | None:
         """A class under a name; given: the argument that may be its ports."""
         if (name := self._name(call, body, named)) is None:
             return None
@@ -131,7 +131,7 @@ class _Reader:
             bases = bases or "a base class"
             self._report(call, f"the category of `{name}` cannot be seen: {bases} is not in the sources")
             return None
-        of_call = self._ports.of_argument(given, body) if given is not None and _may_be_ports(given, body) else None
+        of_call = self._ports.of_argument(last, body) if last is not None and _may_be_ports(last, body) else None
         provided = of_call or self._ports.of_class(bound, place)
         ports, complete = provided.ports, provided.complete
         if bound.class_ is None:
@@ -185,12 +185,12 @@ def ends_within_tick(sources: CppSources, bound: BoundClass) -> bool:
     the engine continues at a later tick.
     """
     above = list(sources.ancestry(bound))
-    outside = {each.name.rpartition("::")[2] for each in above if each.class_ is None}
+    outside = {ancestor.name.rpartition("::")[2] for ancestor in above if ancestor.class_ is None}
     if outside != {"ActionNodeBase"}:
         return outside == {"SyncActionNode"}
-    for each in above:
-        bodies = sources.methods(each, "tick")
-        if bodies or (each.class_ is not None and "tick" in each.class_.promised):
+    for ancestor in above:
+        bodies = sources.methods(ancestor, "tick")
+        if bodies or (ancestor.class_ is not None and "tick" in ancestor.class_.promised):
             return len(bodies) == 1 and _answers(bodies[0][0])
     return False
 

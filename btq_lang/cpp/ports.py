@@ -1,4 +1,5 @@
-"""What `providedPorts()` returns: lists in braces, helpers that add to a list, variables that are filled, base classes.
+"""The ports that `providedPorts()` returns: lists in braces, helpers that add to a list, variables that are filled,
+base classes.
 
 One invariant: as in a `std::unordered_map`, the first of two entries with one name counts, unless `[]` or
 `insert_or_assign` sets it.  What is not understood is reported, and the ports then count as not complete.
@@ -67,18 +68,18 @@ class PortsReader:
         return None if ports is None else Provided(tuple(ports.values()), self._complete)
 
     def _of_class(self, bound: BoundClass, place: SourcePosition, depth: int = 0) -> Ports:
-        for each in self.sources.ancestry(bound):
-            if bodies := self.sources.methods(each, "providedPorts"):
+        for ancestor in self.sources.ancestry(bound):
+            if bodies := self.sources.methods(ancestor, "providedPorts"):
                 node, path = bodies[0]
-                return Body(self, Frame(each, each.scope, path, depth)).result(node)
-            if each.class_ is None:
-                if (ports := self._of_library(each, place)) is not None:
+                return Body(self, Frame(ancestor, ancestor.scope, path, depth)).result(node)
+            if ancestor.class_ is None:
+                if (ports := self._of_library(ancestor, place)) is not None:
                     if ports:
                         return ports
                     continue
-                self.incomplete(f"`{each.name}` is not in the sources, and may provide ports", place)
-            elif "providedPorts" in each.class_.promised:
-                self.incomplete(f"the body of `{each.name}::providedPorts` is not in the sources", place)
+                self.incomplete(f"`{ancestor.name}` is not in the sources, and may provide ports", place)
+            elif "providedPorts" in ancestor.class_.promised:
+                self.incomplete(f"the body of `{ancestor.name}::providedPorts` is not in the sources", place)
                 return {}
         return {}
 
@@ -103,15 +104,17 @@ class PortsReader:
         """The function that a call means, a method of the class or of a base or any, and the frame of its body."""
         sources = self.sources
         place = sources.place_of(frame.path, call)
-        for each in self._owners(scope, frame, place):
-            for node, path in sources.methods(each, name)[:1]:
-                return node, Frame(each, each.scope, path, frame.depth + 1)
+        for owner in self._owners(scope, frame, place):
+            for node, path in sources.methods(owner, name)[:1]:
+                return node, Frame(owner, owner.scope, path, frame.depth + 1)
         whole = f"{scope}::{name}" if scope else name
-        found = sources.function(whole, frame.scope, frame.path, place)
-        return None if found is None else (found.node, Frame(None, found.scope, found.path, frame.depth + 1))
+        function = sources.function(whole, frame.scope, frame.path, place)
+        return (
+            None if function is None else (function.node, Frame(None, function.scope, function.path, frame.depth + 1))
+        )
 
     def basic_ports(self, scope: str, frame: Frame, call: Node) -> Ports | None:
-        """What `providedBasicPorts` of a library's class adds; None: unknown."""
+        """The ports that `providedBasicPorts` of a library's class adds; None: unknown."""
         place = self.sources.place_of(frame.path, call)
         libraries = [each for each in self._owners(scope, frame, place) if each.class_ is None]
         return next(filter(None, (self._of_library(each, place) for each in libraries)), None)
@@ -127,11 +130,11 @@ class PortsReader:
     def class_ports(self, scope: str, frame: Frame, call: Node) -> Ports:
         """The ports of the class before `::providedPorts()`."""
         place = self.sources.place_of(frame.path, call)
-        found = self.sources.find(substituted(scope, frame.meanings), frame.scope, frame.path, place)
+        bound = self.sources.find(substituted(scope, frame.meanings), frame.scope, frame.path, place)
         if frame.depth > _DEEPEST:
             self.incomplete("this calls itself", place)
             return {}
-        return self._of_class(found, place, frame.depth + 1)
+        return self._of_class(bound, place, frame.depth + 1)
 
     def _owners(self, scope: str, frame: Frame, place: SourcePosition) -> list[BoundClass]:
         """The classes that may have the function that a call means; scope: what is before its name."""
@@ -152,7 +155,7 @@ class Body:
     # ---- statements ----
 
     def result(self, function: Node) -> Ports:
-        """What a function returns."""
+        """The ports that a function returns."""
         body = field(function, "body")
         for statement in contents(body):
             if statement.type == "return_statement":
@@ -181,16 +184,16 @@ class Body:
 
     def _declare(self, node: Node) -> None:
         is_list = self.reader.is_list(field(node, "type"))
-        for each in node.children_by_field_name("declarator"):
-            name, value = each, field(each, "value")
+        for declarator in node.children_by_field_name("declarator"):
+            name, value = declarator, field(declarator, "value")
             while name.type in ("init_declarator", "pointer_declarator", "reference_declarator"):
                 name = field(name, "declarator") or name.named_children[-1]
-            if (said := string(self.reader.sources, value, self.frame)) is not None:
-                self.frame.strings[text_of(name)] = said
+            if (text := string(self.reader.sources, value, self.frame)) is not None:
+                self.frame.strings[text_of(name)] = text
                 continue
             if name.type == "function_declarator" and is_list:  # `PortsList ports(other);`
-                given = contents(field(name, "parameters"))
-                ports = self._copied(given[0]) if given else {}
+                passed = contents(field(name, "parameters"))
+                ports = self._copied(passed[0]) if passed else {}
                 name = field(name, "declarator") or name
             else:
                 wanted = is_list or text_of(field(node, "type")) == "auto"
@@ -199,14 +202,14 @@ class Body:
                 self.lists[text_of(name)] = dict(ports)
             elif is_list:
                 self.lists[text_of(name)] = {}
-                self.incomplete(each)
+                self.incomplete(declarator)
 
-    def _copied(self, given: Node) -> Ports | None:
+    def _copied(self, source: Node) -> Ports | None:
         """The list that another one is made of, which the grammar takes for the type of a parameter."""
-        scope, name, _ = named(field(given, "type"))
+        scope, name, _ = named(field(source, "type"))
         if name == "providedPorts" and scope:
-            return self.reader.class_ports(scope, self.frame, given)
-        return self.lists.get(text_of(given))
+            return self.reader.class_ports(scope, self.frame, source)
+        return self.lists.get(text_of(source))
 
     def _fill(self, node: Node) -> None:
         """`ports.insert(…)`, `ports["name"] = …` and the like."""
@@ -220,13 +223,13 @@ class Body:
             if self.names_list(node):
                 self.incomplete(node)
             return
-        method, target, given = text_of(field(function, "field")), self.lists[name], arguments(node)
+        method, target, passed = text_of(field(function, "field")), self.lists[name], arguments(node)
         if method in ("reserve", "rehash"):
             return
-        if method == "erase" and len(given) == 1 and (key := string(self.reader.sources, given[0], self.frame)):
+        if method == "erase" and len(passed) == 1 and (key := string(self.reader.sources, passed[0], self.frame)):
             target.pop(key, None)
             return
-        ports = self._added(given) if method in ("insert", "emplace", "merge", "insert_or_assign") else None
+        ports = self._added(passed) if method in ("insert", "emplace", "merge", "insert_or_assign") else None
         if ports is None:
             self.incomplete(node)
         elif method == "insert_or_assign":
@@ -253,10 +256,10 @@ class Body:
 
     def _copied_into(self, node: Node) -> bool:
         """`std::copy(more.begin(), more.end(), std::inserter(ports, ports.end()))`"""
-        given = arguments(node)
-        if callee(node)[1] != "copy" or len(given) < 2 or callee(given[-1])[1] != "inserter":
+        passed = arguments(node)
+        if callee(node)[1] != "copy" or len(passed) < 2 or callee(passed[-1])[1] != "inserter":
             return False
-        name, ports = text_of((arguments(given[-1]) or [node])[0]), self._added(given[:-1])
+        name, ports = text_of((arguments(passed[-1]) or [node])[0]), self._added(passed[:-1])
         if name not in self.lists or ports is None:
             return False
         self.lists[name] = _united(self.lists[name], ports)
@@ -265,8 +268,8 @@ class Body:
     def _filled_by_helper(self, node: Node) -> bool:
         """`addPorts(ports)`, which takes the list by reference."""
         scope, name, _ = callee(node)
-        given = arguments(node)
-        lists = [text_of(each) in self.lists for each in given]
+        passed = arguments(node)
+        lists = [text_of(each) in self.lists for each in passed]
         function = field(node, "function")
         if function is None or function.type == "field_expression" or sum(lists) != 1 or self.frame.depth > _DEEPEST:
             return False
@@ -274,23 +277,23 @@ class Body:
         parameter = _parameters(helper[0])[lists.index(True) :][:1] if helper is not None else []
         if helper is None or not parameter or "&" not in text_of(parameter[0]):
             return False
-        body, inner, outer = Body(self.reader, helper[1]), _name_in(parameter[0]), text_of(given[lists.index(True)])
+        body, inner, outer = Body(self.reader, helper[1]), _name_in(parameter[0]), text_of(passed[lists.index(True)])
         body.lists[inner] = self.lists[outer]
         for statement in contents(field(helper[0], "body")):
             body.run(statement)
         self.lists[outer] = body.lists[inner]
         return True
 
-    def _added(self, given: list[Node]) -> Ports | None:
-        """What `insert` and the like are given: a port, its name and what it is, a list, or a range."""
-        if len(given) == 2 and all(each.type == "call_expression" for each in given):
-            whose = [_of_range(each) for each in given]
-            names = [callee(each)[1] for each in given]
+    def _added(self, passed: list[Node]) -> Ports | None:
+        """The ports that `insert` and the like receive: a port, a name and a port, a list, or a range."""
+        if len(passed) == 2 and all(each.type == "call_expression" for each in passed):
+            whose = [_of_range(each) for each in passed]
+            names = [callee(each)[1] for each in passed]
             if names in (["begin", "end"], ["cbegin", "cend"]) and whose[0] == whose[1]:
                 return self.lists.get(whose[0])
-        if len(given) == 2:
-            return self._keyed(*given)
-        return self.evaluated(given[0]) if len(given) == 1 else None
+        if len(passed) == 2:
+            return self._keyed(*passed)
+        return self.evaluated(passed[0]) if len(passed) == 1 else None
 
     def _keyed(self, key: Node, value: Node) -> Ports | None:
         """The port of a name and of what another port is: `"goal", BT::InputPort<Pose>("").second`."""
@@ -335,7 +338,7 @@ class Body:
         return self._called(node) if node.type == "call_expression" else None
 
     def _listed(self, nodes: list[Node]) -> Ports | None:
-        found: Ports = {}
+        united: Ports = {}
         for node in nodes:
             if node.type.startswith("preproc_"):
                 self.incomplete(node)
@@ -347,48 +350,48 @@ class Body:
                     return None
                 self.incomplete(node)
                 continue
-            found = _united(found, ports)
-        return found
+            united = _united(united, ports)
+        return united
 
     def _called(self, node: Node) -> Ports | None:
         scope, name, types = callee(node)
-        given = arguments(node)
+        passed = arguments(node)
         if name in _DIRECTIONS:
-            return self._port(node, _DIRECTIONS[name], types, given)
-        if name == "CreatePort" and given:
-            direction = _DIRECTIONS.get(text_of(given[0]).rpartition("::")[2])
-            return self._port(node, direction, types, given[1:]) if direction is not None else None
+            return self._port(node, _DIRECTIONS[name], types, passed)
+        if name == "CreatePort" and passed:
+            direction = _DIRECTIONS.get(text_of(passed[0]).rpartition("::")[2])
+            return self._port(node, direction, types, passed[1:]) if direction is not None else None
         if name == "PortsList":
-            return self._listed(given)
-        if name in ("move", "forward") and len(given) == 1:
-            return self.evaluated(given[0])
-        if name in ("make_pair", "pair") and len(given) == 2:
-            return self._keyed(*given)
+            return self._listed(passed)
+        if name in ("move", "forward") and len(passed) == 1:
+            return self.evaluated(passed[0])
+        if name in ("make_pair", "pair") and len(passed) == 2:
+            return self._keyed(*passed)
         if name == "providedPorts" and scope:
             return self.reader.class_ports(scope, self.frame, node)
         function = field(node, "function")
         while function is not None and function.type == "parenthesized_expression":
             function = contents(function)[0]
-        if function is not None and function.type == "lambda_expression" and not given and "Port" in text_of(function):
+        if function is not None and function.type == "lambda_expression" and not passed and "Port" in text_of(function):
             inside = Body(self.reader, self.frame)
             inside.lists.update(self.lists)
             return inside.result(function)
-        return self._helped(name, scope, given, node)
+        return self._helped(name, scope, passed, node)
 
-    def _helped(self, name: str, scope: str, given: list[Node], node: Node) -> Ports | None:
-        """What a function of the sources makes of the lists that it is given."""
-        lists = [self.evaluated(each) for each in given]
+    def _helped(self, name: str, scope: str, passed: list[Node], node: Node) -> Ports | None:
+        """The result of a function of the sources for the lists that it receives."""
+        lists = [self.evaluated(each) for each in passed]
         helper = self.reader.helper(name, scope, self.frame, node)
         if helper is None:
-            known = [each for each in lists if each is not None]
+            readable = [each for each in lists if each is not None]
             basic = self.reader.basic_ports(scope, self.frame, node) if name == "providedBasicPorts" else None
-            if basic is not None and len(known) == len(lists) == 1:
-                return _united(basic, known[0])
-            if not known and name not in ("providedPorts", "providedBasicPorts"):
+            if basic is not None and len(readable) == len(lists) == 1:
+                return _united(basic, readable[0])
+            if not readable and name not in ("providedPorts", "providedBasicPorts"):
                 return None
             message = f"`{name}` is not in the sources, and may add ports"
             self.reader.incomplete(message, self.reader.sources.place_of(self.frame.path, node))
-            return {key: port for each in known for key, port in each.items()}
+            return {key: port for each in readable for key, port in each.items()}
         function, frame = helper
         if not _returns_list(function):
             return None
@@ -400,21 +403,21 @@ class Body:
                 body.lists[name] = dict(ports)
         return body.result(function)
 
-    def _port(self, node: Node, direction: Direction, types: list[str], given: list[Node]) -> Ports | None:
+    def _port(self, node: Node, direction: Direction, types: list[str], passed: list[Node]) -> Ports | None:
         """`InputPort<T>(name)`, `(name, text)` or `(name, default, text)`."""
         sources = self.reader.sources
         place = sources.place_of(self.frame.path, node)
-        name = string(sources, given[0], self.frame) if given else None
+        name = string(sources, passed[0], self.frame) if passed else None
         if name is None:
             self.reader.incomplete(f"the name of this port is an expression: `{_short(node)}`", place)
             return {}
-        said, written = None, " ".join(text_of(given[1]).split()) if len(given) > 2 else ""
-        if written and (said := default(sources, given[1], self.frame)) is None:
+        value, written = None, " ".join(text_of(passed[1]).split()) if len(passed) > 2 else ""
+        if written and (value := default(sources, passed[1], self.frame)) is None:
             sources.report(f"the default of the port `{name}` is an expression: `{written}`", place)
-            said = ""
-        text = string(sources, given[-1], self.frame) if len(given) > 1 else ""
+            value = ""
+        text = string(sources, passed[-1], self.frame) if len(passed) > 1 else ""
         type_ = type_of(sources, types[0], self.frame) if types else ""
-        return {name: CppPort(name, direction, type_, said, written, text or "", place)}
+        return {name: CppPort(name, direction, type_, value, written, text or "", place)}
 
     def incomplete(self, node: Node) -> None:
         """Report that a node is not understood."""

@@ -105,7 +105,7 @@ class CppSource:
                 self.unseen.append(Unseen("the C++ grammar cannot read this", self.place_of(node), hides_node=True))
 
     def place_of(self, node: Node) -> SourcePosition:
-        """Where a node is on the disk."""
+        """The place of a node on the disk."""
         row, column = self._expanded.original(*node.start_point)
         end_row, end_column = self._expanded.original(*node.end_point, at_end=True)
         return SourcePosition(self.path, row + 1, column + 1, end_row + 1, end_column + 1)
@@ -151,9 +151,9 @@ class CppSource:
         inner = (*scope, *filter(None, scopes.split("::")), name)
         clause = next((each for each in node.children if each.type == "base_class_clause"), None)
         bases = [plain(text_of(each)) for each in contents(clause) if each.type not in _OF_BASES]
-        found = Class("::".join(inner), self.path, node, parameters, tuple(bases), {}, set())
-        self.classes.append(found)
-        self._visit(contents(body), inner, found, ())
+        class_ = Class("::".join(inner), self.path, node, parameters, tuple(bases), {}, set())
+        self.classes.append(class_)
+        self._visit(contents(body), inner, class_, ())
 
     def _function(self, node: Node, scope: tuple[str, ...], within: Class | None) -> None:
         body = field(node, "body")
@@ -167,15 +167,15 @@ class CppSource:
         self._inside(node, scope)
 
     def _declaration(self, node: Node, scope: tuple[str, ...], within: Class | None) -> None:
-        for each in node.children_by_field_name("declarator"):
-            inner = each
+        for declarator in node.children_by_field_name("declarator"):
+            inner = declarator
             while inner.type in ("pointer_declarator", "reference_declarator", "init_declarator"):
                 inner = field(inner, "declarator") or inner.named_children[-1]
             if inner.type == "function_declarator":
                 if within is not None and field(node, "default_value") is None:  # not `= 0`
                     within.promised.add(text_of(field(inner, "declarator")))
                 continue
-            value = field(each, "value") or field(node, "default_value")
+            value = field(declarator, "value") or field(node, "default_value")
             if value is not None and value.type in ("initializer_list", "argument_list") and len(contents(value)) == 1:
                 value = contents(value)[0]
             if (string := literal(value)) is not None:
@@ -186,14 +186,14 @@ class CppSource:
 
     def _inside(self, node: Node, scope: tuple[str, ...]) -> None:
         """Find the calls, and the classes that a function defines for itself."""
-        for each in walk(node, _CLASSES):
-            if each.type in _CLASSES:
-                self._class(each, scope, ())
-            elif each.type == "call_expression":
-                _, name, types = callee(each)
+        for inner in walk(node, _CLASSES):
+            if inner.type in _CLASSES:
+                self._class(inner, scope, ())
+            elif inner.type == "call_expression":
+                _, name, types = callee(inner)
                 if REGISTERS(name):
-                    self.calls.append(RegistrationCall(name, tuple(map(plain, types)), scope, self.path, each))
-                elif name in ACCESSES and _is_of_another(field(each, "function")) and (given := arguments(each)):
+                    self.calls.append(RegistrationCall(name, tuple(map(plain, types)), scope, self.path, inner))
+                elif name in ACCESSES and _is_of_another(field(inner, "function")) and (given := arguments(inner)):
                     self.accessed.add(literal(given[0]) or "")
 
 
@@ -213,10 +213,10 @@ def _name_of(function: Node) -> str:
 
 def _parameters(node: Node | None) -> tuple[str, ...]:
     names = []
-    for each in contents(node):
-        found = [text_of(one) for one in walk(each) if one.type in ("type_identifier", "identifier")]
-        first = 0 if each.type == "optional_type_parameter_declaration" else -1
-        names.append(found[first] if found else "")
+    for parameter in contents(node):
+        words = [text_of(one) for one in walk(parameter) if one.type in ("type_identifier", "identifier")]
+        first = 0 if parameter.type == "optional_type_parameter_declaration" else -1
+        names.append(words[first] if words else "")
     return tuple(names)
 
 
@@ -232,14 +232,14 @@ def parts(text: str) -> tuple[str, list[str]]:
     name, sign, inside = text.partition("<")
     if not sign or not text.endswith(">"):
         return text, []
-    depth, begin, found = 0, 0, []
-    for at, sign in enumerate(inside[:-1]):
+    depth, begin, pieces = 0, 0, []
+    for index, sign in enumerate(inside[:-1]):
         depth += sign in "<({"
         depth -= sign in ">)}"
         if sign == "," and not depth:
-            found.append(inside[begin:at].strip())
-            begin = at + 1
-    return name, [*found, inside[begin:-1].strip()]
+            pieces.append(inside[begin:index].strip())
+            begin = index + 1
+    return name, [*pieces, inside[begin:-1].strip()]
 
 
 def substituted(text: str, meanings: Mapping[str, str]) -> str:

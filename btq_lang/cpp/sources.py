@@ -9,10 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Final, TypeVar
 
-from btq_lang.catalog.cpp_classes import ENGINE, LIBRARIES, NUMBERED_TAGS, ROS_PORTS, TAGS
+from btq_lang.catalog.cpp_classes import BASES, ENGINE, LIBRARIES, NAMESPACE, NUMBERED_TAGS, ROS_PORTS, TAGS, BasePort
 from btq_lang.catalog.kinds import Category
 from btq_lang.catalog.nav2 import DISTRIBUTIONS
-from btq_lang.catalog.nav2.bases import BASES, NAMESPACE, BasePort
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.cpp.model import CppPort, SourcePosition, Unseen
 from btq_lang.cpp.source import Class, CppSource, Function, parts, substituted
@@ -62,7 +61,7 @@ class CppSources:
         self._methods: Final = grouped((_last(each.name), each) for source in every for each in source.functions)
 
     def place_of(self, path: str, node: Node) -> SourcePosition:
-        """Where a node of a file is on the disk."""
+        """The place of a node of a file on the disk."""
         return self.files[path].place_of(node)
 
     def report(self, message: str, place: SourcePosition, hides_node: bool = False) -> None:
@@ -75,13 +74,13 @@ class CppSources:
         self, type_: str, scope: tuple[str, ...], path: str, place: SourcePosition, aliases: int = 0
     ) -> BoundClass:
         """The class that a type means at a place; aliases: by how many of them it was found."""
-        name, given = parts(type_)
-        found = self._nearest(self._classes.get(_last(name), []), name, scope, path, place)
-        if found is None and aliases < _MOST_ALIASES and (alias := self.alias(name, scope, path)) is not None:
+        name, passed = parts(type_)
+        class_ = self._nearest(self._classes.get(_last(name), []), name, scope, path, place)
+        if class_ is None and aliases < _MOST_ALIASES and (alias := self.alias(name, scope, path)) is not None:
             return self.find(alias, scope, path, place, aliases + 1)
-        if found is None:
-            return BoundClass(None, name, {str(at): each for at, each in enumerate(given)})
-        return BoundClass(found, found.name, dict(zip(found.parameters, given, strict=False)))
+        if class_ is None:
+            return BoundClass(None, name, {str(index): text for index, text in enumerate(passed)})
+        return BoundClass(class_, class_.name, dict(zip(class_.parameters, passed, strict=False)))
 
     def function(self, name: str, scope: tuple[str, ...], path: str, place: SourcePosition) -> Function | None:
         """The function outside of a class that a name means at a place."""
@@ -90,25 +89,25 @@ class CppSources:
     def ancestry(self, bound: BoundClass) -> Iterator[BoundClass]:
         """A class and all that it derives from, the nearest first; those that are not in the sources too."""
         waiting, seen = [bound], {bound.name}
-        for each in waiting:
-            yield each
-            if each.class_ is None:
+        for derived in waiting:
+            yield derived
+            if derived.class_ is None:
                 continue
-            for base in each.class_.bases:
-                type_ = substituted(base, each.meanings)
-                place = self.place_of(each.class_.path, each.class_.node)
-                found = self.find(type_, each.scope, each.class_.path, place)
-                if found.name not in seen:
-                    seen.add(found.name)
-                    waiting.append(found)
+            for base in derived.class_.bases:
+                type_ = substituted(base, derived.meanings)
+                place = self.place_of(derived.class_.path, derived.class_.node)
+                above = self.find(type_, derived.scope, derived.class_.path, place)
+                if above.name not in seen:
+                    seen.add(above.name)
+                    waiting.append(above)
 
     def category(self, bound: BoundClass) -> Category | None:
         """The category that a class has from what it derives from; None if that is not in the sources."""
-        for each in self.ancestry(bound):
-            scope, _, name = each.name.rpartition("::")
-            if name in ENGINE and (scope == "BT" or (each.class_ is None and not scope)):
+        for ancestor in self.ancestry(bound):
+            scope, _, name = ancestor.name.rpartition("::")
+            if name in ENGINE and (scope == "BT" or (ancestor.class_ is None and not scope)):
                 return ENGINE[name]
-            if each.class_ is None and name in LIBRARIES:
+            if ancestor.class_ is None and name in LIBRARIES:
                 return LIBRARIES[name]
         return next(filter(None, map(_mixed_in, self.ancestry(bound))), None)
 
@@ -122,34 +121,34 @@ class CppSources:
 
     def all_methods(self, class_: Class) -> list[tuple[str, Node, str]]:
         """All bodies of a class's own methods, each with its name and file."""
-        found = [(name, each, class_.path) for name, bodies in class_.methods.items() for each in bodies]
+        methods = [(name, body, class_.path) for name, bodies in class_.methods.items() for body in bodies]
         for name in sorted(class_.promised):
-            found += [(name, each.node, each.path) for each in self._outside(class_, name)]
-        return found
+            methods += [(name, method.node, method.path) for method in self._outside(class_, name)]
+        return methods
 
     def string(self, name: str, bound: BoundClass | None, scope: tuple[str, ...], path: str) -> str | None:
         """The string that a constant means."""
-        for whole, source in self._meant(name, bound, scope, path):
+        for whole, source in self._whole_names(name, bound, scope, path):
             if whole in source.strings:
                 return source.strings[whole]
-        found = {
+        strings = {
             string
             for source in self.files.values()
             for whole, string in source.strings.items()
             if whole.endswith(f"::{name}") or whole == name
         }
-        return found.pop() if len(found) == 1 else None
+        return strings.pop() if len(strings) == 1 else None
 
     def constant(
         self, name: str, bound: BoundClass | None, scope: tuple[str, ...], path: str
     ) -> tuple[Node, tuple[str, ...], str] | None:
         """The value of a constant that may be ports, with its scope and file."""
-        for whole, source in self._meant(name, bound, scope, path):
+        for whole, source in self._whole_names(name, bound, scope, path):
             if whole in source.lists:
                 return *source.lists[whole], source.path
         return None
 
-    def _meant(
+    def _whole_names(
         self, name: str, bound: BoundClass | None, scope: tuple[str, ...], path: str
     ) -> Iterator[tuple[str, CppSource]]:
         """The whole names that a name may mean, each in each file, the nearest first."""
@@ -181,17 +180,17 @@ class CppSources:
         if (of_nav2 := _of_nav2(bound)) is None:
             ports = _library_ports(bound, place)
             return None if ports is None else (ports, "")
-        in_all = [each for each in of_nav2 if all(map(each.is_in, self._distributions))]
-        in_some = [each for each in of_nav2 if each not in in_all and any(map(each.is_in, self._distributions))]
+        in_all = [port for port in of_nav2 if all(map(port.is_in, self._distributions))]
+        in_some = [port for port in of_nav2 if port not in in_all and any(map(port.is_in, self._distributions))]
         ports = {
-            each.name: CppPort(each.name, each.direction, each.type, _default(each), "", each.text, place)
-            for each in in_all
+            port.name: CppPort(port.name, port.direction, port.type, _default(port), "", port.text, place)
+            for port in in_all
         }
-        return ports, ", ".join(f"`{each.name}`" for each in in_some)
+        return ports, ", ".join(f"`{port.name}`" for port in in_some)
 
     def _outside(self, class_: Class, name: str) -> list[Function]:
         """The methods of a class whose body is outside of it."""
-        found = []
+        methods = []
         for function in self._methods.get(name, ()):
             owner = function.name.rpartition("::")[0]
             if not owner or _last(owner) != _last(class_.name):
@@ -199,24 +198,35 @@ class CppSources:
             place = self.place_of(function.path, function.node)
             meant = self._nearest(self._classes[_last(owner)], owner, function.scope, function.path, place)
             if meant is class_:
-                found.append(function)
-        return found
+                methods.append(function)
+        return methods
 
-    def _nearest(self, found: list[T], name: str, scope: tuple[str, ...], path: str, place: SourcePosition) -> T | None:
-        """Of what has a name's last part, the one that the name means at a place."""
-        if not found:
+    def _nearest(
+        self, candidates: list[T], name: str, scope: tuple[str, ...], path: str, place: SourcePosition
+    ) -> T | None:
+        """The candidate that a name means at a place.
+
+        Args:
+            candidates: those with the last part of the name.
+        """
+        if not candidates:
             return None
         usings: list[str] = self.files[path].usings
         names = [*_in_scopes(name, scope), *(f"{using}::{name}" for using in usings)]
-        fitting = next((fit for whole in names if (fit := [each for each in found if _whole(each) == whole])), None)
+        fitting = next(
+            (fit for whole in names if (fit := [candidate for candidate in candidates if _whole(candidate) == whole])),
+            None,
+        )
         if fitting is None:
-            fitting = [each for each in found if _whole(each).endswith(f"::{name}")]
+            fitting = [candidate for candidate in candidates if _whole(candidate).endswith(f"::{name}")]
         if len(fitting) > 1:
             near = [source.path for source in self._near(path)]
-            least = min(near.index(each.path) for each in fitting)
-            fitting = [each for each in fitting if near.index(each.path) == least]
+            least = min(near.index(candidate.path) for candidate in fitting)
+            fitting = [candidate for candidate in fitting if near.index(candidate.path) == least]
             if len(fitting) > 1 and isinstance(fitting[0], Class):
-                places = ", ".join(sorted(f"{each.path}:{each.node.start_point[0] + 1}" for each in fitting))
+                places = ", ".join(
+                    sorted(f"{candidate.path}:{candidate.node.start_point[0] + 1}" for candidate in fitting)
+                )
                 self.report(f"`{name}` may be any of several classes: {places}", place)
                 return None
         return fitting[0] if fitting else None
@@ -227,10 +237,10 @@ class CppSources:
             order = {path: self.files[path]}
             waiting = [self.files[path]]
             for source in waiting:
-                included = {each for include in source.includes for each in self._included(include)} - order.keys()
-                waiting += [self.files[each] for each in sorted(included)]
-                order.update((each, self.files[each]) for each in sorted(included))
-            self._orders[path] = [*order.values(), *(each for at, each in self.files.items() if at not in order)]
+                included = {other for include in source.includes for other in self._included(include)} - order.keys()
+                waiting += [self.files[other] for other in sorted(included)]
+                order.update((other, self.files[other]) for other in sorted(included))
+            self._orders[path] = [*order.values(), *(other for name, other in self.files.items() if name not in order)]
         return self._orders[path]
 
     def _included(self, include: str) -> list[str]:
@@ -242,18 +252,18 @@ class CppSources:
 
 def _mixed_in(bound: BoundClass) -> Category | None:
     """The category of a class of the engine that a template, which is not in the sources, is given to derive from."""
-    given = bound.meanings.values() if bound.class_ is None else ()
-    names = (each.removeprefix("BT::") for each in given if each.startswith("BT::"))
+    meanings = bound.meanings.values() if bound.class_ is None else ()
+    names = (each.removeprefix("BT::") for each in meanings if each.startswith("BT::"))
     return next((ENGINE[name] for name in names if name in ENGINE), None)
 
 
 def _in_scopes(name: str, scope: tuple[str, ...]) -> list[str]:
-    """What a name may mean, from the innermost scope to the outermost."""
+    """The whole names that a name may mean, from the innermost scope to the outermost."""
     return ["::".join((*scope[:depth], name)) for depth in range(len(scope), -1, -1)]
 
 
-def _whole(found: Class | Function) -> str:
-    return found.name if isinstance(found, Class) else "::".join((*found.scope, found.name))
+def _whole(named: Class | Function) -> str:
+    return named.name if isinstance(named, Class) else "::".join((*named.scope, named.name))
 
 
 def _last(name: str) -> str:

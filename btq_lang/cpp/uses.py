@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Uses:
-    """What code does with ports.
+    """The reads and writes of ports in some code.
 
     Attributes:
         all: reads and writes whose port can be seen, in order.
@@ -39,24 +39,24 @@ class Uses:
 
     @classmethod
     def of_class(cls, sources: CppSources, bound: BoundClass) -> Uses:
-        """What the methods of a class and of its bases do."""
+        """The uses in the methods of a class and of its bases."""
         uses = cls(sources)
-        for each in sources.ancestry(bound):
-            if each.class_ is None:
-                uses.complete = uses.complete and each.name.rpartition("::")[2] in ENGINE
+        for ancestor in sources.ancestry(bound):
+            if ancestor.class_ is None:
+                uses.complete = uses.complete and ancestor.name.rpartition("::")[2] in ENGINE
                 continue
-            bodies = sources.all_methods(each.class_)
-            uses.complete = uses.complete and each.class_.promised <= {name for name, *_ in bodies}
+            bodies = sources.all_methods(ancestor.class_)
+            uses.complete = uses.complete and ancestor.class_.promised <= {name for name, *_ in bodies}
             for name, node, path in bodies:
                 if not _PROVIDES(name):
-                    uses._read(node, Frame(each, each.scope, path))
+                    uses._read(node, Frame(ancestor, ancestor.scope, path))
         return uses
 
     @classmethod
-    def of_function(cls, sources: CppSources, given: Node, frame: Frame) -> Uses:
-        """What a function does that a node is made of: a lambda, or the name of one or of a function."""
+    def of_function(cls, sources: CppSources, argument: Node, frame: Frame) -> Uses:
+        """The uses in the function of a node: a lambda, or the name of one or of a function."""
         uses = cls(sources)
-        function = _function(sources, given, frame)
+        function = _function(sources, argument, frame)
         uses.complete = function is not None and not _is_handed_on(function[0])
         if function is not None:
             uses._read(*function)
@@ -75,15 +75,15 @@ class Uses:
         return tuple(use for use in self.all if use.port not in names and not use.falls_back)
 
     def without_each(self, ports: Iterable[CppPort]) -> tuple[tuple[str, str], ...]:
-        """What the code does without each input that has no default: see `Use.without`."""
+        """The effect of each missing input that has no default: see `PortUse.without`."""
         inputs = (port for port in ports if port.direction != "output" and port.default is None)
         return tuple((port.name, self._without(port)) for port in inputs)
 
     def _without(self, port: CppPort) -> str:
-        found = {use.without for use in self.all if use.port == port.name and not use.writes}
-        if "fails" in found:
+        effects = {use.without for use in self.all if use.port == port.name and not use.writes}
+        if "fails" in effects:
             return "fails"
-        return next((each for each in ("", _IGNORES, "goes on") if each in found), "")
+        return next((each for each in ("", _IGNORES, "goes on") if each in effects), "")
 
     def _read(self, body: Node, frame: Frame) -> None:
         for node in walk(body):
@@ -95,49 +95,49 @@ class Uses:
                 self._call(node, frame)
 
     def _call(self, call: Node, frame: Frame) -> None:
-        name, given = callee(call)[1], arguments(call)
-        if name in ACCESSES and given:
-            port = string(self._sources, given[0], frame)
+        name, passed = callee(call)[1], arguments(call)
+        if name in ACCESSES and passed:
+            port = string(self._sources, passed[0], frame)
             if port is not None:
                 writes = name == "setOutput"
                 without = "" if writes else _without(call)
                 self.all.append(PortUse(port, writes, without, self._sources.place_of(frame.path, call)))
-            elif not _is_parameter(given[0]):  # else the name is in a string of the code that calls this
+            elif not _is_parameter(passed[0]):  # else the name is in a string of the code that calls this
                 self.complete = False
         elif _FALLS_BACK(name):
-            for port in filter(None, map(literal, given)):
+            for port in filter(None, map(literal, passed)):
                 self.all.append(
                     PortUse(port, False, "goes on", self._sources.place_of(frame.path, call), falls_back=True)
                 )
 
 
-def _function(sources: CppSources, given: Node, frame: Frame) -> tuple[Node, Frame] | None:
+def _function(sources: CppSources, argument: Node, frame: Frame) -> tuple[Node, Frame] | None:
     """The function that an argument is, with the frame of its body; None if it cannot be seen."""
-    if given.type == "lambda_expression":
-        return given, frame
-    if given.type not in ("identifier", "qualified_identifier"):
+    if argument.type == "lambda_expression":
+        return argument, frame
+    if argument.type not in ("identifier", "qualified_identifier"):
         return None
-    around = enclosing(given, ("function_definition",))
-    for each in walk(around) if around is not None else ():
-        if each.type == "init_declarator" and text_of(field(each, "declarator")) == text_of(given):
-            value = field(each, "value")
+    around = enclosing(argument, ("function_definition",))
+    for node in walk(around) if around is not None else ():
+        if node.type == "init_declarator" and text_of(field(node, "declarator")) == text_of(argument):
+            value = field(node, "value")
             return (value, frame) if value is not None and value.type == "lambda_expression" else None
-    function = sources.function(text_of(given), frame.scope, frame.path, sources.place_of(frame.path, given))
+    function = sources.function(text_of(argument), frame.scope, frame.path, sources.place_of(frame.path, argument))
     return None if function is None else (function.node, Frame(None, function.scope, function.path))
 
 
 def _is_handed_on(function: Node) -> bool:
-    """Whether other code may read ports, too, because the function passes on the node that it is given."""
-    listed = next((each for each in walk(function) if each.type == "parameter_list"), None)
-    parameters = [each for each in contents(listed) if "NodeStatus" not in text_of(each)]  # that of a decorator's child
-    names = {text_of(each) for parameter in parameters for each in walk(parameter) if each.type == "identifier"}
+    """Whether a function passes on its node, so that other code may read ports, too."""
+    listed = next((node for node in walk(function) if node.type == "parameter_list"), None)
+    parameters = [node for node in contents(listed) if "NodeStatus" not in text_of(node)]  # that of a decorator's child
+    names = {text_of(node) for parameter in parameters for node in walk(parameter) if node.type == "identifier"}
     body = field(function, "body")
     return any(
-        each.type == "identifier"
-        and text_of(each) in names
-        and each.parent is not None
-        and each.parent.type != "field_expression"
-        for each in (walk(body) if body is not None else ())
+        node.type == "identifier"
+        and text_of(node) in names
+        and node.parent is not None
+        and node.parent.type != "field_expression"
+        for node in (walk(body) if body is not None else ())
     )
 
 
@@ -149,7 +149,7 @@ def _is_parameter(name: Node) -> bool:
 
 
 def _without(read: Node) -> str:
-    """What happens if a read gets nothing, as the code around it shows."""
+    """The effect of a read that gets nothing, as the code around it shows."""
     node, negated, within_and = read, False, False
     while (around := node.parent) is not None:
         if around.type == "expression_statement":
@@ -178,7 +178,7 @@ def _without(read: Node) -> str:
 
 
 def _in_condition(condition: Node, negated: bool, within_and: bool) -> str:
-    """What a branch does that is taken if the read gets nothing."""
+    """The effect of the branch that is taken if the read gets nothing."""
     statement = condition.parent
     if statement is None or statement.type != "if_statement":
         return ""
@@ -195,7 +195,7 @@ def _in_condition(condition: Node, negated: bool, within_and: bool) -> str:
 
 
 def _kept(declared: Node) -> str:
-    """What the code does with a result that it keeps in a variable."""
+    """The effect of a missing result that is kept in a variable."""
     inner = field(declared, "declarator") or field(declared, "left")
     name = text_of(inner)
     if name == "std::ignore":
@@ -208,17 +208,17 @@ def _kept(declared: Node) -> str:
     function = enclosing(declared, ("function_definition", "lambda_expression"))
     for node in walk(function) if function is not None else ():  # the first use shows what is expected
         if node.start_byte >= declared.end_byte and node.type == "identifier" and text_of(node) == name:
-            what = _without(node)
-            return "" if what == _IGNORES else what
+            effect = _without(node)
+            return "" if effect == _IGNORES else effect
     return _IGNORES
 
 
 def _fails(branch: Node) -> bool:
     """Whether a branch throws, ends the program, or returns FAILURE."""
-    for each in walk(branch, LAMBDAS):
-        if each.type == "throw_statement" or (each.type == "call_expression" and callee(each)[1] in _ENDS):
+    for node in walk(branch, LAMBDAS):
+        if node.type == "throw_statement" or (node.type == "call_expression" and callee(node)[1] in _ENDS):
             return True
-        if each.type == "return_statement" and text_of(each).rstrip("; ").endswith("NodeStatus::FAILURE"):
+        if node.type == "return_statement" and text_of(node).rstrip("; ").endswith("NodeStatus::FAILURE"):
             return True
     return False
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Frame:
-    """Where an expression is: in which class, scope and file, and what names mean there.
+    """The surroundings of an expression: its class, scope and file, and the meanings of names there.
 
     Attributes:
         bound: the class, if it is in one.
@@ -31,7 +31,7 @@ class Frame:
 
     @property
     def meanings(self) -> dict[str, str]:
-        """What the parameters of templates mean."""
+        """The meanings of the parameters of templates."""
         return self.bound.meanings if self.bound is not None else {}
 
 
@@ -39,8 +39,8 @@ def string(sources: CppSources, node: Node | None, frame: Frame) -> str | None:
     """The string that an expression is: a literal, a constant, or either in `std::string(…)`."""
     if node is None:
         return None
-    if (found := literal(node)) is not None:
-        return found
+    if (text := literal(node)) is not None:
+        return text
     if node.type in ("identifier", "qualified_identifier"):
         name = text_of(node)
         if name in frame.strings:
@@ -48,21 +48,21 @@ def string(sources: CppSources, node: Node | None, frame: Frame) -> str | None:
         return sources.string(substituted(name, frame.meanings), frame.bound, frame.scope, frame.path)
     if node.type == "call_expression":
         _, name, _ = callee(node)
-        given = arguments(node)
+        passed = arguments(node)
     elif node.type == "compound_literal_expression":
         _, name, _ = named(field(node, "type"))
-        given = contents(field(node, "value"))
+        passed = contents(field(node, "value"))
     else:
         return None
     if name in _STRINGS:
-        return string(sources, given[0], frame) if given else ""
+        return string(sources, passed[0], frame) if passed else ""
     return None
 
 
 def default(sources: CppSources, node: Node, frame: Frame) -> str | None:
     """The text of a default value; None if it is an expression."""
-    if (found := string(sources, node, frame)) is not None:
-        return found
+    if (text := string(sources, node, frame)) is not None:
+        return text
     written = text_of(node)
     if node.type in ("true", "false"):
         return written

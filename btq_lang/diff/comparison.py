@@ -106,7 +106,7 @@ def without_made_models(comparison: MissionComparison) -> MissionComparison:
         (what, path, name)
         for what, side in (("removed", comparison.old), ("added", comparison.new))
         for path in side.paths
-        if side.workspace.files[path].origin is not None and is_generated(side.workspace.files[path].source)
+        if side.workspace.files[path].is_foreign and is_generated(side.workspace.files[path].source)
         for name in made_models(side.workspace, path)
     }
 

@@ -18,8 +18,7 @@ from btq_lang.evidence.verdicts import (
     Worst,
 )
 from btq_lang.evidence.wording import time_of, timestamp
-from btq_lang.util.fields import as_dict
-from btq_lang.util.record import Record
+from btq_lang.util.record import Record, as_dict
 from btq_lang.workspace.loader import shown
 
 if TYPE_CHECKING:

@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.evidence.tally import Tally
 from btq_lang.evidence.verdicts import OPEN, UNKNOWN, ClauseVerdict
 from btq_lang.requirements.model import Applied, NodeTarget, ResolvedClaim, ResolvedRequirement
-from btq_lang.util.fields import fields_of
-from btq_lang.util.record import Record
+from btq_lang.util.record import Record, fields_of
 from btq_lang.workspace.resolved import ResolvedNode, ResolvedTree
 
 if TYPE_CHECKING:

@@ -35,9 +35,8 @@ from typing import Final
 
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.formatter.alignment import align
 from btq_lang.formatter.clauses import sections
-from btq_lang.formatter.layout import FormatOptions, PhysicalLine, laid_out
+from btq_lang.formatter.layout import FormatOptions, PhysicalLine, align, laid_out
 from btq_lang.formatter.lines import CommentLines, LogicalLine, logical_lines
 from btq_lang.formatter.marks import Marks
 from btq_lang.parser import Parsed, parse
@@ -103,7 +102,7 @@ def format_range(text: str, start: int, end: int, options: FormatOptions = DEFAU
 
 
 def refused(parsed: Parsed) -> Diagnostic | None:
-    """The first syntax error of a text, because of which it is not formatted."""
+    """The first syntax error of a text, which prevents its formatting; None if it has none."""
     errors = (problem for problem in parsed.diagnostics if problem.effective_severity is Severity.ERROR)
     return min(errors, key=lambda problem: problem.span, default=None)
 
@@ -125,7 +124,7 @@ def _stretches(parsed: Parsed, options: FormatOptions) -> list[_Stretch]:
     parts = tuple(sections(logical_lines(parsed.text, parsed.tokens, marks.atoms), marks, options))
     items = {entry.start + entry.item.start for entry in parsed.entries}
     _part_items([line for _, lines in parts for line in lines], items)
-    written = [[part for line in lines for part in _written(line, marks, options)] for _, lines in parts]
+    written = [[part for line in lines for part in _parts_of(line, marks, options)] for _, lines in parts]
     above = -1  # the level of the part above
     for part in chain.from_iterable(written):
         if part.blank and part.level <= above:
@@ -175,7 +174,7 @@ class _Part(Record):
     rows: list[PhysicalLine]
 
 
-def _written(line: LogicalLine, marks: Marks, options: FormatOptions) -> Iterator[_Part]:
+def _parts_of(line: LogicalLine, marks: Marks, options: FormatOptions) -> Iterator[_Part]:
     """A line with the comment lines above and below it."""
     for remark in line.lead:
         yield _remark(remark, options)
@@ -215,25 +214,25 @@ def _edits(text: str, stretches: Iterable[_Stretch]) -> tuple[Edit, ...]:
         if _BLANKS.sub("", old) != _BLANKS.sub("", new):
             edits.append(_edit(stretch.start, old, new))
             continue
-        at = new_at = 0
-        while at < len(old) or new_at < len(new):
-            end, new_end = _end(_BLANKS, old, at), _end(_BLANKS, new, new_at)
-            if old[at:end] != new[new_at:new_end]:
-                edits.append(_edit(stretch.start + at, old[at:end], new[new_at:new_end]))
+        position = new_position = 0
+        while position < len(old) or new_position < len(new):
+            end, new_end = _end(_BLANKS, old, position), _end(_BLANKS, new, new_position)
+            if old[position:end] != new[new_position:new_end]:
+                edits.append(_edit(stretch.start + position, old[position:end], new[new_position:new_end]))
             same = min(_end(_WORD, old, end) - end, _end(_WORD, new, new_end) - new_end)
-            at, new_at = end + same, new_end + same
+            position, new_position = end + same, new_end + same
     return tuple(edits)
 
 
-def _edit(at: int, old: str, new: str) -> Edit:
+def _edit(offset: int, old: str, new: str) -> Edit:
     """Replace the one text by the other, but for what both begin with."""
     same = alike(old, new)
-    return Edit(Span(at + same, at + len(old)), new[same:])
+    return Edit(Span(offset + same, offset + len(old)), new[same:])
 
 
-def _end(pattern: re.Pattern[str], text: str, at: int) -> int:
-    found = pattern.match(text, at)
-    return found.end() if found else at
+def _end(pattern: re.Pattern[str], text: str, offset: int) -> int:
+    match = pattern.match(text, offset)
+    return match.end() if match else offset
 
 
 _OLD_LINE_END: Final = re.compile(r"\r(?!\n)")

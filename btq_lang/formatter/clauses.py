@@ -23,17 +23,17 @@ Section: TypeAlias = tuple[
 def sections(lines: Sequence[LogicalLine], marks: Marks, options: FormatOptions) -> Iterator[Section]:
     """The lines in order: each is a section of its own, but the block of a requirement is one section.
 
-    The clauses of a block are sorted if the requirement has no more than one claim: with two of them, a reader may take
-    what follows a claim as said of that claim.  Clauses after a head that is too long go into the block.
+    The clauses of a block are sorted if the requirement has no more than one claim: with two of them, a reader may
+    relate what follows a claim to that claim.  Clauses after a head that is too long go into the block.
     """
     starts = [line.pieces[0].start for line in lines[:-1]]
     # Of several requirements in one line, only the last may have a block.
-    in_order = sorted(marks.clauses, key=lambda each: each.start)
-    found = {bisect_right(starts, each.start) - 1: each for each in in_order}
+    in_order = sorted(marks.clauses, key=lambda clauses: clauses.start)
+    by_line = {bisect_right(starts, clauses.start) - 1: clauses for clauses in in_order}
     index = 0
     while index < len(lines):
         head = lines[index]
-        clauses = found.get(index)
+        clauses = by_line.get(index)
         index += 1
         block: list[LogicalLine] = []
         if clauses is not None and max(clauses.ranks) >= head.end:

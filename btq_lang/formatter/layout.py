@@ -1,4 +1,5 @@
-"""Writes one logical line: the gaps between its words, and the physical lines that its brackets span.
+"""Writes one logical line: the gaps between its words, and the physical lines that its brackets span; and aligns
+trailing comments.
 
 One invariant: the lexer splits the new text into the same tokens.  It reads `6` at a line's end and `s` on the next as
 two words, and `-` differently after a line end; so a line end inside an attribute stays, except where the words on both
@@ -14,6 +15,7 @@ from btq_lang.formatter.lines import Piece
 from btq_lang.formatter.marks import Marks
 from btq_lang.syntax.tokens import CLOSE, COMMENT, NAME, OPEN, OPERATOR
 from btq_lang.util.record import Record
+from btq_lang.util.text import LineIndex
 
 
 class FormatOptions(Record):
@@ -67,6 +69,25 @@ def fits(pieces: Iterable[Piece], column: int, marks: Marks, options: FormatOpti
                 return False
             before = piece
     return True
+
+
+def align(old: str, rows: Iterable[PhysicalLine]) -> None:
+    """Align the comments of rows that follow each other, if they were in the same column of the old text.
+
+    Aligning again changes nothing: the column is always two blanks after the longest code of these rows.
+    """
+    lines = LineIndex(old)
+    run: list[PhysicalLine] = []
+    shared = -1  # the column of its comments
+    for row in (*rows, PhysicalLine("")):
+        column = _column(old, row.at, lines.position(row.at).column) if row.comment else -1
+        if column != shared or "\n" in row.code or any("\n" in above.comment for above in run[-1:]):
+            ends = [len(aligned.code) - aligned.code.rfind("\n") for aligned in run]
+            for aligned, end in zip(run, ends, strict=True):
+                aligned.code += " " * (max(ends) - end)
+            run, shared = [], column
+        if row.comment:
+            run.append(row)
 
 
 class _Group:
@@ -159,7 +180,8 @@ class _Writer:
         if piece.kind == COMMENT and not piece.broken:
             return False
         if self.next_word < index:
-            self.next_word = next(at for at in range(index, len(self.pieces)) if self.pieces[at].kind != COMMENT)
+            rest = range(index, len(self.pieces))
+            self.next_word = next(following for following in rest if self.pieces[following].kind != COMMENT)
         word = self.pieces[self.next_word]
         return word.start in self.marks.elements or (piece.kind == COMMENT and word.kind == CLOSE)
 
@@ -195,8 +217,8 @@ class _Writer:
         """The pieces from this one to the end of the element, or of the line outside brackets."""
         yield self.pieces[index]
         depth = int(self.pieces[index].kind == OPEN)
-        for at in range(index + 1, len(self.pieces)):
-            piece = self.pieces[at]
+        for following in range(index + 1, len(self.pieces)):
+            piece = self.pieces[following]
             if piece.kind == OPEN:
                 depth += 1
             elif depth == 0 and (piece.kind == CLOSE or (self.groups and piece.start in self.marks.elements)):
@@ -222,11 +244,18 @@ def _is(piece: Piece, kind: int, text: str) -> bool:
 
 def _closing(pieces: Sequence[Piece]) -> dict[int, int]:
     """The index of the closing bracket for each opening one."""
-    found: dict[int, int] = {}
-    open_at: list[int] = []
+    closing: dict[int, int] = {}
+    open_brackets: list[int] = []
     for index, piece in enumerate(pieces):
         if piece.kind == OPEN:
-            open_at.append(index)
+            open_brackets.append(index)
         elif piece.kind == CLOSE:
-            found[open_at.pop()] = index
-    return found
+            closing[open_brackets.pop()] = index
+    return closing
+
+
+def _column(text: str, offset: int, length: int) -> int:
+    """The column of an offset, `length` characters after the start of its line; a tab goes to the next multiple of four
+    columns, as for comment lines.
+    """
+    return len(text[offset - length : offset].lstrip("\ufeff").expandtabs(4))

@@ -104,7 +104,7 @@ def logical_lines(text: str, tokens: Iterable[Token], atoms: Mapping[int, int]) 
     """
     lines: list[LogicalLine] = []
     open_lines: list[LogicalLine] = []  # the previous line and the lines whose blocks contain it
-    for remarks, line in _gathered(text, tokens, atoms):
+    for remarks, line in _lines_with_comments(text, tokens, atoms):
         for remark in remarks:
             owner = block_of(remark.blanks, open_lines, line.level)
             remark.depth = line.level if owner is None else owner.level + 1
@@ -121,10 +121,10 @@ def logical_lines(text: str, tokens: Iterable[Token], atoms: Mapping[int, int]) 
     return lines
 
 
-def _gathered(
+def _lines_with_comments(
     text: str, tokens: Iterable[Token], atoms: Mapping[int, int]
 ) -> Iterator[tuple[list[CommentLines], LogicalLine]]:
-    """Each line with the comment lines above it."""
+    """The lines, each with the comment lines above it."""
     remarks: list[CommentLines] = []
     line: LogicalLine | None = None
     level = line_ends = written = 0
@@ -148,7 +148,7 @@ def _gathered(
         if token.start < written:
             continue  # inside an atom
         written = atoms.get(token.start, token.end)
-        piece = Piece(kind, token.start, _written(kind, text[token.start : written]), line_ends)
+        piece = Piece(kind, token.start, _normalized(kind, text[token.start : written]), line_ends)
         if line is not None:
             line.pieces.append(piece)
         elif kind == COMMENT:
@@ -167,7 +167,7 @@ def _gathered(
     yield remarks, end
 
 
-def _written(kind: int, raw: str) -> str:
+def _normalized(kind: int, raw: str) -> str:
     if kind == QUANTITY:
         end = number_end(raw, 0)
         return f"{raw[:end]} {raw[end:].strip()}"
@@ -176,6 +176,6 @@ def _written(kind: int, raw: str) -> str:
     return LINE_END.sub("\n", raw) if "\r" in raw else raw
 
 
-def _line_end(text: str, at: int) -> int:
-    found = LINE_END.search(text, at)
-    return found.end() if found else len(text)
+def _line_end(text: str, offset: int) -> int:
+    match = LINE_END.search(text, offset)
+    return match.end() if match else len(text)

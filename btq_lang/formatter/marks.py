@@ -65,20 +65,20 @@ class Marks:
         """Mark the tokens of a part of the tree whose offsets count from `base`."""
         match part:
             case syntax.Pair():
-                at = self._index[base + part.key.start]
-                before = self._tokens[at - 1]
+                index = self._index[base + part.key.start]
+                before = self._tokens[index - 1]
                 if before.kind == NAME and before.text == "parameters":
-                    at -= 1
-                self.elements.add(self._tokens[at].start)
+                    index -= 1
+                self.elements.add(self._tokens[index].start)
             case syntax.Node():
                 last = part.label or part.kind or part.category
                 assert last is not None, "a node has a kind or a category"
                 self._mark_bracket(self.attributes, self._index[base + last.start] + 1)
             case syntax.Root() | syntax.Tree() | syntax.Model() | syntax.Include() | syntax.Meta() | syntax.Port():
-                at = self._index[base + part.start]
-                while self._tokens[at].kind not in (OPEN, NEWLINE):
-                    at += 1
-                self._mark_bracket(self.attributes, at)
+                index = self._index[base + part.start]
+                while self._tokens[index].kind not in (OPEN, NEWLINE):
+                    index += 1
+                self._mark_bracket(self.attributes, index)
                 if isinstance(part, syntax.Port):
                     self._mark_atom(part.type, base)
             case syntax.Satisfices() | syntax.Satisfies() | syntax.Tags():
@@ -111,16 +111,16 @@ class Marks:
             case syntax.Amount(negative=True):
                 self._mark_signed(self._index[base + part.word.start] - 1)
 
-    def _mark_bracket(self, marks: set[int], at: int) -> None:
+    def _mark_bracket(self, marks: set[int], index: int) -> None:
         """Mark the token there if it is a `(`."""
-        if self._tokens[at].kind == OPEN:
-            marks.add(self._tokens[at].start)
+        if self._tokens[index].kind == OPEN:
+            marks.add(self._tokens[index].start)
 
     def _mark_arguments(self, name: syntax.Word, base: int) -> None:
         """Mark the `(` after the name of a requirement: its parameters, or their values."""
-        at = self._index[base + name.start] + 1
-        self._mark_bracket(self.arguments, at)
-        self._mark_bracket(self.tight, at)
+        index = self._index[base + name.start] + 1
+        self._mark_bracket(self.arguments, index)
+        self._mark_bracket(self.tight, index)
 
     def _mark_atom(self, word: syntax.Word | None, base: int) -> None:
         if word is not None:
@@ -146,15 +146,15 @@ class Marks:
             claims = sum(isinstance(clause, syntax.Claim) for clause in requirement.clauses)
             self.clauses.append(Clauses(base + requirement.start, spans, ranks, claims))
 
-    def _mark_signed(self, at: int) -> None:
+    def _mark_signed(self, index: int) -> None:
         """Mark the number after a `-` that is not part of it.
 
         If the lexer reads a `-` as a token of its own because of the word before it, no blank is needed; elsewhere only
         a blank separates it (docs/language.md, NUMBER).
         """
-        before = self._tokens[at - 1]
-        if before.kind in _OPERANDS and not LINE_END.search(self._text, before.end, self._tokens[at].start):
-            self.tight.add(self._tokens[at + 1].start)
+        before = self._tokens[index - 1]
+        if before.kind in _OPERANDS and not LINE_END.search(self._text, before.end, self._tokens[index].start):
+            self.tight.add(self._tokens[index + 1].start)
 
 
 # The order of clauses in a block: what is demanded, where and how often, what follows, why, and how it is verified.

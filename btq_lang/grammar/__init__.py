@@ -12,6 +12,6 @@ meaning of names are unknown here.
     clauses.py       the clauses of a requirement
     claims.py        what a clause demands
     conditions.py    the conditions in clauses
-    prose.py         the words of other notations for clauses
+    prose.py, clause_slips.py   clauses in the words of other notations
     item_words.py    the words that begin items
 """

@@ -82,11 +82,11 @@ class AttributeParser(RequirementParser):
 
     def not_an_attribute(self, pairs: list[Pair], clauses: list[NodeClause]) -> None:
         """Report what is in brackets and is not an attribute, and read it as what it was probably meant to be."""
-        at = self.index
-        if self.at_name() and (self.is_operator(at + 1, ":") or self.is_operator(at + 1, "==")):
-            sign = self.starts[at + 1]
+        index = self.index
+        if self.at_name() and (self.is_operator(index + 1, ":") or self.is_operator(index + 1, "==")):
+            sign = self.starts[index + 1]
             is_assignment = self.text.startswith(":=", sign)
-            span = Span(sign, sign + (2 if is_assignment else len(self.raws[at + 1])))
+            span = Span(sign, sign + (2 if is_assignment else len(self.raws[index + 1])))
             written = "=" if self.text[sign - 1] in " \t" else " ="
             message = f"expected `=` between key and value, found `{self.text[span.start : span.end]}`"
             self.complain(span, message, replace_fix("Write `=`", span, written, safe=True))
@@ -94,35 +94,35 @@ class AttributeParser(RequirementParser):
                 self.advance()
             pairs.append(self.pair())
             return
-        if self.kind == NAME and self.kinds[at + 1] in (NAME, STRING) and (meant := self.misspelt_clause()):
+        if self.kind == NAME and self.kinds[index + 1] in (NAME, STRING) and (meant := self.misspelt_clause()):
             clauses.append(self.node_clause(meant))
             return
         notes: tuple[str, ...] = ()
-        if self.kinds[at - 1] in (NAME, NUMBER, QUANTITY) and self.kind in (NAME, NUMBER, QUANTITY):
+        if self.kinds[index - 1] in (NAME, NUMBER, QUANTITY) and self.kind in (NAME, NUMBER, QUANTITY):
             notes = ("a value or name of several words goes in quotes",)
-        elif self.kinds[at - 1] == OPEN and self.kind in (NUMBER, QUANTITY, STRING):
+        elif self.kinds[index - 1] == OPEN and self.kind in (NUMBER, QUANTITY, STRING):
             notes = (f"a value goes after the name of its port: `port = {shown(self.raw)}`",)
-        elif self.kinds[at - 1] == OPEN and self.kind == NAME and self.raws[at + 1] == ",":
+        elif self.kinds[index - 1] == OPEN and self.kind == NAME and self.raws[index + 1] == ",":
             notes = (CHILDREN,)
-        elif self.raw in ("+", "%") and self.kinds[at - 1] in (STRING, NAME, BRACED):
+        elif self.raw in ("+", "%") and self.kinds[index - 1] in (STRING, NAME, BRACED):
             self.complain(self.here(), _PUT_TOGETHER, notes=(_LITERAL_OR_ENTRY,))
             self.recover()
             return
         fixes = self.id_in_brackets() or self.classic_quality(clauses)
-        if self.kind == NAME and self.kinds[at + 1] in (STRING, NUMBER, QUANTITY, BRACED):
-            gap = Span(self.here().end, self.starts[at + 1])
+        if self.kind == NAME and self.kinds[index + 1] in (STRING, NUMBER, QUANTITY, BRACED):
+            gap = Span(self.here().end, self.starts[index + 1])
             fixes = (replace_fix("Put `=` after it", gap, " = "),)
         self.expected("an attribute: key = value", notes, fixes)
-        if self.index == at:
+        if self.index == index:
             self.advance()
 
     def id_in_brackets(self) -> tuple[Fix, ...]:
         """The fix for `SubTree (PickPlace)`, where the ID needs no brackets."""
-        at = self.index
-        if at != 2 or self.kind != NAME or self.raws[0] not in CATEGORIES or self.kinds[at + 1] != CLOSE:
+        index = self.index
+        if index != 2 or self.kind != NAME or self.raws[0] not in CATEGORIES or self.kinds[index + 1] != CLOSE:
             return ()
         before = Span(self.starts[0] + len(self.raws[0]), self.here().start)
-        after = Span(self.here().end, self.starts[at + 1] + len(self.raws[at + 1]))
+        after = Span(self.here().end, self.starts[index + 1] + len(self.raws[index + 1]))
         return (Fix("Remove the brackets", (FixEdit(Place(before), " "), FixEdit(Place(after), ""))),)
 
     def classic_quality(self, clauses: list[NodeClause]) -> tuple[Fix, ...]:
@@ -132,8 +132,8 @@ class AttributeParser(RequirementParser):
         last = clauses[-1]
         if not isinstance(last, Satisfices) or not last.qualities or last.end != self.last_end():
             return ()
-        at = last.qualities[-1].path.span.start + self.base
-        return (replace_fix("Put `Quality =` before the quality", Span(at, at), "Quality = "),)
+        start = last.qualities[-1].path.span.start + self.base
+        return (replace_fix("Put `Quality =` before the quality", Span(start, start), "Quality = "),)
 
     def pair(self) -> Pair:
         """Pair = Name "=" Value"""
@@ -164,8 +164,8 @@ class AttributeParser(RequirementParser):
             self.recover()
             return Word(NAME, word.start, self.text[span.start : end])
         fix = Fix(f"Put {self.raw[0]} before it", (FixEdit(Place(Span(span.start, span.start)), self.raw[0]),))
-        at = self.starts[self.index]
-        unclosed = [problem for problem in self.lexer.problems[self.known :] if problem.span.start == at]
+        start = self.starts[self.index]
+        unclosed = [problem for problem in self.lexer.problems[self.known :] if problem.span.start == start]
         message = f"missing quote before `{word.raw}`"
         if self.complain_instead(unclosed, Diagnostic("syntax-error", span, message, fixes=(fix,))):
             self.inside_out = min(self.inside_out, span.end)
@@ -303,8 +303,8 @@ class AttributeParser(RequirementParser):
         if self.kind == NAME and self.raw.lower() in _REQUIREMENTS and self.kinds[self.index + 1] in (NAME, STRING):
             return self.requirement_in_other_words()
         if self.kind == NEWLINE and self.index and self.raws[self.index - 1] == ",":
-            at = self.last_end() + self.base
-            fix = replace_fix("Remove `,`", Span(at - 1, at), "", safe=True)
+            end = self.last_end() + self.base
+            fix = replace_fix("Remove `,`", Span(end - 1, end), "", safe=True)
             self.expected("another requirement after the comma", (), (fix,))
             return None
         name = self.requirement_id("a requirement: its ID, or QualityReq and a definition")

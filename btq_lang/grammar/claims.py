@@ -191,11 +191,11 @@ class ClaimParser(ConditionParser):
         elif first is not None and self.kind == OPERATOR and self.raw in COMPARISONS and self.whole_clause_slip():
             self.recover()
         elif first is not None and self.kind == OPERATOR and self.raw in COMPARISONS:
-            at = first.start + self.base
-            fix = replace_fix("Put `keeps` before it", Span(at, at), "keeps ")
+            start = first.start + self.base
+            fix = replace_fix("Put `keeps` before it", Span(start, start), "keeps ")
             message = "expected a verb before the condition: `keeps`, `never`, `needs` or `leaves`"
             notes = ("`keeps` holds while the node runs, `needs` when it starts, `leaves` when it has succeeded",)
-            self.complain(Span(at, self.here().end), message, fix, notes=notes)
+            self.complain(Span(start, self.here().end), message, fix, notes=notes)
             self.recover()
         elif self.kind == NAME and (likely := near(self.raw, VERB_WORDS, limit=1)):
             self.misspelt(self.here(), self.raw, likely[0])
@@ -241,18 +241,18 @@ class ClaimParser(ConditionParser):
     def verb_in_other_words(self, begin: int, subject: str) -> bool:
         """Report `must take`, which begins at a token after the subject."""
         times = [is_time(raw) for kind, raw in zip(self.kinds, self.raws, strict=True) if kind == QUANTITY]
-        found = clause_meant(self.raws, begin, is_time=bool(times) and all(times))
-        if found is not None:
-            end, verb = found
+        meant = clause_meant(self.raws, begin, is_time=bool(times) and all(times))
+        if meant is not None:
+            end, verb = meant
             is_verb = not verb  # after a word like `must`
             self.written_as(begin, end + is_verb, subject, verb or self.raws[end])
-        return found is not None
+        return meant is not None
 
     def written_as(self, begin: int, end: int, subject: str, words: str) -> None:
         """Report that the words between two tokens, after a subject, are others here."""
         span = Span(self.starts[begin], self.starts[end - 1] + len(self.raws[end - 1]))
-        rest = self.text[span.end : self.starts[-1]].strip()
-        whole = " ".join(part for part in (subject, words, rest) if part)
+        tail = self.text[span.end : self.starts[-1]].strip()
+        whole = " ".join(part for part in (subject, words, tail) if part)
         self.complain(span, f"this clause is written `{shown(whole)}`", write_fix(words, span))
 
     def next_head(self) -> int:
@@ -312,8 +312,8 @@ class ClaimParser(ConditionParser):
 
     def signal_last(self, verb: str) -> bool:
         """Report `leaves at least 3 % battery`, whose signal goes first."""
-        found = self.bound_ahead() if self.kind == NAME else None
-        length, relation = found or (0, ("at", "least"))
+        bound = self.bound_ahead() if self.kind == NAME else None
+        length, relation = bound or (0, ("at", "least"))
         value = self.index + length
         if self.kinds[value] not in (QUANTITY, NUMBER):
             return False
@@ -322,7 +322,7 @@ class ClaimParser(ConditionParser):
             return False
         meant = f"{self.raws[signal]} {RELATIONS[relation]} {self.raws[value]}"
         span = Span(self.here().start, self.starts[signal] + len(self.raws[signal]))
-        fixes = (write_fix(meant, span),) if found else ()
+        fixes = (write_fix(meant, span),) if bound else ()
         self.expected("a condition, which begins with its signal", (f"write `{verb} {meant}`",), fixes)
         return True
 
@@ -330,8 +330,8 @@ class ClaimParser(ConditionParser):
         """The fix for `at most 30 s`, which lacks its verb."""
         value = self.index + 1
         is_bound = ("at", self.raw) in RELATIONS and self.kinds[value] == QUANTITY and is_time(self.raws[value])
-        at = first.start + self.base
-        return (replace_fix("Put `takes` before it", Span(at, at), "takes "),) if is_bound else ()
+        start = first.start + self.base
+        return (replace_fix("Put `takes` before it", Span(start, start), "takes "),) if is_bound else ()
 
     def subject(self) -> Subject | None:
         """Subject = Path | "mission" | "every" Name | "from" Event "to" Event | "sum" "of" Path { "," Path }"""
@@ -385,10 +385,10 @@ class ClaimParser(ConditionParser):
 
     def relation(self) -> str | None:
         """ "at" "most" | "at" "least" | "less" "than" | "more" "than"; other words for it are reported"""
-        found = self.bound_ahead() if self.kind == NAME or self.kind == OPERATOR else None
-        if found is None:
+        bound = self.bound_ahead() if self.kind == NAME or self.kind == OPERATOR else None
+        if bound is None:
             return None
-        length, meant = found
+        length, meant = bound
         if tuple(self.raws[self.index : self.index + length]) != meant:
             self.written_otherwise("this bound", length, " ".join(meant))
         self.go_to(self.index + length)
@@ -463,7 +463,7 @@ class ClaimParser(ConditionParser):
         return value
 
     def end_of_simple(self, index: int) -> int:
-        """Where the value ends that begins at a token; the same token if none does."""
+        """The token after the value that begins at a token; the same token if none does."""
         begin = index + (self.raws[index : index + 1] == ["-"])
         is_value = begin < len(self.kinds) and self.kinds[begin] in (QUANTITY, NUMBER, NAME)
         return begin + 1 if is_value else min(index, len(self.kinds) - 1)

@@ -16,7 +16,7 @@ from btq_lang.util.record import Record
 
 
 class ClauseMeant(Record):
-    """What a clause of other notations means.
+    """The meaning of a clause of other notations.
 
     Attributes:
         length: of its text.

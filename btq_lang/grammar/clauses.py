@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from btq_lang.catalog.measured import measured
+from btq_lang.catalog.verbs import measured
 from btq_lang.diagnostics.model import Fix, FixEdit, Place, replace_fix, write_fix
 from btq_lang.grammar.claims import QUALITY_IN_HEAD, VERB_WORDS, ClaimParser, is_time
 from btq_lang.grammar.conditions import HEADS, SUBJECT_HEADS
@@ -41,7 +41,7 @@ class ClauseParser(ClaimParser):
 
     def clauses(self, at_least_one: bool = False) -> tuple[Clause, ...]:
         """{ Clause }, to the end of the line or of the brackets"""
-        found: list[Clause] = []
+        clauses: list[Clause] = []
         while self.kind == NAME or self.kind == STRING:
             following = self.index + 1
             if self.kind == NAME and self.raw in ENDS_CLAUSES and self.raw not in HEADS:
@@ -51,13 +51,13 @@ class ClauseParser(ClaimParser):
             self.clause_starts = self.clause_starts[1], self.starts[self.index]
             clause = self.clause()
             if clause is None:
-                return tuple(found)
-            found.append(clause)
-        if at_least_one and not found and self.kind == OPERATOR and self.raw in ("<=", "<", ">=", ">"):
+                return tuple(clauses)
+            clauses.append(clause)
+        if at_least_one and not clauses and self.kind == OPERATOR and self.raw in ("<=", "<", ">=", ">"):
             self.bare_bound()
-        elif at_least_one and not found:
+        elif at_least_one and not clauses:
             self.expected(_A_CLAUSE, (QUALITY_IN_HEAD,) if self.at_word("satisfices") else ())
-        return tuple(found)
+        return tuple(clauses)
 
     def clause(self) -> Clause | None:
         """Clause = Claim | Scope | Odds | Confidence | Window | OnViolation | Goal | Because | How"""
@@ -87,8 +87,8 @@ class ClauseParser(ClaimParser):
             self.expected(_A_CLAUSE)
             return None
         if self.is_no_time():
-            at = self.starts[self.index]
-            self.report(unknown_unit(self.text, at, at + len(self.raw)))
+            start = self.starts[self.index]
+            self.report(unknown_unit(self.text, start, start + len(self.raw)))
             self.advance()
             return self.clause() if self.kind == NAME else None
         return self.claim()
@@ -102,17 +102,17 @@ class ClauseParser(ClaimParser):
 
     def other_clause(self, nearest: str) -> None:
         """Report a clause of another notation, with the nearest of this one."""
-        at, value = self.here(), self.index + 1 + (self.raws[self.index + 1] in (":", "="))
+        word, value = self.here(), self.index + 1 + (self.raws[self.index + 1] in (":", "="))
         fixes: tuple[Fix, ...] = ()
         if nearest == _BECAUSE and self.kinds[value] == STRING:
-            fixes = (replace_fix("Write `because`", Span(at.start, self.starts[value]), "because "),)
+            fixes = (replace_fix("Write `because`", Span(word.start, self.starts[value]), "because "),)
         elif nearest == _TITLE and self.title_at >= 0 and self.index == 0 and self.kinds[value : value + 2] == _STRING:
             moved = FixEdit(Place(Span(self.title_at, self.title_at)), f" {self.raws[value]}")
-            line = Span(line_start(self.text, 0, at.start), self.lexer.position)
+            line = Span(line_start(self.text, 0, word.start), self.lexer.position)
             fixes = (Fix("Move it after the name", (moved, FixEdit(Place(line), ""))),)
         elif nearest == _COMMENT and self.index == 0:
-            fixes = (replace_fix("Write it as a comment", Span(at.start, at.start), "# "),)
-        self.complain(at, f"`{self.raw}` is not in btq; nearest is {nearest}", *fixes)
+            fixes = (replace_fix("Write it as a comment", Span(word.start, word.start), "# "),)
+        self.complain(word, f"`{self.raw}` is not in btq; nearest is {nearest}", *fixes)
         self.recover()
 
     def scope(self) -> ScopeClause:
@@ -217,9 +217,9 @@ class ClauseParser(ClaimParser):
         text = self.take() if self.kind == STRING else None
         if text is None:
             begin = self.here().start
-            rest = self.text[begin : line_end(self.text, begin)].partition(" #")[0].rstrip()
-            fix = replace_fix("Put quotes around it", Span(begin, begin + len(rest)), quote(rest))
-            self.expected("the reason in quotes", (), (fix,) if rest and not self.group else ())
+            reason = self.text[begin : line_end(self.text, begin)].partition(" #")[0].rstrip()
+            fix = replace_fix("Put quotes around it", Span(begin, begin + len(reason)), quote(reason))
+            self.expected("the reason in quotes", (), (fix,) if reason and not self.group else ())
         return Because(start, self.last_end(), text)
 
     def how(self) -> How:

@@ -48,9 +48,9 @@ class ConditionParser(Cursor):
             self.too_deep(f"more than {MAX_NESTING} nested brackets")
             return None
         self._nesting += 1
-        found = self.joined(self.conj, "or")
+        condition = self.joined(self.conj, "or")
         self._nesting -= 1
-        return found
+        return condition
 
     def joined(self, operand: Callable[[], Condition | None], *operators: str) -> Condition | None:
         """Operand { Operator Operand }"""
@@ -64,13 +64,13 @@ class ConditionParser(Cursor):
 
     def accept_one(self, operators: tuple[str, ...]) -> str:
         """The operator that is here, if it is one of these; else empty"""
-        found = self.raw
-        if found in operators and (self.kind == OPERATOR or self.kind == NAME):
+        operator = self.raw
+        if operator in operators and (self.kind == OPERATOR or self.kind == NAME):
             self.advance()
-            return found
-        for each in operators if self.kind == SYMBOL or self.kind == ERROR else ():
-            if self.accept_instead(_INSTEAD.get(each, ""), each):
-                return each
+            return operator
+        for word in operators if self.kind == SYMBOL or self.kind == ERROR else ():
+            if self.accept_instead(_INSTEAD.get(word, ""), word):
+                return word
         return ""
 
     def accept_instead(self, sign: str, word: str) -> bool:
@@ -148,16 +148,16 @@ class ConditionParser(Cursor):
 
     def in_words(self) -> str:
         """Report `wind below 10 m/s`, and go to the value; the comparison that is meant, or empty."""
-        found = self.bound_ahead() if self.kind == NAME and self.raw not in _ENDS_OPERAND else None
-        if found is None or self.kinds[self.index + found[0]] not in (NUMBER, QUANTITY):
+        bound = self.bound_ahead() if self.kind == NAME and self.raw not in _ENDS_OPERAND else None
+        if bound is None or self.kinds[self.index + bound[0]] not in (NUMBER, QUANTITY):
             return ""
-        length, meant = found
+        length, meant = bound
         self.written_otherwise("this comparison", length, RELATIONS[meant])
         self.go_to(self.index + length)
         return RELATIONS[meant]
 
     def bound_ahead(self) -> tuple[int, tuple[str, str]] | None:
-        """How many words from here say how a bound begins, and how that is written."""
+        """The number of words here that begin a bound, and the words of this language for them."""
         for length in (5, 4, 3, 2, 1):
             if (meant := BOUNDS.get(tuple(self.raws[self.index : self.index + length]))) is not None:
                 return length, meant

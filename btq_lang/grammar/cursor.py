@@ -110,10 +110,10 @@ class Cursor:
     def skip_sign(self, *signs: str) -> None:
         """Report and skip a sign that other languages have after a word: `on violation: fail`."""
         if self.kind == OPERATOR and self.raw in signs:
-            at = self.here()
-            is_apart = self.text[at.start - 1] in " \t" and self.text[at.end : at.end + 1] in (" ", "\t")
-            fix = replace_fix(f"Remove `{self.raw}`", Span(at.start, at.end + is_apart), "", safe=True)
-            self.complain(at, f"unexpected `{self.raw}`", fix)
+            sign = self.here()
+            is_apart = self.text[sign.start - 1] in " \t" and self.text[sign.end : sign.end + 1] in (" ", "\t")
+            fix = replace_fix(f"Remove `{self.raw}`", Span(sign.start, sign.end + is_apart), "", safe=True)
+            self.complain(sign, f"unexpected `{self.raw}`", fix)
             self.advance()
 
     def skip_glued_colon(self) -> None:
@@ -133,9 +133,9 @@ class Cursor:
     def skip_block(self, level: int) -> None:
         """Skip all lines deeper than `level`, without reporting what the lexer finds in them."""
         while self.deeper(level):
-            known = len(self.lexer.problems)
+            count = len(self.lexer.problems)
             self.lexer.scan()
-            del self.lexer.problems[known:]
+            del self.lexer.problems[count:]
             self.more = self.lexer.open_line()
 
     # ---- moves ----
@@ -246,12 +246,12 @@ class Cursor:
 
     def listed(self, element: Callable[[], T | None], goes_on: Callable[[], bool] | None = None) -> tuple[T, ...]:
         """Element { "," Element }; `goes_on`: skips what separates them, if another follows"""
-        found: list[T] = []
-        while (each := element()) is not None:
-            found.append(each)
+        elements: list[T] = []
+        while (value := element()) is not None:
+            elements.append(value)
             if not (goes_on() if goes_on is not None else self.accept(",")):
                 break
-        return tuple(found)
+        return tuple(elements)
 
     # ---- places ----
 
@@ -274,10 +274,10 @@ class Cursor:
     def here(self) -> Span:
         """The span of the current token in the file; at the end of the line, the place after its last token."""
         if self.kind == NEWLINE:
-            at = self.last_end() + self.base
-            return Span(at, at)
-        at = self.starts[self.index]
-        return Span(at, at + len(self.raw))
+            start = self.last_end() + self.base
+            return Span(start, start)
+        start = self.starts[self.index]
+        return Span(start, start + len(self.raw))
 
     def found(self) -> str:
         """The current token, as a message names it."""
@@ -317,8 +317,8 @@ class Cursor:
         if not (opens or self.adjacent(self.index)):
             return None
         message = f"a closing {raw[0]} is probably missing: this string ends at the next one, on another line"
-        at = start + len(raw) - 1
-        related = (Related(Place(Span(at, at + 1)), "the string ends here"),)
+        quote = start + len(raw) - 1
+        related = (Related(Place(Span(quote, quote + 1)), "the string ends here"),)
         return Diagnostic("unclosed-string", Span(start, end), message, related, (), (close_string(self.text, start),))
 
     def wrong_unit(self) -> Diagnostic | None:
@@ -327,19 +327,19 @@ class Cursor:
             return None
         before = self.kinds[self.index - 1]
         start = self.starts[self.index - 1]
-        at = self.starts[self.index]
-        if before == NUMBER and self.kind == NAME and line_end(self.text, start) > at:
-            found = unknown_unit(self.text, at, max(unit_run(self.text, at), at + len(self.raw)))
-            return found if found.fixes else None
+        offset = self.starts[self.index]
+        if before == NUMBER and self.kind == NAME and line_end(self.text, start) > offset:
+            problem = unknown_unit(self.text, offset, max(unit_run(self.text, offset), offset + len(self.raw)))
+            return problem if problem.fixes else None
         if before == QUANTITY and (self.at("/") or self.at("*")) and self.adjacent(self.index):
             unit = number_end(self.text, start)
-            unit += len(self.text[unit:at]) - len(self.text[unit:at].lstrip())
+            unit += len(self.text[unit:offset]) - len(self.text[unit:offset].lstrip())
             end = unit_run(self.text, unit)
-            return unknown_unit(self.text, unit, end) if end > at else None
+            return unknown_unit(self.text, unit, end) if end > offset else None
         return None
 
     def time_of_parts(self) -> Diagnostic | None:
-        """A diagnostic for a time of several numbers, of which one has been read: `3:30 min`, `1 h 30 min`."""
+        """A diagnostic for a time of several numbers, the first of which has been read: `3:30 min`, `1 h 30 min`."""
         is_after = self.index > 0 and self.kinds[self.index - 1] in (NUMBER, QUANTITY)
         return composed_time(self.text, self.starts[self.index - 1]) if is_after else None
 
@@ -364,8 +364,8 @@ class Cursor:
         following = self.index + 1
         if not self.at(".") or not self.adjacent(following) or self.kinds[following] not in (NUMBER, QUANTITY):
             return None
-        at = self.here().start
-        fix = replace_fix("Put `0` before it", Span(at, at), "0", safe=True)
+        start = self.here().start
+        fix = replace_fix("Put `0` before it", Span(start, start), "0", safe=True)
         return Diagnostic("syntax-error", self.here(), "a number begins with a digit", fixes=(fix,))
 
     def replaced_by(self, words: Iterable[str]) -> tuple[Fix, ...]:
@@ -375,8 +375,8 @@ class Cursor:
 
     def put_before(self, words: str) -> Fix:
         """The fix that puts words before the current one."""
-        at = self.here().start
-        return replace_fix(f"Put `{words}` before it", Span(at, at), f"{words} ")
+        start = self.here().start
+        return replace_fix(f"Put `{words}` before it", Span(start, start), f"{words} ")
 
     def misspelt(self, span: Span, word: str, likely: str) -> None:
         """Report a misspelt word."""
@@ -393,51 +393,51 @@ class Cursor:
 
     def report(self, diagnostic: Diagnostic) -> None:
         """Report, unless something was already reported on this physical line."""
-        at = diagnostic.span.start
+        start = diagnostic.span.start
         if diagnostic.rule == "unclosed-string":
-            self.inside_out = min(self.inside_out, at + 1)
-        in_line = at <= self._line_end()  # the line tokenized last
+            self.inside_out = min(self.inside_out, start + 1)
+        in_line = start <= self._line_end()  # the line tokenized last
         if in_line:
             if self.kinds[0] == NEWLINE:
                 return  # the lexer has reported a line without tokens
             self._would_complain = True
             if self._in_wake:
                 return
-        if self._silent_from <= at <= self._silent_to:
+        if self._silent_from <= start <= self._silent_to:
             return
-        lower = self._silent_to if 0 <= self._silent_to < at else min(self._line_start, at)
-        self._silent_from, self._silent_to = line_start(self.text, lower, at), line_end(self.text, at)
-        if not (in_line and self._lexer_complained(at)):
+        lower = self._silent_to if 0 <= self._silent_to < start else min(self._line_start, start)
+        self._silent_from, self._silent_to = line_start(self.text, lower, start), line_end(self.text, start)
+        if not (in_line and self._lexer_complained(start)):
             self.problems.append(diagnostic)
 
-    def _lexer_complained(self, at: int) -> bool:
+    def _lexer_complained(self, start: int) -> bool:
         """Whether the lexer found a mistake on this physical line, or it is in brackets that the lexer closed
         itself.
         """
         if self._lexer_mistakes is None:
-            found = self.lexer.problems[self.known :]
-            self._lexer_mistakes = sorted(problem.span.start for problem in found if problem.rule in _LEAVING_GAPS)
-            unclosed = [problem.span.start for problem in found if problem.rule == "unclosed-bracket"]
+            problems = self.lexer.problems[self.known :]
+            self._lexer_mistakes = sorted(problem.span.start for problem in problems if problem.rule in _LEAVING_GAPS)
+            unclosed = [problem.span.start for problem in problems if problem.rule == "unclosed-bracket"]
             self._unclosed = min(unclosed, default=len(self.text))
         mistakes = self._lexer_mistakes
         following = bisect_left(mistakes, self._silent_from)
-        return at > self._unclosed or (following < len(mistakes) and mistakes[following] <= self._silent_to)
+        return start > self._unclosed or (following < len(mistakes) and mistakes[following] <= self._silent_to)
 
-    def complain_instead(self, of: list[Diagnostic], diagnostic: Diagnostic) -> bool:
+    def complain_instead(self, replaced: list[Diagnostic], diagnostic: Diagnostic) -> bool:
         """Report a mistake instead of what the lexer found in this line; if the lexer's diagnostics have already
         suppressed another one, keep them.
 
         Returns:
             Whether it was reported.
         """
-        found, known, before = self.lexer.problems, self.known, len(self.problems)
-        of_line = found[known:]  # there may be thousands before it
-        found[known:] = [problem for problem in of_line if problem not in of]
+        problems, first, before = self.lexer.problems, self.known, len(self.problems)
+        of_line = problems[first:]  # there may be thousands before it
+        problems[first:] = [problem for problem in of_line if problem not in replaced]
         self._lexer_mistakes = None
         self.report(diagnostic)
         is_reported = len(self.problems) > before
         if not is_reported:
-            found[known:] = of_line
+            problems[first:] = of_line
             self._lexer_mistakes = None
         return is_reported
 

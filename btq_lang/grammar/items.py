@@ -135,10 +135,10 @@ class ItemParser(NodeParser):
 
     def port_of_cpp(self, declared: re.Match[str]) -> tuple[Fix, ...]:
         """The fix for `InputPort<double> speed` and `std::string place`, in the words of C++."""
-        rest = line_end(self.text, declared.end())
+        end = line_end(self.text, declared.end())
         direction = _DIRECTIONS_OF_CPP[declared["port"] or "InputPort"]
         type_ = declared["type"] or declared["bare"]
-        if self.text[declared.end() : rest].partition("#")[0].strip():
+        if self.text[declared.end() : end].partition("#")[0].strip():
             return ()
         plain = type_ is not None and _PLAIN_TYPE.fullmatch(type_) is not None
         after = "" if type_ is None else f" : {type_ if plain else quote(type_)}"
@@ -239,7 +239,7 @@ class ItemParser(NodeParser):
         return True
 
     def is_selection(self, others: tuple[tuple[str, ...], ...]) -> int:
-        """How many words from here are one of others before another selector."""
+        """The number of words here that are one of `others` and precede a selector; 0 if none are."""
         if self.kind != NAME:
             return 0
         lengths = [len(words) for words in others if tuple(self.raws[self.index : self.index + len(words)]) == words]

@@ -266,8 +266,8 @@ class NodeParser(AttributeParser):
         return (replace_fix("Put an `Inverter` above it", sign, f"Inverter{below}"),) if below else ()
 
     def line_below(self) -> str:
-        """How a line begins that is one step deeper than the current one, with the line end before it; empty if the
-        current one begins with something else.
+        """The line end and the indentation of a line that is one step deeper than the current one; empty if the current
+        one does not begin with its first token.
         """
         margin = self.text[line_start(self.text, 0, self.starts[0]) : self.starts[0]]
         step = "\t" if margin.startswith("\t") else "    "
@@ -288,9 +288,9 @@ class NodeParser(AttributeParser):
     def skip_xml(self, level: int) -> None:
         """Skip the lines of XML that follow a reported one."""
         while self.more and self.lexer.level == level and self.text.startswith("<", self.lexer.position):
-            known = len(self.lexer.problems)
+            count = len(self.lexer.problems)
             self.scan()
-            del self.lexer.problems[known:]
+            del self.lexer.problems[count:]
             self.go_to(len(self.kinds) - 1)
             self.end_line()
             self.skip_block(level)
@@ -335,8 +335,8 @@ class NodeParser(AttributeParser):
         elif self.at("-") and self.text.startswith("-- ", self.here().start):
             self.other_comment(self.here().start + 2)
         elif clauses and self.at_name():
-            at = self.last_end() + self.base
-            fixes = (replace_fix("Put `,` before it", Span(at, at), ","),) if self.kind in (NAME, STRING) else ()
+            end = self.last_end() + self.base
+            fixes = (replace_fix("Put `,` before it", Span(end, end), ","),) if self.kind in (NAME, STRING) else ()
             self.expected("`,` or the end of the line", (), fixes)
         elif self.kind == OPEN and self.index > 0 and self.kinds[self.index - 1] == CLOSE:
             self.complain(self.here(), "all attributes of a node go in one pair of brackets")
@@ -353,7 +353,7 @@ class NodeParser(AttributeParser):
         self.go_to(len(self.kinds) - 1)
 
     def with_memory(self, symbol: int, first: int, last: int) -> None:
-        """Report `->*` or `*->`: the tokens from `first` to `last`, of which one is the symbol."""
+        """Report `->*` or `*->`: the tokens from `first` to `last`; one of them is the symbol."""
         plain = self.raws[symbol].replace("→", "->").lstrip("M")
         span = Span(self.starts[first], self.starts[last] + len(self.raws[last]))
         if f"M{plain}" in SYMBOLS:
@@ -440,11 +440,11 @@ class NodeParser(AttributeParser):
             lexer.ended_early = 1  # the `)` after them is not another mistake
             if is_next:
                 return
-        rest = range(self.index, len(self.kinds))
+        tail = range(self.index, len(self.kinds))
         plain = self.index > 1
-        plain = plain and not any(self.kinds[index] == OPEN or self.raws[index] in NODE_CLAUSES for index in rest)
+        plain = plain and not any(self.kinds[index] == OPEN or self.raws[index] in NODE_CLAUSES for index in tail)
         changes: tuple[FixEdit, ...] = (FixEdit(Place(Span(start, start)), "("),)
-        for index in rest:
+        for index in tail:
             if self.is_operator(index, ":"):
                 sign = self.starts[index]
                 written = "=" if self.text[sign - 1] in " \t" else " ="
@@ -465,23 +465,23 @@ class NodeParser(AttributeParser):
 
     def clause_line(self, level: int) -> list[NodeClause]:
         """NodeClause { NodeClause } NL | "satisfies" { ReqUse "," } ReqItem"""
-        found: list[NodeClause] = []
+        clauses: list[NodeClause] = []
         while self.kind == NAME and self.raw in NODE_CLAUSES:
-            found.append(self.node_clause())
+            clauses.append(self.node_clause())
         self.end_line()
-        last = found[-1]
+        last = clauses[-1]
         if isinstance(last, Satisfies) and last.uses and isinstance(use := last.uses[-1], Requirement):
             requirement = self.clause_block(use, level)
-            found[-1] = Satisfies(last.start, requirement.end, (*last.uses[:-1], requirement))
+            clauses[-1] = Satisfies(last.start, requirement.end, (*last.uses[:-1], requirement))
         self.no_block(level)
-        return found
+        return clauses
 
     def clause_line_after(self, level: int, children: list[Node | Verbatim]) -> list[NodeClause]:
         """A clause line in the block of a node; it is reported if it comes after children."""
         start = self.lexer.line_start
-        at = self.here()
+        place = self.here()
         word = self.raw
-        found = self.clause_line(level)
+        clauses = self.clause_line(level)
         if children:
             end = self.starts[-1] + len(self.raws[-1])
             moved = self.text[start:end]
@@ -497,8 +497,8 @@ class NodeParser(AttributeParser):
                 step = "\t" if moved.startswith("\t") else "    "
                 fixes += (replace_fix(f"Move it to `{last.head.text}`", Span(start, start), step),)
             note = f'a node of this name goes in quotes: "{word}"'
-            self.complain(at, "clauses go before children", *fixes, notes=(note,), rule="clause-after-children")
-        return found
+            self.complain(place, "clauses go before children", *fixes, notes=(note,), rule="clause-after-children")
+        return clauses
 
     def is_requirement(self) -> bool:
         """Whether the line is a requirement, not a node called QualityReq."""
@@ -510,10 +510,10 @@ class NodeParser(AttributeParser):
 
     def requirement_line(self, level: int) -> Satisfies:
         """Report that `satisfies` is missing before a requirement in the block of a node."""
-        at = self.here()
-        fix = write_fix("satisfies QualityReq", at)
+        word = self.here()
+        fix = write_fix("satisfies QualityReq", word)
         note = "to share it between nodes, write it outside the tree"
-        self.complain(at, "a requirement at a node begins with `satisfies`", fix, notes=(note,))
+        self.complain(word, "a requirement at a node begins with `satisfies`", fix, notes=(note,))
         requirement = self.requirement()
         self.second_quality(requirement)
         self.end_line()
@@ -589,12 +589,12 @@ class NodeParser(AttributeParser):
 
     def ports_in_brackets(self, owner: str) -> None:
         """Report ports in the brackets of a tree or a model; the fix writes each on its line."""
-        at = self.here()
+        bracket = self.here()
         note = f"a port goes on a line of its own below the {owner}, indented: `input name : type`"
         closing = self.kinds.index(CLOSE, self.index) if CLOSE in self.kinds[self.index :] else -1
         fixes: tuple[Fix, ...] = ()
         if closing > 0 and self.raws[closing] and self.kinds[closing + 1] == NEWLINE:
-            inside = self.text[at.end : self.starts[closing]]
+            inside = self.text[bracket.end : self.starts[closing]]
             ports = [_BRACKETED_PORT.fullmatch(part.strip()) for part in inside.split(",")]
             line = line_end(self.text, self.starts[closing])
             below = _NEXT_MARGIN.match(self.text, line)
@@ -610,18 +610,18 @@ class NodeParser(AttributeParser):
                 fixes = (
                     Fix("Put them on lines of their own", (gone, FixEdit(Place(Span(line, line)), "".join(lines)))),
                 )
-        self.complain(at, "ports do not go in brackets", *fixes, notes=(note,))
+        self.complain(bracket, "ports do not go in brackets", *fixes, notes=(note,))
         self.go_to(len(self.kinds) - 1)
 
     def type_(self) -> Word | None:
         """Type = Name { "::" Name }; as one word"""
-        found = self.name("the port's type")
-        while found is not None and self.at("::"):
+        word = self.name("the port's type")
+        while word is not None and self.at("::"):
             self.advance()
             last = self.name("the rest of the type")
             if last is not None:
-                found = TypeWord(NAME, found.start, self.text[self.base + found.start : self.base + last.end])
-        return self.unquoted_type(found) if found is not None and self.goes_on(found) else found
+                word = TypeWord(NAME, word.start, self.text[self.base + word.start : self.base + last.end])
+        return self.unquoted_type(word) if word is not None and self.goes_on(word) else word
 
     def goes_on(self, type_: Word) -> bool:
         """Whether the type after `:` is more than a C++ name: `vector<int>`, `unsigned int`, `Pose*`."""
@@ -653,9 +653,9 @@ class NodeParser(AttributeParser):
         """Report and skip lines deeper than the line just read, which takes no block."""
         if not self.deeper(level):
             return
-        at = self.lexer.position
+        start = self.lexer.position
         message = "unexpected indentation: the line above opens no block"
-        self.complain(Span(at, self.lexer.line_end()), message, notes=(_MEANINGFUL,))
+        self.complain(Span(start, self.lexer.line_end()), message, notes=(_MEANINGFUL,))
         self.skip_block(level)
 
 

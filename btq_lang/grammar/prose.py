@@ -39,7 +39,7 @@ def clause_meant(words: Sequence[str], begin: int, *, is_time: bool) -> tuple[in
 
 
 def state_meant(words: Sequence[str], begin: int) -> tuple[int, str] | None:
-    """Where the words end that compare a signal before them, and the comparison: `must stay below`, `is at least`."""
+    """The end of the words that compare a signal before them, and the comparison: `must stay below`, `is at least`."""
     start = begin + len(modal(words, begin))
     if words[start] in _STATES:
         start += 1

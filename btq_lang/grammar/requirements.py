@@ -43,7 +43,7 @@ class RequirementParser(ClauseParser):
             self.skip_last_sign()
         quality = self.quality_path() if self.accept(":") or self.skip_key(("quality",), ":") else None
         if quality is not None:
-            self.torn_quality(quality)
+            self.spaced_quality(quality)
         self.skip_key(_TITLES, "")
         title = self.take() if self.kind == STRING else self.bare_title(quality is not None)
         if quality is None and title is not None and self.at(":"):
@@ -109,7 +109,7 @@ class RequirementParser(ClauseParser):
             self.advance()
         return Word(NAME, start, text)
 
-    def torn_quality(self, quality: QualityPath) -> None:
+    def spaced_quality(self, quality: QualityPath) -> None:
         """Report `time behaviour`: a quality's name has no spaces."""
         last = quality.names[-1]
         if self.kind != NAME or last.kind != NAME or self.kinds[self.index + 1] not in (STRING, NEWLINE):
@@ -223,9 +223,9 @@ class RequirementParser(ClauseParser):
         """Params = "(" Param { "," Param } ")\""""
         self.advance()
         self.group += 1
-        found = self.listed(self.param)
+        parameters = self.listed(self.param)
         self.close_group("`,` or `)`")
-        return found
+        return parameters
 
     def param(self) -> Parameter | None:
         """Param = NAME ":" UNIT [ "=" Bounded ]"""
@@ -247,9 +247,9 @@ class RequirementParser(ClauseParser):
             return ReqRef(name)
         self.advance()
         self.group += 1
-        found = self.listed(self.argument)
+        arguments = self.listed(self.argument)
         self.close_group("`,` or `)`")
-        return ReqRef(name, found)
+        return ReqRef(name, arguments)
 
     def argument(self) -> Argument | None:
         """NAME "=" Bounded"""

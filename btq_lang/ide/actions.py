@@ -39,7 +39,7 @@ def code_actions(
     def wanted(kind: str) -> bool:
         return not only or any(one in ("", kind) or kind.startswith(f"{one}.") for one in only)
 
-    is_foreign = workspace.files[path].origin is not None
+    is_foreign = workspace.files[path].is_foreign
     diagnostics = tuple(check(workspace, path) if diagnostics is None else diagnostics)
     actions: list[Action] = []
     if wanted(QUICK_FIX):
@@ -117,7 +117,7 @@ def _silencing(workspace: Workspace, path: str, diagnostics: Sequence[Diagnostic
     file = workspace.files[path]
     if is_generated(file.source):
         return
-    comment, where = (at_line_end, "on this line") if file.origin is None else (before_element, "at this element")
+    comment, where = (at_line_end, "on this line") if not file.is_foreign else (before_element, "at this element")
     for diagnostic in diagnostics:
         line = line_to_silence(file, diagnostic)
         edit = comment(file, line, (diagnostic.rule,)) if line is not None else None

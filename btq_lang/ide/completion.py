@@ -64,7 +64,7 @@ def complete(
         snippets: whether the editor supports snippets.
     """
     text = workspace.files[path].source
-    if workspace.files[path].origin is not None:
+    if workspace.files[path].is_foreign:
         completion = Completion(*complete_in_xml(workspace, path, offset))
         proposals = list(completion.proposals)
     else:

@@ -54,9 +54,9 @@ def hover(
 def _written_by_build(workspace: Workspace, reference: ReferenceAt, side: str | None) -> str:
     """The requirements and qualities of an element of XML by its build."""
     file = workspace.files[reference.path]
-    if file.origin is None:
+    if not file.is_foreign:
         return ""
-    tag = file.origin.text.rfind("<", 0, file.on_disk(reference.span).start) + 1
+    tag = file.source.rfind("<", 0, file.on_disk(reference.span).start) + 1
     lines = element_descriptions(workspace, reference.path, side).lines.get(tag, ())
     return "\n".join(("Written by `btq build`:\n", *(f"* {line}" for line in lines))) if lines else ""
 

@@ -153,7 +153,7 @@ def _paths(workspace: Workspace, wanted: Subject) -> list[str]:
     home = wanted.home.removeprefix(ROOT_BLACKBOARD).rpartition(":")[0] or wanted.home.removeprefix(ROOT_BLACKBOARD)
     if home not in workspace.files:
         return sorted(workspace.files)
-    return sorted({*workspace.linked(home), *(workspace.origins if workspace.project.pools else ())})
+    return sorted({*workspace.linked(home), *(workspace.foreign if workspace.project.pools else ())})
 
 
 def _spellings(wanted: Subject) -> tuple[str, ...]:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from btq_lang.catalog.measured import measured
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import parse_unit
-from btq_lang.catalog.verbs import VERBS
+from btq_lang.catalog.verbs import VERBS, measured
 from btq_lang.ide.clause_words import is_window, last_index
 from btq_lang.ide.meaning import entry_at
 from btq_lang.ide.place import CursorPlace

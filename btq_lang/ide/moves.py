@@ -17,7 +17,7 @@ def moved_files(workspace: Workspace, moves: Mapping[str, str]) -> dict[str, tup
     new = {path: _after(path, moves) for path in workspace.files}
     edits: dict[str, tuple[Edit, ...]] = {}
     for path, file in workspace.files.items():
-        if file.origin is not None:
+        if file.is_foreign:
             continue
         for include in file.includes:
             target = workspace.included_by(path, include)

@@ -60,8 +60,8 @@ def cpp_place(workspace: Workspace, path: str, node: str, port: str = "") -> tup
     """The class of a node, or one of its ports: the path, and the span as `File.on_disk` takes it; None if no C++ in
     the scope of the file registers it."""
     models = workspace.scope(path).all(Kind.MODEL, node)
-    registered = (origin.nodes for each in models if (origin := workspace.files[each.path].origin) is not None)
-    registration = next((nodes[node] for nodes in registered if nodes is not None and node in nodes), None)
+    registered = (workspace.files[model.path].cpp_nodes for model in models)
+    registration = next((nodes[node] for nodes in registered if node in nodes), None)
     if registration is None:
         return None
     places = (each.place for each in registration.ports if each.name == port)

@@ -64,7 +64,7 @@ def refactorings(workspace: Workspace, path: str, offset: int) -> Iterator[Actio
     """The refactorings of the node, or the requirement, at a place."""
     file = workspace.files[path]
     entry = entry_at(workspace, path, offset)
-    if entry is None or file.origin is not None or any(one.rule == "syntax-error" for one in entry.diagnostics):
+    if entry is None or file.is_foreign or any(one.rule == "syntax-error" for one in entry.diagnostics):
         return
     yield from _lift(workspace, path, entry, offset)
     line = nodes_at(file, entry, offset)
@@ -168,7 +168,7 @@ def _parts_a_time(workspace: Workspace, path: str, top: Node) -> bool:
 
 def _has_span(file: File) -> bool:
     """Whether a requirement in a file limits a time between two events: few do, and others need not be resolved."""
-    targets = (same[0][1].target for (kind, _), same in file.names.found.items() if kind is Kind.REQUIREMENT)
+    targets = (same[0][1].target for (kind, _), same in file.names.definitions.items() if kind is Kind.REQUIREMENT)
     clauses = [target.clauses for target in targets if isinstance(target, Requirement)]
     return any(isinstance(one, Claim) and isinstance(one.subject, Between) for each in clauses for one in each)
 
@@ -186,7 +186,7 @@ def _inline(workspace: Workspace, path: str, entry: Entry, node: Node) -> Iterat
     top = tree.children[0]
     source = workspace.files[definition.path]
     arguments = {pair.key.text: pair.value for pair in node.attributes if pair.key.text != "ID"}
-    if not isinstance(top, Node) or source.origin is not None or any(key.startswith("_") for key in arguments):
+    if not isinstance(top, Node) or source.is_foreign or any(key.startswith("_") for key in arguments):
         return
     if definition.path == path and definition.entry is entry:
         return

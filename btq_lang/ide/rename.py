@@ -98,13 +98,13 @@ def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming 
 
 def _why_uneditable(file: File) -> str:
     """Why a file cannot be edited; empty if it can: missions and XML can."""
-    if file.origin is None:
+    if not file.is_foreign:
         return "" if file.is_btq else "which is not a .btq file"
-    if is_generated(file.origin.text):
+    if is_generated(file.source):
         return "which a build wrote"
     if file.is_cpp:
         return "which is C++"
-    return "" if file.origin.is_complete else "which cannot be read"
+    return "" if file.is_understood else "which cannot be read"
 
 
 def _refusal(workspace: Workspace, wanted: Subject, reference: ReferenceAt) -> str:

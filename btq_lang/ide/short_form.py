@@ -27,7 +27,7 @@ def short_form(
     already."""
     file = workspace.files[path]
     entry = entry_at(workspace, path, offset)
-    if entry is None or file.origin is not None:
+    if entry is None or file.is_foreign:
         return
     rewrites = _placeholders(workspace, path, diagnostics)
     line = nodes_at(file, entry, offset)

@@ -66,7 +66,7 @@ def _needless_includes(store: Store[Workspace], path: str) -> tuple[NeedlessIncl
     workspace = store.ask(everything, path)
     file = workspace.files[path]
     includes = [one for one in file.includes if one.path is not None and not file.entry_of(one).diagnostics]
-    if file.origin is not None or not includes:
+    if file.is_foreign or not includes:
         return ()
     duplicates = _duplicates(workspace, path, includes)
     needless = [*duplicates]
@@ -122,7 +122,7 @@ def _uses(workspace: Workspace, path: str, gone: set[str]) -> bool:
     for file in remaining:
         nodes = names_of_nodes(file)
         named |= {(kind, name) for kind in (Kind.TREE, Kind.MODEL) for name in nodes}
-        named |= {(kind, name) for kind in (Kind.SIGNAL, Kind.CONTEXT) for name in file.said("asked_for")}
+        named |= {(kind, name) for kind in (Kind.SIGNAL, Kind.CONTEXT) for name in file.names_used("asked_for")}
     return not named.isdisjoint(defined) or not all(_is_plain(workspace, each) for each in gone)
 
 

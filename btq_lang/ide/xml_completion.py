@@ -56,7 +56,7 @@ def _sound(workspace: Workspace, path: str, tag: TypedTag) -> tuple[Workspace, E
     for xml in without(workspace.files[path].source, tag):
         after = with_source(workspace, path, xml)
         file = after.files[path]
-        if file.origin is not None and file.origin.is_complete:
+        if file.is_foreign and file.is_understood:
             trees = (tree.entry for each in ids for tree in file.definitions(Kind.TREE, each))
             return after, next(trees, None)
     return workspace, None
@@ -64,7 +64,7 @@ def _sound(workspace: Workspace, path: str, tag: TypedTag) -> tuple[Workspace, E
 
 def _reachable(workspace: Workspace, proposals: Iterable[Proposal]) -> tuple[Proposal, ...]:
     """Each once, without those for which another file would have to be included; other XML is found without that."""
-    by_label = {one.label: one for one in proposals if not one.include or one.include in workspace.origins}
+    by_label = {one.label: one for one in proposals if not one.include or one.include in workspace.foreign}
     return tuple(replace(one, include="") for one in by_label.values())
 
 

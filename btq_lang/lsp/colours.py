@@ -48,7 +48,7 @@ def part(server: Server, params: types.SemanticTokensRangeParams) -> Plain:
     workspace, path = server.at(params.text_document, reads=True)
     _raise_if_unread(workspace, path)
     within = server.convert.span(workspace, path, params.range)
-    is_xml = workspace.files[path].origin is not None
+    is_xml = workspace.files[path].is_foreign
     make = features.xml_colours.encoded_in_xml if is_xml else features.colours.encoded_within
     return {"data": make(workspace, path, within, server.convert.encoding)}
 
@@ -61,8 +61,8 @@ class Later(RequestRefused):
 
 def _raise_if_unread(workspace: Workspace, path: str) -> None:
     """Keep the colours of XML while a key has made it unreadable."""
-    origin = workspace.files[path].origin
-    if origin is not None and not origin.is_complete:
+    file = workspace.files[path]
+    if file.is_foreign and not file.is_understood:
         raise Later("this XML cannot be read")
 
 
@@ -73,7 +73,7 @@ async def _prepare_tokens(server: Server, document: types.TextDocumentIdentifier
     is_done = False
     while not is_done:
         place = workspace, path = server.at(document, reads=True)
-        is_xml = workspace.files[path].origin is not None
+        is_xml = workspace.files[path].is_foreign
         for _ in () if is_xml else features.colours.making(workspace, path, server.convert.encoding):
             await asyncio.sleep(0)
             if server.at(document, reads=True) != place:
@@ -85,7 +85,7 @@ async def _prepare_tokens(server: Server, document: types.TextDocumentIdentifier
 def _new_tokens(server: Server, document: types.TextDocumentIdentifier) -> tuple[str, features.colours.Colours]:
     workspace, path = server.at(document, reads=True)
     _raise_if_unread(workspace, path)
-    is_xml = workspace.files[path].origin is not None
+    is_xml = workspace.files[path].is_foreign
     make = features.xml_colours.colours_in_xml if is_xml else features.colours.colours
     server.count += 1
     numbered = server.tokens[path] = str(server.count), make(workspace, path, server.convert.encoding)

@@ -102,7 +102,7 @@ def import_(server: Server, document: types.TextDocumentIdentifier) -> dict[str,
     from btq_lang.workspace.loader import read  # as above
 
     file = workspace.files[path]
-    if file.origin is None:
+    if not file.is_foreign:
         raise RequestRefused("this is a .btq file already")
     if not document.uri.startswith("file:") or read(path)[0] != file.source:
         raise RequestRefused("save this document to a file first")

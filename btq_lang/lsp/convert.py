@@ -224,7 +224,7 @@ class Converter:
     def outline(self, workspace: Workspace, path: str, outline: Outline) -> types.DocumentSymbol:
         children = [self.outline(workspace, path, child) for child in outline.children]
         whole, name = self.range(workspace, path, outline.span), self.range(workspace, path, outline.name_span)
-        if workspace.files[path].origin is not None:  # in XML the parts may be in another order
+        if workspace.files[path].is_foreign:  # in XML the parts may be in another order
             parts = [whole, name, *(child.range for child in children)]
             whole = types.Range(min(one.start for one in parts), max(one.end for one in parts))
         return types.DocumentSymbol(

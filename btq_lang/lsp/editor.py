@@ -304,7 +304,7 @@ class Server(LanguageServer):
         workspace = self.session.workspace_of(path)
         if workspace is None or workspace.files[path].is_cpp:
             raise UnknownDocument
-        if workspace.files[path].origin is not None and not (reads and self.session.knows(path)):
+        if workspace.files[path].is_foreign and not (reads and self.session.knows(path)):
             raise UnknownDocument
         return workspace, path
 

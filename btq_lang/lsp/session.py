@@ -94,15 +94,15 @@ class Session:
             return (path, *self.reload())
         before = self._workspaces[home]
         old = before.files[path]
-        if old.source == text and (old.origin is None or not is_new):  # opened, and equal to the file on the disk
+        if old.source == text and (not old.is_foreign or not is_new):  # opened, and equal to the file on the disk
             return (path,)
         new = file_of(path, text)
-        if (is_new and new.origin is not None) or not _is_xml_alike(old, new):
+        if (is_new and new.is_foreign) or not _is_xml_alike(old, new):
             return (path, *self.reload())  # open XML has a pool, in which it finds what it lacks
         is_pool_same = True
         for index, workspace in enumerate(self._workspaces):
             if path in workspace.files:
-                self._workspaces[index] = workspace.with_file(path, new.text, new.origin)
+                self._workspaces[index] = workspace.with_read(new)
                 advance(workspace, self._workspaces[index])
                 lacking = [_lacking(each, self.open) for each in (workspace, self._workspaces[index])]
                 is_pool_same = is_pool_same and lacking[0] == lacking[1]
@@ -121,7 +121,7 @@ class Session:
     def close(self, path: str) -> tuple[str, ...]:
         """Close a file: the one on the disk counts again."""
         text = self.open.pop(path, None)
-        is_xml = path in self._home and self._workspaces[self._home[path]].files[path].origin is not None
+        is_xml = path in self._home and self._workspaces[self._home[path]].files[path].is_foreign
         for workspace in self.workspaces_of(path):
             forget(workspace, path)
         self.check_seconds.pop(path, None)
@@ -265,7 +265,7 @@ class Session:
             return path in self.projects or path in self.parameters
         file = workspace.files[path]
         is_used = path in workspace.included_files or path in workspace.registered
-        return file.origin is None or file.is_cpp or is_used or is_mission(file.origin.text)
+        return not file.is_foreign or file.is_cpp or is_used or is_mission(file.source)
 
     def workspaces(self) -> tuple[Workspace, ...]:
         return tuple(self._workspaces)
@@ -405,13 +405,13 @@ def _with_severities(project: Project, severities: Severities) -> Project:
 
 def _is_xml_alike(old: File, new: File) -> bool:
     """Whether both texts of a file, or neither, look like XML, so that it has a pool."""
-    of_each = [file.origin is not None and file.source.lstrip()[:1] for file in (old, new)]
+    of_each = [file.is_foreign and file.source.lstrip()[:1] for file in (old, new)]
     return of_each[0] == of_each[1]
 
 
 def _lacking(workspace: Workspace, paths: Iterable[str]) -> frozenset[str]:
     """The names that those of the paths that are XML look up in their pool."""
-    xml = workspace.origins.keys() & paths if workspace.project.pools else ()
+    xml = workspace.foreign.keys() & paths if workspace.project.pools else ()
     return lacking_names(workspace, xml) if xml else frozenset()
 
 

@@ -210,7 +210,7 @@ def _strangers(workspace: Workspace) -> dict[str, Place]:
         file = workspace.files[path]
         names = {
             name
-            for name in file.said(Kind.MODEL)
+            for name in file.names_used(Kind.MODEL)
             if name not in BUILTINS and name not in KNOWN_WORDS and not _defines(workspace, name)
         }
         for entry, use in file.uses if names else ():

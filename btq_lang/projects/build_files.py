@@ -200,7 +200,9 @@ def _add_remarks(remarks: Collection[Remark], word: str, groups: tuple[FileGroup
     for remark in remarks:
         file = next(group.workspace.files[remark.path] for group in groups if remark.path in group.workspace.files)
         line, column = file.lines.position(remark.span.start)
-        place = "" if file.origin else f":{line + 1}:{column + 1}"  # places are in the text that XML was converted to
+        place = (
+            "" if file.is_foreign else f":{line + 1}:{column + 1}"
+        )  # places are in the text that XML was converted to
         messages.remark(f"{shown(remark.path)}{place}: {word}: {remark.message}")
     return len(remarks)
 

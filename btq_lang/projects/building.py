@@ -118,7 +118,7 @@ def errors(
     replaced: Collection[str] = tuple(map(xml_name, written)) if replaces else ()
     reported = {*source_paths, *included}
     for path in (*source_paths, *(needed for needed in included if needed not in replaced)):
-        parsed = workspace.files[path].origin or workspace.files[path].parsed
-        for diagnostic in parsed.diagnostics if verbatim else check(workspace, path):
+        file = workspace.files[path]
+        for diagnostic in file.source_diagnostics if verbatim else check(workspace, path):
             if diagnostic.effective_severity is Severity.ERROR and not is_reported_beside(diagnostic, reported):
                 yield path, diagnostic

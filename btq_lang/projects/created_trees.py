@@ -21,7 +21,7 @@ def created_trees(workspace: Workspace, paths: Iterable[str], pools: Iterable[st
     asked_for = {
         name
         for path in paths
-        if path in workspace.origins and workspace.main_tree(path) is None
+        if path in workspace.foreign and workspace.main_tree(path) is None
         for name in workspace.files[path].names.by_kind[Kind.TREE]
     }
     if not asked_for:

@@ -206,7 +206,7 @@ class Files:
             registered = {path for each in groups for path in each.given}
             group = replace(group, given=tuple(path for path in group.given if path not in registered))
         if group.given or not groups:
-            has_xml = any(group.workspace.files[path].origin is not None for path in group.given)
+            has_xml = any(group.workspace.files[path].is_foreign for path in group.given)
             if pools and has_xml:
                 group = _with_created(self._with_pools(group, pools, project_of), pools)
             groups.append(group)
@@ -435,6 +435,6 @@ def lacking_names(workspace: Workspace, paths: Iterable[str]) -> frozenset[str]:
     names: set[str] = set()
     for path in paths:
         scope, file = workspace.scope(path), workspace.files[path]
-        for kind in (Kind.TREE, Kind.MODEL) if file.origin is not None else ():
-            names.update(name for name in file.said(kind) if not scope.defines(kind, name))
+        for kind in (Kind.TREE, Kind.MODEL) if file.is_foreign else ():
+            names.update(name for name in file.names_used(kind) if not scope.defines(kind, name))
     return frozenset(names.difference(BUILTINS))

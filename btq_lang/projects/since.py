@@ -86,7 +86,7 @@ class _Concerned:
         for include, is_of_package in workspace.files[path].included_paths:
             if not is_of_package:
                 yield from include_candidates(workspace.project, path, include)
-        pool = workspace.project.pool_of(path) if workspace.files[path].origin else None
+        pool = workspace.project.pool_of(path) if workspace.files[path].is_foreign else None
         if pool is None:
             return
         changed = [changed_path for changed_path in self._changed if changed_path.startswith(pool)]

@@ -17,8 +17,7 @@ from btq_lang.requirements.definitions import requirement
 from btq_lang.requirements.paths import Problem
 from btq_lang.requirements.reader import Problems, Reader
 from btq_lang.syntax import tree as syntax
-from btq_lang.util.fields import fields_of
-from btq_lang.util.record import Record, replace
+from btq_lang.util.record import Record, fields_of, replace
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs

@@ -12,8 +12,7 @@ from typing import Final, Literal, TypeAlias
 
 from btq_lang.catalog.units import Dimension, Unit
 from btq_lang.diagnostics.model import Place
-from btq_lang.util.fields import as_dict
-from btq_lang.util.record import Record
+from btq_lang.util.record import Record, as_dict
 from btq_lang.workspace.resolved import ResolvedNode
 
 Relation: TypeAlias = Literal["<=", ">=", "<", ">", "between"]

@@ -10,7 +10,7 @@ means is unknown here.
     scan.py          runs of characters: names, numbers, blanks
     indentation.py   the open blocks around a line
     strange.py       invalid characters
-    quantities.py    numbers with units
+    quantities.py    numbers with units; composed_times.py, times of several numbers
     suggestions.py   what a wrong token was probably meant to be
     script/          the engine's scripting language, in strings
 """

@@ -109,7 +109,7 @@ Subject: TypeAlias = Path | Mission | Every | Between | Sum
 
 
 class Claim(Part):
-    """What a requirement demands: a subject (None: the node it is attached to), a verb and its operands.
+    """A demand of a requirement: a subject (None: the node it is attached to), a verb and its operands.
 
     Attributes:
         verb: takes, succeeds, needs, keeps, never, leaves, uses, tries, runs, starts, ends or follows.

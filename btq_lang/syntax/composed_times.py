@@ -30,10 +30,10 @@ def composed_time(text: str, start: int) -> Diagnostic | None:
         parts, units, end = [int(spoken[1]), int(spoken[3])], [(large, small)], spoken.end()
     else:
         return None
-    written = [each for reading in units for each in _written(parts, reading)]
+    written = [amount for reading in units for amount in _in_one_unit(parts, reading)]
     span = Span(start, end)
-    fixes = tuple([write_fix(each, span) for each in written])
-    shown = " or ".join(f"`{each}`" for each in written)
+    fixes = tuple([write_fix(amount, span) for amount in written])
+    shown = " or ".join(f"`{amount}`" for amount in written)
     return Diagnostic("syntax-error", span, f"a time has one number and one unit: {shown}", fixes=fixes)
 
 
@@ -43,11 +43,11 @@ def _readings(unit: str | None) -> list[tuple[str, ...]]:
     return [minutes, hours] if unit is None else [hours] if unit == "h" else [minutes]
 
 
-def _written(parts: list[int], units: tuple[str, ...]) -> list[str]:
+def _in_one_unit(parts: list[int], units: tuple[str, ...]) -> list[str]:
     """A time in its largest unit, if that takes few decimals, and in its smallest."""
     seconds = sum(part * _SECONDS[unit] for part, unit in zip(parts, units, strict=True))
-    found = [f"{seconds / _SECONDS[unit]:.10g}" for unit in (units[0], units[-1])]
-    return [f"{number} {unit}" for number, unit in zip(found, (units[0], units[-1]), strict=True) if len(number) < 7]
+    numbers = [f"{seconds / _SECONDS[unit]:.10g}" for unit in (units[0], units[-1])]
+    return [f"{number} {unit}" for number, unit in zip(numbers, (units[0], units[-1]), strict=True) if len(number) < 7]
 
 
 _CLOCK: Final = re.compile(r"(\d+):(\d\d)(?::(\d\d))?(?!\d)(?:[ \t]*([^\W\d_]+))?")

@@ -1,4 +1,4 @@
-"""Nodes, of which a tree has thousands, and verbatim XML among them.
+"""Nodes, and verbatim XML among them; a tree has thousands.
 
 One invariant: a node is a plain class, as words are, so that it can be compiled.
 """
@@ -99,7 +99,7 @@ class Node:
 
     @property
     def shown(self) -> str:
-        """As a message names it among others: its kind and its instance name, if that is another one."""
+        """The node as a message names it among others: its kind, and its instance name if that differs."""
         return f"`{self.head.text}`" if self.name is None or self.name.text == self.head.text else f"`{self.called}`"
 
     def attribute(self, key: str) -> Word | None:

@@ -1,4 +1,7 @@
-"""Quantities in a file: a number and its unit."""
+"""Quantities in a file: a number and its unit.
+
+In a module of its own because its users read single values and need nothing of the scanner.
+"""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ ASCII: Final = 0x80  # the first character that is not ASCII
 
 
 class Maps:
-    """Where words and blanks end in a text, found in one step.
+    """The ends of words and blanks in a text, found in one step.
 
     Attributes:
         words: the text with a NUL for each character but ASCII letters, digits and `_`.
@@ -125,13 +125,13 @@ def blanks_end(text: str, start: i64, size: i64) -> i64:
 def line_opening(text: str, ink: str, start: i64) -> tuple[i64, i64]:
     """Skip blank lines; returns where the line of the next word or comment begins (`start`, if it is the same line),
     and where its blanks end."""
-    at: i64 = ink.find("x", start)
-    while at >= 0:
-        code: i64 = ord(text[at])
+    position: i64 = ink.find("x", start)
+    while position >= 0:
+        code: i64 = ord(text[position])
         if code > RETURN or code not in (LINE_FEED, RETURN):
-            return start, at
-        start = at + 1
-        at = ink.find("x", start)
+            return start, position
+        start = position + 1
+        position = ink.find("x", start)
     return start, len(text)
 
 
@@ -284,8 +284,8 @@ def _factor(text: str, start: i64) -> tuple[str, i64]:
     return ("", start) if _is_of_word(text, end) or text.startswith("^", end) else (word, end)
 
 
-def _is_of_word(text: str, at: i64) -> bool:
-    return at < len(text) and (text[at].isalnum() or text[at] == "_")
+def _is_of_word(text: str, offset: i64) -> bool:
+    return offset < len(text) and (text[offset].isalnum() or text[offset] == "_")
 
 
 def is_unit(word: str) -> bool:

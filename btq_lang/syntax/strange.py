@@ -116,14 +116,14 @@ class StrangeCharacters(Indentation):
         else -1.
         """
         text = self.text
-        at = line_end(text, start)
-        while at < self.size:
-            first, at = line_opening(text, self.maps.ink, at)
-            if at - first <= len(self.blanks):
-                after = blanks_end(text, at + 1, self.size)
+        position = line_end(text, start)
+        while position < self.size:
+            first, position = line_opening(text, self.maps.ink, position)
+            if position - first <= len(self.blanks):
+                after = blanks_end(text, position + 1, self.size)
                 is_alone = after >= self.size or text[after] in "\r\n"
-                return at if text[at : at + 1] == sign and is_alone else -1
-            at = line_end(text, at)
+                return position if text[position : position + 1] == sign and is_alone else -1
+            position = line_end(text, position)
         return -1
 
     def _half_braced(self, start: int, character: str) -> int:
@@ -140,10 +140,10 @@ class StrangeCharacters(Indentation):
             self._mistake(Span(start, start + 1), ATTRIBUTES, mended)
             return end
         other = "}" if character == "{" else "{"
-        at = end
+        place = end
         if character == "}":
-            at = self.starts[-1] if self.raws and self.starts[-1] + len(self.raws[-1]) == start else start
-        fix = replace_fix(f"Add `{other}`", Span(at, at), other)
+            place = self.starts[-1] if self.raws and self.starts[-1] + len(self.raws[-1]) == start else start
+        fix = replace_fix(f"Add `{other}`", Span(place, place), other)
         note = "a blackboard entry is written `{key}`, on one line and without quotes in it"
         self._mistake(Span(start, start + 1), f"missing `{other}` for this `{character}`", fix, notes=(note,))
         return end
@@ -155,9 +155,9 @@ class StrangeCharacters(Indentation):
         self._brackets.pop()
         return self._add(CLOSE, position, position + 1)
 
-    def _quote_value(self, at: int) -> int:
+    def _quote_value(self, offset: int) -> int:
         """Report an invalid character inside a value: `a = 1;2`."""
-        start, end = self._whole_word(at)
+        start, end = self._whole_word(offset)
         fixes: tuple[Fix, ...] = ()
         if _VALUE_END.match(self.text, end):
             fixes = (value_meant(self.text, start, end, safe=self._takes_strings()),)
@@ -173,30 +173,30 @@ class StrangeCharacters(Indentation):
         """Whether values may be strings here: those of a requirement's parameters may not."""
         return not _WITH_PARAMETERS.intersection(self.raws)
 
-    def _in_value(self, at: int) -> bool:
-        """Whether `at` directly follows `key =`, or a word that follows it."""
+    def _in_value(self, offset: int) -> bool:
+        """Whether `offset` directly follows `key =`, or a word that follows it."""
         last = len(self.raws) - 1
-        while last > 0 and self._joins(last, at):
-            at = self.starts[last]
+        while last > 0 and self._joins(last, offset):
+            offset = self.starts[last]
             last -= 1
         return last >= 0 and self.raws[last] == "="
 
-    def _whole_word(self, at: int) -> tuple[int, int]:
-        """The range of the word around `at`; removes the tokens already made of it."""
-        word = _WHOLE_WORD.match(self.text, at)
+    def _whole_word(self, offset: int) -> tuple[int, int]:
+        """The range of the word around `offset`; removes the tokens already made of it."""
+        word = _WHOLE_WORD.match(self.text, offset)
         assert word is not None, "a word or a sign begins here"
-        while self.raws and self._joins(len(self.raws) - 1, at):
-            at = self.starts.pop()
+        while self.raws and self._joins(len(self.raws) - 1, offset):
+            offset = self.starts.pop()
             self.kinds.pop()
             self.raws.pop()
-        return at, word.end()
+        return offset, word.end()
 
-    def _joins(self, index: int, at: int) -> bool:
-        """Whether a token forms one word with what begins at `at`: without a blank between them, and not `=`."""
+    def _joins(self, index: int, offset: int) -> bool:
+        """Whether a token forms one word with what begins at `offset`: without a blank between them, and not `=`."""
         kind, raw = self.kinds[index], self.raws[index]
         if kind not in (NAME, NUMBER, QUANTITY, OPERATOR) or raw == "=" or raw == ",":
             return False
-        return self.starts[index] + len(raw) == at
+        return self.starts[index] + len(raw) == offset
 
     def _add(self, kind: int, start: i64, end: i64) -> i64:
         self.kinds.append(kind)

@@ -9,8 +9,8 @@ import re
 from functools import lru_cache
 from typing import Final
 
-from btq_lang.catalog.measured import measured
 from btq_lang.catalog.units import nearest_units
+from btq_lang.catalog.verbs import measured
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, replace_fix, write_fix
 from btq_lang.syntax.composed_times import composed_time
 from btq_lang.syntax.scan import line_end, line_start, number_end
@@ -27,10 +27,10 @@ def close_string(text: str, start: int) -> Fix:
         closed = text[start] + text[start + 1 : mixed.start(1)] + text[start]
         return write_fix(closed, Span(start, mixed.end(1)))
     depth = 0
-    for at in range(start + 1, end_of_string):
-        depth += (text[at] == "(") - (text[at] == ")")
+    for offset in range(start + 1, end_of_string):
+        depth += (text[offset] == "(") - (text[offset] == ")")
         if depth < 0:  # it closes brackets that were opened before the string
-            end_of_string = start + 1 + len(text[start + 1 : at].rstrip(" \t,"))
+            end_of_string = start + 1 + len(text[start + 1 : offset].rstrip(" \t,"))
             break
     return replace_fix(f"Close it with {text[start]}", Span(end_of_string, end_of_string), text[start])
 
@@ -85,7 +85,7 @@ def unknown_escapes(start: int, raw: str) -> tuple[Diagnostic, ...]:
         return ()
     shown = unknown[0][0] if unknown[0][0].isprintable() else "\\"
     places = [start + escape.start() for escape in unknown]
-    fix = Fix("Write `\\\\`", tuple(FixEdit(Place(Span(at, at + 1)), "\\\\") for at in places), safe=True)
+    fix = Fix("Write `\\\\`", tuple(FixEdit(Place(Span(offset, offset + 1)), "\\\\") for offset in places), safe=True)
     message = f"unknown escape `{shown}`; the backslash is kept"
     notes = ("the escapes are \\\" \\' \\\\ \\n and \\t",)
     span = Span(places[0], places[0] + len(shown))
@@ -110,7 +110,7 @@ def no_token(text: str, start: int, end: int, *, of_signal: bool) -> Diagnostic:
 
 
 def _square_brackets(text: str, start: int) -> tuple[str, tuple[Fix, ...]]:
-    """What square brackets are probably meant to be, and the fix: attributes, a list of requirements, or children."""
+    """The probable meaning of square brackets, and the fix: attributes, a list of requirements, or children."""
     closing = text.find("]", start, line_end(text, start))
     if closing < 0:
         return ATTRIBUTES, ()
@@ -129,12 +129,12 @@ def _square_brackets(text: str, start: int) -> tuple[str, tuple[Fix, ...]]:
 
 def attributes_in_braces(text: str, start: int) -> Fix | None:
     """The fix for `{key = value}` instead of `(key = value)`, on one line."""
-    found = _BRACED_ATTRIBUTES.match(text, start)
-    if found is None:
+    match = _BRACED_ATTRIBUTES.match(text, start)
+    if match is None:
         return None
-    ends = Span(start, start + 1), Span(found.end() - 1, found.end())
+    ends = Span(start, start + 1), Span(match.end() - 1, match.end())
     changes = tuple(FixEdit(Place(end), sign) for end, sign in zip(ends, "()", strict=True))
-    is_whole = _REST.match(text, found.end()) is not None and "(" not in text[line_start(text, 0, start) : start]
+    is_whole = _REST.match(text, match.end()) is not None and "(" not in text[line_start(text, 0, start) : start]
     return Fix("Write `(` and `)`", changes, safe=is_whole)
 
 
@@ -152,14 +152,14 @@ def _look_alikes(text: str, start: int) -> tuple[Fix, ...]:
 
     is_quote = text[start] in _OTHER_QUOTES
     changes: list[FixEdit] = []
-    for at in range(start, line_end(text, start)):
-        other = text[at]
+    for offset in range(start, line_end(text, start)):
+        character = text[offset]
         in_text = is_quote and len(changes) % 2 == 1
-        if (not is_quote and other in "\"'") or (not in_text and text.startswith(("#", "//", "/*"), at)):
+        if (not is_quote and character in "\"'") or (not in_text and text.startswith(("#", "//", "/*"), offset)):
             break  # texts and comments may contain any character
-        plain = _LOOKS_LIKE.get(other) or normalize("NFKC", other)
-        if plain != other and plain.isascii() and (other in _OTHER_QUOTES) == is_quote:
-            changes.append(FixEdit(Place(Span(at, at + 1)), plain))
+        plain = _LOOKS_LIKE.get(character) or normalize("NFKC", character)
+        if plain != character and plain.isascii() and (character in _OTHER_QUOTES) == is_quote:
+            changes.append(FixEdit(Place(Span(offset, offset + 1)), plain))
     return (Fix("Write plain characters", tuple(changes)),) if changes else ()
 
 

@@ -60,8 +60,7 @@ from btq_lang.syntax.words import Pair as Pair
 from btq_lang.syntax.words import TypeWord as TypeWord
 from btq_lang.syntax.words import Word as Word
 from btq_lang.syntax.words import unquote as unquote
-from btq_lang.util.fields import fields_of
-from btq_lang.util.record import Part, Record
+from btq_lang.util.record import Part, Record, fields_of
 from btq_lang.util.text import Span
 
 # ---- Items ----------------------------------------------------------------------------------------------------------
@@ -300,18 +299,18 @@ _OFFSETS = ("start", "end")
 
 def walk(part: object) -> list[object]:
     """A part of the tree and all its parts, in document order."""
-    found: list[object] = []
+    parts: list[object] = []
     stack = [part]
     while stack:
         part = stack.pop()
         if isinstance(part, Word):
-            found.append(part)
+            parts.append(part)
         elif isinstance(part, tuple):
             stack += reversed(part)
         elif part is not None and not isinstance(part, (int, str)):
-            found.append(part)
+            parts.append(part)
             stack += [value for field in reversed(fields_of(part)) if (value := getattr(part, field))]
-    return found
+    return parts
 
 
 def _in_order(top: Node) -> Iterator[Node | Verbatim]:

@@ -1,4 +1,4 @@
-"""Words of the source and pairs of them, of which a tree has thousands.
+"""Words of the source, and pairs of them; a tree has thousands.
 
 One invariant: they are plain classes without decorators, so that they can be compiled (hatch_build.py).
 `__match_args__` names their fields, as in a record: a compiled class has no `__slots__`.

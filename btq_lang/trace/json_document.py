@@ -39,7 +39,7 @@ import json
 from typing import TypeAlias
 
 from btq_lang.trace.overview import CharacteristicTotals, Overview, RequirementRow
-from btq_lang.util.fields import as_dict
+from btq_lang.util.record import as_dict
 from btq_lang.util.version import __version__
 
 Json: TypeAlias = "bool | int | str | list[Json] | dict[str, Json] | None"

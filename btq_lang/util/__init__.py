@@ -6,10 +6,9 @@ One invariant: nothing here concerns behavior trees or imports another room.
     source_map.py   maps a generated text to its source, and back
     readable.py     characters that an output's encoding lacks
     spelling.py     names similar to a misspelt one
-    record.py       immutable classes, without the start-up time of dataclasses
-    fields.py       the fields of such a class, and of the compiled ones that are like it
-    reach.py        what is reached from something, step by step
-    grouping.py     what belongs together, by what it has in common
+    record.py       immutable classes, without the start-up time of dataclasses, and the fields of a class
+    reach.py        reachability in graphs, and their cycles
+    grouping.py     values grouped by a key
     globs.py        patterns of paths
     processes.py    processes that share the work of a command
     toml_places.py  positions of keys in a TOML text

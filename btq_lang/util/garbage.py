@@ -1,7 +1,8 @@
 """Pauses the garbage collector: the objects of a parse are kept, and scanning them repeatedly takes a fifth of its
 time.
 
-One invariant: afterwards collection is enabled or disabled as before.
+One invariant: afterwards collection is enabled or disabled as before.  In a module of its own because the compiled
+parser imports it, and nothing else from its neighbours.
 """
 
 from __future__ import annotations

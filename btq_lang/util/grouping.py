@@ -1,4 +1,7 @@
-"""What belongs together, by what it has in common."""
+"""Values grouped by a key.
+
+In a module of its own because all rooms use it, and nothing else here is about collections.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ V = TypeVar("V")
 
 def grouped(pairs: Iterable[tuple[K, V]]) -> dict[K, list[V]]:
     """The values of each key, in their order."""
-    found: dict[K, list[V]] = {}
+    groups: dict[K, list[V]] = {}
     for key, value in pairs:
-        found.setdefault(key, []).append(value)
-    return found
+        groups.setdefault(key, []).append(value)
+    return groups

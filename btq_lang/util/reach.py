@@ -1,4 +1,4 @@
-"""What is reached from something, step by step, and what reaches itself."""
+"""Reachability in graphs, and their cycles."""
 
 from __future__ import annotations
 
@@ -9,46 +9,52 @@ T = TypeVar("T", bound=Hashable)
 
 
 def reached(starts: Iterable[T], following: Callable[[T], Iterable[T]]) -> Iterator[T]:
-    """Some things and all that follows them, directly or not: each once, the nearest first."""
+    """The starts and all that is reachable from them, each once, the nearest first.
+
+    Args:
+        following: returns the successors of a node.
+    """
     waiting = [*dict.fromkeys(starts)]
     seen = set(waiting)
-    for each in waiting:
-        yield each
-        for other in following(each):
+    for node in waiting:
+        yield node
+        for other in following(node):
             if other not in seen:
                 seen.add(other)
                 waiting.append(other)
 
 
 def knots(graph: Mapping[T, Iterable[T]]) -> Iterator[set[T]]:
-    """All that reach themselves, those together that reach each other (Tarjan's strongly connected components).
+    """The sets of nodes that reach each other, and themselves (Tarjan's strongly connected components).
 
     Args:
-        graph: what follows each; what is not a key of it is ignored.
+        graph: the successors of each node; a successor that is not a key is ignored.
     """
     numbers: dict[T, int] = {}  # in the order in which they are met
-    lowest: dict[T, int] = {}  # that each is known to reach, while its knot is open
+    lowest: dict[T, int] = {}  # the lowest number that each node reaches, while its knot is open
     waiting: list[T] = []  # for their knot to be complete
     left: dict[T, Iterator[T]] = {}
     for start in graph:
         path = [] if start in numbers else [start]
         while path:
-            each = path[-1]
-            if each not in numbers:
-                numbers[each] = lowest[each] = len(numbers)
-                waiting.append(each)
-                left[each] = iter(graph[each])
-            following = next((other for other in left[each] if other in graph and other not in numbers), None)
+            node = path[-1]
+            if node not in numbers:
+                numbers[node] = lowest[node] = len(numbers)
+                waiting.append(node)
+                left[node] = iter(graph[node])
+            following = next(
+                (neighbour for neighbour in left[node] if neighbour in graph and neighbour not in numbers), None
+            )
             if following is not None:
                 path.append(following)
                 continue
             path.pop()
-            lowest[each] = min(lowest[other] for other in (each, *graph[each]) if other in lowest)
-            if lowest[each] == numbers[each]:
+            lowest[node] = min(lowest[neighbour] for neighbour in (node, *graph[node]) if neighbour in lowest)
+            if lowest[node] == numbers[node]:
                 knot: set[T] = set()
-                while each in lowest:
-                    other = waiting.pop()
-                    knot.add(other)
-                    del lowest[other]
-                if len(knot) > 1 or each in graph[each]:
+                while node in lowest:
+                    neighbour = waiting.pop()
+                    knot.add(neighbour)
+                    del lowest[neighbour]
+                if len(knot) > 1 or node in graph[node]:
                     yield knot

@@ -1,4 +1,7 @@
-"""Text for people in an encoding that lacks some of its characters, such as cp1252 in a pipe on Windows."""
+"""Text for people in an encoding that lacks some of its characters, such as cp1252 in a pipe on Windows.
+
+In a module of its own because it is imported only when a character is missing.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ from typing import Final
 
 
 def replaced(error: UnicodeError) -> tuple[str, int]:
-    """What to write instead of the characters that cannot be encoded, and where to go on.
+    """A replacement for the characters that cannot be encoded, and the index after them.
 
     An error handler for `codecs.register_error`.  Most are replaced by one character, so that columns stay aligned.
     """

@@ -10,25 +10,23 @@ from __future__ import annotations
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from btq_lang.util.fields import as_dict, fields_of
-
 T = TypeVar("T")
 
 
 class _Frozen:
-    """What records do: equal by class and fields; setting or deleting a field raises an AttributeError."""
+    """The behavior of records: equal by class and fields; setting or deleting a field raises an AttributeError."""
 
     __slots__ = ()
     _key: attrgetter[Any]  # the class and the fields, for equality and hash
 
     def __init__(self, *values: object, **named: object) -> None:
-        made: Any = type(self)
-        scope = {f"set_{field}": made.__dict__[field].__set__ for field in fields_of(self)}
+        cls: Any = type(self)
+        scope = {f"set_{field}": cls.__dict__[field].__set__ for field in fields_of(self)}
         body = "; ".join(f"set_{field}(self, {field})" for field in fields_of(self)) or "pass"
         exec(f"def __init__({', '.join(('self', *fields_of(self)))}): {body}", scope)
-        made.__init__ = scope["__init__"]
-        made.__init__.__defaults__ = made._defaults
-        made.__init__(self, *values, **named)
+        cls.__init__ = scope["__init__"]
+        cls.__init__.__defaults__ = cls._defaults
+        cls.__init__(self, *values, **named)
 
     def __eq__(self, other: object) -> bool:
         return self._key(self) == self._key(other) if type(other) is type(self) else NotImplemented
@@ -54,9 +52,9 @@ class _Maker(type):
     def __new__(cls, name: str, bases: tuple[Any, ...], namespace: dict[str, Any]) -> Any:
         fields = (*bases[0]._fields, *namespace.get("__annotations__", ()))
         defaults = {field: namespace.pop(field) for field in fields if field in namespace}
-        made: Any = type(name, (_Frozen,), {**namespace, "__slots__": fields, "__match_args__": fields})
-        made._key, made._defaults = attrgetter("__class__", *fields), tuple(defaults.values())
-        return made
+        record: Any = type(name, (_Frozen,), {**namespace, "__slots__": fields, "__match_args__": fields})
+        record._key, record._defaults = attrgetter("__class__", *fields), tuple(defaults.values())
+        return record
 
 
 if TYPE_CHECKING:
@@ -78,3 +76,13 @@ else:  # only the bases in a class statement: no record is an instance
 def replace(instance: T, **changes: Any) -> T:
     """A copy of a record with some fields changed; an unknown name raises a TypeError."""
     return type(instance)(**as_dict(instance) | changes)
+
+
+def as_dict(part: object) -> dict[str, Any]:
+    """The values of the fields of a record, or of another class with `__match_args__`, in order, by name."""
+    return {field: getattr(part, field) for field in fields_of(part)}
+
+
+def fields_of(part: object) -> tuple[str, ...]:
+    """The names of these fields, in order."""
+    return type(part).__match_args__  # type: ignore[attr-defined, no-any-return]  # `part` may be of any class

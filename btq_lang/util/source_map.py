@@ -29,7 +29,7 @@ class OriginMap:
         marks: from which `located` computes pieces, at least one from each; in the order of the text, each with the
             index of its line first.
         lines: of the generated text; empty if marks have no lines.
-        located: gives the pieces of some marks, from them and the offsets at which all lines begin.
+        located: computes the pieces of some marks, given these and the offsets at which lines begin.
     """
 
     def __init__(
@@ -107,10 +107,10 @@ def _as_they_are(pieces: Sequence[Piece], _: Sequence[int]) -> Sequence[Piece]:
     return pieces
 
 
-def _within(piece: Piece, at: int, at_end: bool = False) -> int:
+def _within(piece: Piece, offset: int, at_end: bool = False) -> int:
     """The offset in the original for one in a piece."""
     if _is_same(piece):
-        return piece[2] + at - piece[0]
+        return piece[2] + offset - piece[0]
     return piece[3] if at_end else piece[2]
 
 

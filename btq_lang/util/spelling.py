@@ -21,7 +21,7 @@ def near(word: str, candidates: Iterable[str], limit: int = 3) -> tuple[str, ...
     folded, letters = word.casefold(), _letters(word)
     cutoff = min(len(folded) // 3, 3)
     same_letters: list[tuple[int, str]] = []
-    found: list[tuple[int, int, str]] = []
+    ranked: list[tuple[int, int, str]] = []
     for candidate in set(candidates):
         # This rejects most candidates cheaply: an edit mends at most one letter that only one of the two has.
         others = _letters(candidate)
@@ -31,19 +31,19 @@ def near(word: str, candidates: Iterable[str], limit: int = 3) -> tuple[str, ...
         if other == folded:
             same_letters.append((distance(word, candidate), candidate))
         elif abs(len(other) - len(folded)) <= cutoff and (edits := distance(folded, other, cutoff)) <= cutoff:
-            found.append((edits, distance(word, candidate), candidate))
+            ranked.append((edits, distance(word, candidate), candidate))
     if same_letters:
         return tuple(name for _, name in sorted(same_letters))[:limit]
-    found.sort()
-    return tuple(name for edits, _, name in found if edits <= found[0][0] + 1)[:limit]
+    ranked.sort()
+    return tuple(name for edits, _, name in ranked if edits <= ranked[0][0] + 1)[:limit]
 
 
 def sharing_a_word(name: str, candidates: Iterable[str]) -> tuple[str, ...]:
     """The candidates that have a word in common with a name of several: `people_near` for `person_near`; empty if
     more than three have."""
     words = _long_words(name)
-    found = sorted({each for each in candidates if not words.isdisjoint(_long_words(each))})
-    return tuple(found) if len(found) <= 3 else ()
+    sharing = sorted({each for each in candidates if not words.isdisjoint(_long_words(each))})
+    return tuple(sharing) if len(sharing) <= 3 else ()
 
 
 def _long_words(name: str) -> set[str]:
@@ -64,7 +64,7 @@ def did_you_mean(names: Iterable[str]) -> str:
 
 
 def distance(a: str, b: str, enough: int | None = None) -> int:
-    """How many letters must be inserted, deleted, replaced or swapped with their neighbour to turn `a` into `b`.
+    """The number of letters to insert, delete, replace or swap with their neighbour to turn `a` into `b`.
 
     This is the optimal string alignment form of the Damerau-Levenshtein distance: no piece is edited twice.
 
@@ -104,10 +104,10 @@ def distance(a: str, b: str, enough: int | None = None) -> int:
 @lru_cache(10_000)
 def _letters(word: str) -> int:
     """A bit set of a word's letters, ignoring case; some letters share a bit."""
-    found = 0
+    bits = 0
     for letter in set(word.casefold()):
-        found |= 1 << ord(letter) % _BITS
-    return found
+        bits |= 1 << ord(letter) % _BITS
+    return bits
 
 
 _BITS: Final = 39  # with so many bits no ASCII letter shares one with a digit

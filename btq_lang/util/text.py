@@ -41,7 +41,7 @@ class Span(NamedTuple):
 
 
 class Placed(Protocol):
-    """What has a place, as a part of a tree has."""
+    """An object with a span, such as a part of a tree."""
 
     @property
     def start(self) -> int: ...
@@ -70,13 +70,13 @@ def apply_edits(text: str, edits: Iterable[Edit]) -> str:
         ValueError: two edits overlap.
     """
     pieces: list[str] = []
-    at = 0
+    copied = 0
     for edit in sorted(edits, key=lambda edit: edit.span):
-        if edit.span.start < at:
+        if edit.span.start < copied:
             raise ValueError(f"edits overlap at offset {edit.span.start}")
-        pieces += (text[at : edit.span.start], edit.text)
-        at = edit.span.end
-    return "".join([*pieces, text[at:]])
+        pieces += (text[copied : edit.span.start], edit.text)
+        copied = edit.span.end
+    return "".join([*pieces, text[copied:]])
 
 
 def alike(first: Sequence[T], second: Sequence[T]) -> int:
@@ -92,8 +92,8 @@ def changed(before: str, after: str) -> Span | None:
     # One of the two is compared in place: copying takes most of the time for a large text.
     start = _same(lambda low, high: after.startswith(before[low:high], low), shorter)
     size, new_size = len(before), len(after)
-    rest = _same(lambda low, high: after.endswith(before[size - high : size - low], 0, new_size - low), shorter)
-    return Span(start, size - min(rest, shorter - start))
+    ending = _same(lambda low, high: after.endswith(before[size - high : size - low], 0, new_size - low), shorter)
+    return Span(start, size - min(ending, shorter - start))
 
 
 def _same(is_same: Callable[[int, int], bool], size: int) -> int:
@@ -109,7 +109,7 @@ def _same(is_same: Callable[[int, int], bool], size: int) -> int:
 
 
 class LineIndex:
-    """Where the lines of a text begin; converts offsets to positions and back.
+    """The index of the lines of a text; converts offsets to positions and back.
 
     After an edit of a large text most lines are merely shifted; the shift is kept separately and added on look-up,
     because an author types in one place.
@@ -229,7 +229,7 @@ class LineIndex:
 
 
 def _line_starts(text: str) -> Iterator[int]:
-    """Where the lines of a text begin, without its first; each character of a line end counts."""
+    """The starts of the lines of a text, except the first; each character of a line end counts."""
     if "\r" in text:
         text = text.replace("\r\n", " \n").replace("\r", "\n")
     *lines, _ = text.split("\n")
@@ -242,7 +242,7 @@ def counted(number: int, one: str, several: str = "") -> str:
 
 
 def width_of(text: str, encoding: Encoding) -> int:
-    """How many columns a text takes: code points, or code units in UTF-8 or UTF-16."""
+    """The number of columns of a text: code points, or code units in UTF-8 or UTF-16."""
     if encoding == "code-points" or text.isascii():
         return len(text)
     if encoding == "utf-8":

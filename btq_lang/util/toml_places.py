@@ -24,21 +24,21 @@ def find_key(text: str, keys: tuple[str, ...], value: str | None = None) -> Posi
         keys: `[0]` after the name of a list of tables is the first of them.
     """
     text = _LONG_STRING.sub(lambda string: re.sub(r"[^\n]", " ", string[0]), text)
-    found, known, end = -1, 0, len(text)
+    place, depth, end = -1, 0, len(text)
     is_numbered = any(key.startswith("[") for key in keys)
     for path, start, stop in _key_lines(text):
         if not is_numbered:
             path = tuple(key for key in path if not key.startswith("["))
         shared = min(len(path), len(keys))
-        if path[:shared] == keys[:shared] and shared > known:
-            found, known, end = start, shared, stop
-    if found < 0:
+        if path[:shared] == keys[:shared] and shared > depth:
+            place, depth, end = start, shared, stop
+    if place < 0:
         return None
-    words = [*map(re.escape, keys[known:]), *([f"[\"']{re.escape(value)}[\"']"] if value is not None else [])]
+    words = [*map(re.escape, keys[depth:]), *([f"[\"']{re.escape(value)}[\"']"] if value is not None else [])]
     for word in words:
-        match = re.compile(word).search(text, found + 1, end)
-        found = match.start() if match else found
-    return LineIndex(text).position(found)
+        match = re.compile(word).search(text, place + 1, end)
+        place = match.start() if match else place
+    return LineIndex(text).position(place)
 
 
 def word_end(text: str, start: int) -> int:

@@ -60,14 +60,14 @@ class Comments(Record):
     Attributes:
         before: on lines of their own above it, in its block.
         within: on its line (or lines, if it has brackets) before its last word: in brackets, or before it.
-        behind: after it on its line, if it has no block.
+        after: at the end of its line, if it has no block.
         first: after it on its line, if a block follows: they are the first thing in the block.
         last: on lines of their own at the end of its block; an element without a block may have them too.
     """
 
     before: tuple[Comment, ...] = ()
     within: tuple[Comment, ...] = ()
-    behind: tuple[Comment, ...] = ()
+    after: tuple[Comment, ...] = ()
     first: tuple[Comment, ...] = ()
     last: tuple[Comment, ...] = ()
 
@@ -84,11 +84,11 @@ def comments(parsed: Parsed) -> Mapping[int, Comments]:
     """
     if "#" not in parsed.text and "/" not in parsed.text:
         return {}
-    found: dict[int, dict[str, list[Comment]]] = {}
+    remarks_by_line: dict[int, dict[str, list[Comment]]] = {}
 
     def add(line: _Line, place: str, remarks: list[Comment]) -> None:
         if remarks:
-            found.setdefault(line.start, {}).setdefault(place, []).extend(remarks)
+            remarks_by_line.setdefault(line.start, {}).setdefault(place, []).extend(remarks)
 
     open_lines: list[_Line] = []  # the line above and those whose blocks it is in
     for comment_lines, line in _lines(parsed.text):
@@ -98,10 +98,10 @@ def comments(parsed: Parsed) -> Mapping[int, Comments]:
                 add(line, "before", remarks)
             else:
                 add(owner, "last", remarks)
-        if open_lines and open_lines[-1].behind:  # now it is known whether it has a block
+        if open_lines and open_lines[-1].after:  # only now its block is known
             above = open_lines[-1]
-            has_block = above.level < line.level or "last" in found.get(above.start, ())
-            add(above, "first" if has_block else "behind", above.behind)
+            has_block = above.level < line.level or "last" in remarks_by_line.get(above.start, ())
+            add(above, "first" if has_block else "after", above.after)
         if line.within:
             add(line, "within", line.within)
         while open_lines and open_lines[-1].level >= line.level:
@@ -109,7 +109,7 @@ def comments(parsed: Parsed) -> Mapping[int, Comments]:
         open_lines.append(line)
     return {
         start: Comments(**{place: tuple(remarks) for place, remarks in places.items()})
-        for start, places in found.items()
+        for start, places in remarks_by_line.items()
     }
 
 
@@ -143,28 +143,28 @@ class _Line:
         start: of its first word.
         level: number of open blocks around it.
         blanks: the text before it on its physical line.
-        within, behind: its comments, before and after its last word.
+        within, after: its comments, before and after its last word.
     """
 
-    __slots__ = ("behind", "blanks", "level", "start", "within")
+    __slots__ = ("after", "blanks", "level", "start", "within")
 
     def __init__(self, start: int, level: int, blanks: str, within: list[Comment]) -> None:
         self.start = start
         self.level: Final = level
         self.blanks: Final = blanks
         self.within: Final = within
-        self.behind: Final[list[Comment]] = []
+        self.after: Final[list[Comment]] = []
 
 
 def _lines(text: str) -> Iterator[tuple[list[tuple[str, list[Comment]]], _Line]]:
-    """Each logical line, the end of the file as the last, with the comment lines above it and their blanks."""
+    """The logical lines, the end of the file as the last; each with the comment lines above it and their blanks."""
     lexer = Lexer(text)
-    found = lexer.comments
+    spans = lexer.comments
     while True:
-        end, known = lexer.position, len(found)
+        end, count = lexer.position, len(spans)
         opened = lexer.open_line()
         above: list[tuple[str, list[Comment]]] = []
-        for start, comment_end in found[known:]:
+        for start, comment_end in spans[count:]:
             between = text[end:start]
             if not above or "\n" in between or "\r" in between:
                 above.append((LINE_END.split(between)[-1].lstrip("\ufeff"), []))
@@ -179,12 +179,12 @@ def _lines(text: str) -> Iterator[tuple[list[tuple[str, list[Comment]]], _Line]]
         if plain is not None:
             lexer.position = plain.end()  # it has no comment, so it need not be tokenized
         else:
-            known = len(found)
+            count = len(spans)
             lexer.scan()
             line.start = lexer.starts[0]
             last = lexer.starts[-2] if len(lexer.starts) > 1 else line.start  # the very last is the end of the line
-            for start, comment_end in found[known:]:
-                (line.within if start < last else line.behind).append(_comment(text, start, comment_end))
+            for start, comment_end in spans[count:]:
+                (line.within if start < last else line.after).append(_comment(text, start, comment_end))
         yield above, line
 
 

@@ -29,7 +29,7 @@ PROJECT_FILES: tuple[Kind, ...] = ("btq.toml", "pyproject.toml")  # the first of
 
 
 class Project(Record):
-    """What holds for all files of a project.
+    """The settings of all files of a project.
 
     Attributes:
         root: the folder of the project file.
@@ -146,27 +146,27 @@ def parse_project(text: str, kind: Kind = "btq.toml", root: str = ".") -> tuple[
             field, read, *_ = KEYS[key]
             fields[field], complaints = read(key, value)
         else:
-            complaints = [_Complaint(f"unknown key `{key}`{_meant(key, KEYS)}")]
+            complaints = [_Complaint(f"unknown key `{key}`{_suggestion(key, KEYS)}")]
         for complaint in complaints:
-            at = _find(text, (*above, key, *complaint.below), complaint.value)
-            problems.append(ProjectProblem(complaint.message, at))
-    given = {field: value for field, value in fields.items() if value is not None}
-    named_engines = given.get("engines", ())
-    given["product"] = next((name for name in named_engines if name in PRODUCTS), "")
-    if given["product"]:
-        given["engines"] = tuple(dict.fromkeys(PRODUCTS.get(name, name) for name in named_engines))
-    given["names_all"] = given.get("engines") == VERSIONS
-    if "include_paths" in given:
-        given["include_paths"] = tuple(_joined(root, path) for path in given["include_paths"])
-    if "baseline" in given:
-        given["baseline"] = _joined(root, given["baseline"])
-    if "node_files" in given:
+            position = _find(text, (*above, key, *complaint.below), complaint.value)
+            problems.append(ProjectProblem(complaint.message, position))
+    settings = {field: value for field, value in fields.items() if value is not None}
+    named_engines = settings.get("engines", ())
+    settings["product"] = next((name for name in named_engines if name in PRODUCTS), "")
+    if settings["product"]:
+        settings["engines"] = tuple(dict.fromkeys(PRODUCTS.get(name, name) for name in named_engines))
+    settings["names_all"] = settings.get("engines") == VERSIONS
+    if "include_paths" in settings:
+        settings["include_paths"] = tuple(_joined(root, path) for path in settings["include_paths"])
+    if "baseline" in settings:
+        settings["baseline"] = _joined(root, settings["baseline"])
+    if "node_files" in settings:
         from btq_lang.catalog.nav2 import PACKAGED  # few projects have this key
 
-        named = given["node_files"]
-        given["node_files"] = tuple(PACKAGED[name] for name in named if name in PACKAGED)
-        given["cpp"] = tuple(name for name in named if name not in PACKAGED)
-    return Project(**given), tuple(problems)
+        named = settings["node_files"]
+        settings["node_files"] = tuple(PACKAGED[name] for name in named if name in PACKAGED)
+        settings["cpp"] = tuple(name for name in named if name not in PACKAGED)
+    return Project(**settings), tuple(problems)
 
 
 def keys_above(path: str) -> tuple[str, ...]:
@@ -175,7 +175,7 @@ def keys_above(path: str) -> tuple[str, ...]:
 
 
 def table_of(text: str, above: tuple[str, ...]) -> Any:
-    """What a TOML file has below some keys, which should be a table.
+    """The value below some keys of a TOML file, which should be a table.
 
     Raises:
         ValueError, RecursionError: it is not TOML.
@@ -208,17 +208,17 @@ def configured(project: Project, path: str, diagnostics: Iterable[Diagnostic]) -
 
 def unknown_rule(name: str) -> str | None:
     """The message about an unknown rule; None if the rule exists."""
-    return None if name in RULES else f"unknown rule `{name}`{_meant(name, RULES)}"
+    return None if name in RULES else f"unknown rule `{name}`{_suggestion(name, RULES)}"
 
 
 def include_candidates(project: Project, path: str, include: str) -> tuple[str, ...]:
-    """Where an included file may be, best first: beside the file at `path`, then in the include paths."""
+    """The paths at which an included file may be, best first: beside the file at `path`, then in the include paths."""
     folders = (os.path.dirname(path), *project.include_paths)
     return tuple(dict.fromkeys(_joined(folder, include) for folder in folders))
 
 
 class _Complaint(Record):
-    """What is wrong with the value of a key: with the entry `below` it, or with the string `value` in it."""
+    """A mistake in the value of a key: in the part `below` it, or in the string `value` in it."""
 
     message: str
     below: tuple[str, ...] = ()
@@ -233,32 +233,32 @@ def _engines(key: str, value: object) -> _Read:
     if complaints:
         trap = ": TOML reads 4.10 as 4.1" if isinstance(value, float) else ""
         return None, [_Complaint(f'`{key}` must be a string such as "4.10", or a list of them{trap}')]
-    known = tuple(version for version in wanted or () if version in _NAMED or is_engine(version))
+    valid = tuple(version for version in wanted or () if version in _NAMED or is_engine(version))
     complaints = [
-        _Complaint(f"unknown engine version `{version}`{_meant_engine(version)} {_CHECKED}", value=version)
+        _Complaint(f"unknown engine version `{version}`{_engine_suggestion(version)} {_CHECKED}", value=version)
         for version in wanted
-        if version not in known
+        if version not in valid
     ]
     if not wanted:
         complaints = [_Complaint(f"`{key}` must name at least one version; {_CHECKED}")]
-    return tuple(sorted(set(known), key=_as_numbers)) or None, complaints
+    return tuple(sorted(set(valid), key=_as_numbers)) or None, complaints
 
 
 def _as_numbers(named: str) -> tuple[int, ...]:
     return numbers(PRODUCTS.get(named) or named)
 
 
-def _meant_engine(version: str) -> str:
+def _engine_suggestion(version: str) -> str:
     """A similar version with the same major number: `3.8` is not a misspelt 4.8."""
     if not version[:1].isdecimal():
-        return _meant(version, PRODUCTS) or ";"
-    return (_meant(version, VERSIONS) if version.startswith("4.") else "") or ";"
+        return _suggestion(version, PRODUCTS) or ";"
+    return (_suggestion(version, VERSIONS) if version.startswith("4.") else "") or ";"
 
 
 def is_engine(version: str) -> bool:
     """Whether it is a release line such as 4.9, also one between those that the catalog was tested with."""
-    known = _RELEASE_LINE.fullmatch(version) is not None
-    return known and at_least(version, VERSIONS[0]) and at_least(VERSIONS[-1], version)
+    is_line = _RELEASE_LINE.fullmatch(version) is not None
+    return is_line and at_least(version, VERSIONS[0]) and at_least(VERSIONS[-1], version)
 
 
 def _qualities(key: str, value: object) -> _Read:
@@ -266,7 +266,7 @@ def _qualities(key: str, value: object) -> _Read:
 
     if value in (*EDITIONS,):
         return value, []
-    meant = _meant(value, EDITIONS) if isinstance(value, str) else ""
+    meant = _suggestion(value, EDITIONS) if isinstance(value, str) else ""
     return None, [_Complaint(f"`{key}` must be {' or '.join(map(_quoted, EDITIONS))}{meant}")]
 
 
@@ -298,7 +298,7 @@ def _severities(key: str, value: object) -> _Read:
             complaints.append(_Complaint(message, (name,)))
         elif not isinstance(word, str) or word not in SEVERITIES:
             words = ", ".join(map(_quoted, SEVERITIES))
-            meant = _meant(word, SEVERITIES) if isinstance(word, str) else ""
+            meant = _suggestion(word, SEVERITIES) if isinstance(word, str) else ""
             complaints.append(_Complaint(f"`{key}.{name}` must be one of {words}{meant}", (name,)))
         else:
             severities.append((name, SEVERITIES[word]))
@@ -311,9 +311,9 @@ def _overrides(key: str, value: object) -> _Read:
     overrides: list[Override] = []
     complaints: list[_Complaint] = []
     for number, table in enumerate(value):
-        override, found = _override(key, table)
+        override, inner = _override(key, table)
         overrides += [override] if override is not None else []
-        complaints += [_Complaint(each.message, (f"[{number}]", *each.below), each.value) for each in found]
+        complaints += [_below(complaint, f"[{number}]") for complaint in inner]
     return tuple(overrides), complaints
 
 
@@ -322,31 +322,36 @@ def _override(key: str, table: dict[str, object]) -> tuple[Override | None, list
     if not complaints and ("" in include or not include):
         missing = "must have at least one pattern, none of them empty"
         include, complaints = None, [_Complaint(f"`{key}.include` {missing}")]
-    complaints = [_Complaint(each.message, ("include",)) for each in complaints]
-    ignored, found = _rule_names(f"{key}.ignore", table.get("ignore", []))
-    complaints += [_Complaint(each.message, ("ignore", *each.below), each.value) for each in found]
-    severities, found = _severities(f"{key}.rules", table.get("rules", {}))
-    complaints += [_Complaint(each.message, ("rules", *each.below), each.value) for each in found]
+    complaints = [_below(complaint, "include") for complaint in complaints]
+    ignored, inner = _rule_names(f"{key}.ignore", table.get("ignore", []))
+    complaints += [_below(complaint, "ignore") for complaint in inner]
+    severities, inner = _severities(f"{key}.rules", table.get("rules", {}))
+    complaints += [_below(complaint, "rules") for complaint in inner]
     for name in table:
         if name not in OVERRIDE_KEYS:
-            complaints.append(_Complaint(f"unknown key `{key}.{name}`{_meant(name, OVERRIDE_KEYS)}", (name,)))
+            complaints.append(_Complaint(f"unknown key `{key}.{name}`{_suggestion(name, OVERRIDE_KEYS)}", (name,)))
     if include is None:
         return None, complaints
     return Override(include, (*((rule, None) for rule in ignored or ()), *(severities or ()))), complaints
 
 
+def _below(complaint: _Complaint, key: str) -> _Complaint:
+    """A complaint about a value that is below a key."""
+    return _Complaint(complaint.message, (key, *complaint.below), complaint.value)
+
+
 def _evidence(key: str, value: object) -> _Read:
     from btq_lang.workspace.project_evidence import read_evidence  # few projects have logs
 
-    found, complaints = read_evidence(value)
-    return found, [_Complaint(message, below) for message, below in complaints]
+    settings, complaints = read_evidence(value)
+    return settings, [_Complaint(message, below) for message, below in complaints]
 
 
 def _factories(key: str, value: object) -> _Read:
     from btq_lang.workspace.factories import read_factories  # few projects have any
 
-    found, complaints = read_factories(value)
-    return found, [_Complaint(message, below, named) for message, below, named in complaints]
+    factories, complaints = read_factories(value)
+    return factories, [_Complaint(message, below, named) for message, below, named in complaints]
 
 
 def _nodes(key: str, value: object) -> _Read:
@@ -355,7 +360,7 @@ def _nodes(key: str, value: object) -> _Read:
 
     names, complaints = _strings(key, value)
     unknown = [name for name in names or () if name not in PACKAGED and not name.endswith(CPP_SUFFIXES)]
-    complaints += [_Complaint(f"unknown nodes `{name}`{_meant(name, PACKAGED)}", value=name) for name in unknown]
+    complaints += [_Complaint(f"unknown nodes `{name}`{_suggestion(name, PACKAGED)}", value=name) for name in unknown]
     return tuple(name for name in dict.fromkeys(names or ()) if name not in unknown), complaints
 
 
@@ -418,7 +423,7 @@ _RELEASE_LINE = re.compile(r"4\.(0|[1-9][0-9]?)")
 _DIGITS = re.compile(r"\d+")
 
 
-def _meant(name: str, names: Iterable[str]) -> str:
+def _suggestion(name: str, names: Iterable[str]) -> str:
     return did_you_mean(near(name, names, 1))
 
 

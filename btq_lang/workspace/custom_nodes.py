@@ -1,4 +1,4 @@
-"""What the uses of a custom node suggest about it: its category, and its ports with directions and types.
+"""Custom nodes as their uses suggest them: their categories, and their ports with directions and types.
 
 One invariant: the result is the same for all files of a mission.
 """
@@ -69,13 +69,13 @@ def custom_nodes(workspace: Workspace, path: str) -> Mapping[str, CustomNode]:
 
 def _custom_nodes(store: Store[Workspace], mission: str) -> dict[str, CustomNode]:
     workspace = store.ask(inputs.everything, mission)
-    found: dict[str, list[tuple[Node, str | None]]] = {}
+    uses_by_name: dict[str, list[tuple[Node, str | None]]] = {}
     for path in sorted(workspace.linked(mission)):
         for node in _nodes(workspace.files[path]):
             name, category = _named(workspace, path, node)
             if name and name not in BUILTINS:
-                found.setdefault(name, []).append((node, category))
-    return {name: CustomNode(uses) for name, uses in found.items()}
+                uses_by_name.setdefault(name, []).append((node, category))
+    return {name: CustomNode(uses) for name, uses in uses_by_name.items()}
 
 
 def custom_node(workspace: Workspace, path: str, name: str) -> CustomNode:
@@ -83,7 +83,7 @@ def custom_node(workspace: Workspace, path: str, name: str) -> CustomNode:
     uses = [
         use.node
         for other in sorted(workspace.linked(path))
-        if name in workspace.files[other].said(Kind.MODEL)
+        if name in workspace.files[other].names_used(Kind.MODEL)
         for facts in workspace.files[other].facts.values()
         for use in facts.summary.uses
         if use.node is not None and use.kind is Kind.MODEL and use.name == name

@@ -1,7 +1,7 @@
-"""What version of the engine a text is for: the one place that decides it, for every command and for editors.
+"""The version of the engine that a text is for: the one place that decides it, for every command and for editors.
 
-One invariant: what a project says counts before what a text says of itself, and what a text declares before the words
-in it; but no text is for a version that refuses its words.  Not known here: how words are found in XML
+One invariant: the project's versions count before a text's own signs, and a declaration in the text before its words;
+but no text is for a version that refuses its words.  Not known here: how words are found in XML
 (`btcpp/version3.py`), and which distribution of Nav2 a file is for.
 """
 
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 
 def written_for(project: Project, distribution: str | None, signs: Signs | None) -> tuple[str, ...]:
-    """The versions that a text is written for, oldest first; empty if nothing says so, and then it is read as one for
-    version 4.
+    """The versions that a text is written for, oldest first; empty if nothing determines them: the text is then read as
+    one for version 4.
 
     Args:
         distribution: the one of Nav2 whose nodes the project names for the text.

@@ -14,6 +14,7 @@ match, which the loader fills in, and what is in them.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from operator import attrgetter
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.nav2 import PACKAGED
@@ -21,6 +22,7 @@ from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.util.record import Record, replace
 from btq_lang.util.spelling import did_you_mean, near
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.catalog.nav2.navigator import OutsideEntry
@@ -30,7 +32,7 @@ Complaint: TypeAlias = tuple[str, tuple[str, ...], str | None]
 
 
 class Factory(Record):
-    """What one program registers.
+    """The files and nodes that one program registers.
 
     Attributes:
         name: as messages call it.
@@ -42,8 +44,8 @@ class Factory(Record):
         files: those of `load`, in order, each once.
         node_files: those of `nodes` that are not in `files`.
         cpp_files: the C++ sources of `nodes`.
-        lost: the patterns that match no file, so that it is not known what the program registers.
-        has_gaps: whether bt_navigator registers files that are not here; what is wrong is said of its parameter file.
+        lost: the patterns that match no file: what the program registers is then unknown in part.
+        has_gaps: whether bt_navigator registers files that are not here; its parameter file has the diagnostics.
         entries: of the root blackboard, which the program sets or reads, if it is known to be bt_navigator.
         goals: what is wrong with trees that nodes name for goals, by this name.
     """
@@ -69,55 +71,64 @@ def read_factories(tables: object) -> tuple[tuple[Factory, ...], list[Complaint]
     complaints: list[Complaint] = []
     factories: list[Factory] = []
     for number, table in enumerate(tables):
-        at = (f"[{number}]",)
+        place = (f"[{number}]",)
         for key in table:
             if key not in KEYS:
-                complaints.append((f"unknown key `factory.{key}`{did_you_mean(near(key, KEYS, 1))}", (*at, key), None))
+                complaints.append(
+                    (f"unknown key `factory.{key}`{did_you_mean(near(key, KEYS, 1))}", (*place, key), None)
+                )
         values = {key: _strings(table[key], key) if key in table else () for key in KEYS}
         for key, value in values.items():
             if value is None:
                 form = _FORMS.get(key, "a list of strings")
-                complaints.append((f"`factory.{key}` must be {form}", (*at, key), None))
+                complaints.append((f"`factory.{key}` must be {form}", (*place, key), None))
         for source in values["nodes"] or ():
             if _is_name(source) and source not in PACKAGED:
                 message = f"unknown nodes `{source}`{did_you_mean(near(source, PACKAGED, 1))}"
-                complaints.append((message, (*at, "nodes"), source))
+                complaints.append((message, (*place, "nodes"), source))
         values["nodes"] = tuple(each for each in values["nodes"] or () if not _is_name(each) or each in PACKAGED)
         name = values["name"][0] if values["name"] else ""
         if values["name"] is not None and not name:
-            complaints.append(("a factory needs a `name`", at, None))
+            complaints.append(("a factory needs a `name`", place, None))
         elif any(name == each.name for each in factories):
-            complaints.append((f"duplicate factory `{name}`", (*at, "name"), name))
+            complaints.append((f"duplicate factory `{name}`", (*place, "name"), name))
         elif name:
             nav2 = (values["nav2"] or ("",))[0]
             factories.append(Factory(name, values["load"] or (), values["main"] or (), values["nodes"] or (), nav2))
     return tuple(factories), complaints
 
 
-def merged(found: Sequence[tuple[Factory | None, tuple[Diagnostic, ...]]]) -> tuple[Diagnostic, ...]:
+def merged(results: Sequence[tuple[Factory | None, tuple[Diagnostic, ...]]]) -> tuple[Diagnostic, ...]:
     """The diagnostics of a file from each of its factories, in order; those that only some have name them.
 
     What is an error in one is not repeated as a warning of another, which does not create the tree.
     """
-    if len(found) == 1:
-        return found[0][1]
-    of: dict[Diagnostic, list[str]] = {}
-    for factory, diagnostics in found:
-        for each in dict.fromkeys(diagnostics):
-            of.setdefault(each, []).append(f"`{factory.name}`" if factory is not None else "")
-    errors = {(each.rule, each.span, each.message) for each in of if each.effective_severity is Severity.ERROR}
+    if len(results) == 1:
+        return results[0][1]
+    factories_of: dict[Diagnostic, list[str]] = {}
+    for factory, diagnostics in results:
+        for diagnostic in dict.fromkeys(diagnostics):
+            factories_of.setdefault(diagnostic, []).append(f"`{factory.name}`" if factory is not None else "")
+    errors = {_identity(each) for each in factories_of if each.effective_severity is Severity.ERROR}
     kept = [
-        each
-        for each in of
-        if each.effective_severity is Severity.ERROR or (each.rule, each.span, each.message) not in errors
+        diagnostic
+        for diagnostic in factories_of
+        if diagnostic.effective_severity is Severity.ERROR or _identity(diagnostic) not in errors
     ]
     return tuple(
-        _naming(each, of[each]) if len(of[each]) < len(found) else each
-        for each in sorted(kept, key=lambda each: each.span)
+        _with_factories(diagnostic, factories_of[diagnostic])
+        if len(factories_of[diagnostic]) < len(results)
+        else diagnostic
+        for diagnostic in sorted(kept, key=attrgetter("span"))
     )
 
 
-def _naming(diagnostic: Diagnostic, factories: list[str]) -> Diagnostic:
+def _identity(diagnostic: Diagnostic) -> tuple[str, Span, str]:
+    """The identity of a diagnostic, whatever its severity."""
+    return diagnostic.rule, diagnostic.span, diagnostic.message
+
+
+def _with_factories(diagnostic: Diagnostic, factories: list[str]) -> Diagnostic:
     note = f"only in the factor{'y' if len(factories) == 1 else 'ies'} {', '.join(factories)}"
     return replace(diagnostic, notes=(*diagnostic.notes, note))
 

@@ -18,7 +18,7 @@ from btq_lang.parser import Parsed, parse, reparse
 from btq_lang.syntax.tree import Entry, Include, Item
 from btq_lang.util.record import Record
 from btq_lang.util.text import LineIndex, Placed, Span, changed
-from btq_lang.workspace.item_index import Facts, Name, NameCounts, Names, Said
+from btq_lang.workspace.item_index import Facts, Name, NameCounts, Names, NameSort
 from btq_lang.workspace.symbols import Symbol, Use
 
 if TYPE_CHECKING:
@@ -41,8 +41,9 @@ class File:
 
     Attributes:
         text: in this language, whatever the language of the file on the disk.
-        origin: that file, if it is in another language.
-        last_read: the file before the edits since which it cannot be read, and so has no text.
+        origin: that file, if it is in another language; outside of the workspace it is asked through the properties
+            below (`is_foreign`, `source`, `on_disk`, …).
+        last_read: the last file that could be read, if an edit since then has made this one unreadable: it has no text.
     """
 
     last_read: File | None = None
@@ -53,13 +54,13 @@ class File:
         self.origin = origin
         self._of_type: dict[type, tuple[Any, ...]] = {}
         self._first_users: dict[Kind, dict[str, Facts]] = {}
-        self._tallies: dict[Said, NameCounts] = {}
+        self._tallies: dict[NameSort, NameCounts] = {}
 
     def edited(self, text: str, origin: Origin | None = None) -> File:
         """The file after an edit, which shares what the edit does not touch.
 
         Args:
-            origin: the file in another language after the edit, of which `text` is the translation.
+            origin: the file in another language after the edit; `text` is its translation.
         """
         if text and self.last_read is not None:
             return self.last_read.edited(text, origin)
@@ -69,14 +70,14 @@ class File:
         if "parsed" in self.__dict__ and self._is_read and after._is_read:
             change = changed(self.text, text)
             after.parsed = _sharing(self.parsed, reparse(self.parsed, text, change), change)
-            known = self.facts
+            facts_before = self.facts
             items = [entry.item for entry in after.parsed.entries]
-            facts = after.facts = {id(item): known.get(id(item)) or Facts(item) for item in items}
-            gone = [each for item, each in known.items() if item not in facts]
-            come = [each for item, each in facts.items() if item not in known]
-            after._tallies = {of: tally.edited(gone, come) for of, tally in self._tallies.items()}
-            touched = {type(each.item) for each in (*gone, *come)}
-            after._of_type = {kind: each for kind, each in self._of_type.items() if kind not in touched}
+            facts_after = after.facts = {id(item): facts_before.get(id(item)) or Facts(item) for item in items}
+            gone = [item_facts for item, item_facts in facts_before.items() if item not in facts_after]
+            come = [item_facts for item, item_facts in facts_after.items() if item not in facts_before]
+            after._tallies = {sort: tally.edited(gone, come) for sort, tally in self._tallies.items()}
+            touched = {type(item_facts.item) for item_facts in (*gone, *come)}
+            after._of_type = {kind: items for kind, items in self._of_type.items() if kind not in touched}
             if "includes" in self.__dict__ and Include not in touched:
                 after.includes = self.includes
             if change is not None and not self.__dict__.get("has_directives", True):
@@ -95,9 +96,11 @@ class File:
                 is_in_line = _LINE_ENDS.isdisjoint((*self.text[change.start : change.end], *replacing))
                 if is_in_line and after.lines.line_count == self.lines.line_count:  # no \r has been joined to a \n
                     places = after.item_places = self.item_places.copy()
-                    for each in gone:
-                        del places[id(each.item)]
-                    places.update((id(each.item), after.lines.place(after.start_of(each.item))) for each in come)
+                    for item_facts in gone:
+                        del places[id(item_facts.item)]
+                    places.update(
+                        (id(item_facts.item), after.lines.place(after.start_of(item_facts.item))) for item_facts in come
+                    )
                     places.update(after._places_on_line(change.start))
         return after
 
@@ -108,8 +111,8 @@ class File:
 
     def let_go(self) -> None:
         """Release all but the text and its names; the rest is recomputed on demand."""
-        kept = {known: getattr(self, known) for known in _KEPT}
-        kept.update({known: self.__dict__[known] for known in _KEPT_IF_ASKED if known in self.__dict__})
+        kept = {attribute: getattr(self, attribute) for attribute in _KEPT}
+        kept.update({attribute: self.__dict__[attribute] for attribute in _KEPT_IF_ASKED if attribute in self.__dict__})
         self.__dict__ = {**File(self.path, self.text, self.origin).__dict__, **kept}
 
     @cached_property
@@ -127,17 +130,41 @@ class File:
         return self.origin is None and not is_xml(self.path, self.text)
 
     @property
+    def is_foreign(self) -> bool:
+        """Whether it is written in another language, XML or C++; the text is its translation."""
+        return self.origin is not None
+
+    @property
+    def is_xml(self) -> bool:
+        """Whether it is XML that the engine loads as it is, without a build."""
+        return self.origin is not None and self.origin.nodes is None
+
+    @property
     def source(self) -> str:
         """The text on the disk, which users see."""
         return self.origin.text if self.origin else self.text
+
+    @property
+    def source_diagnostics(self) -> tuple[Diagnostic, ...]:
+        """The diagnostics of the language that it is written in; spans count from its start on the disk."""
+        return self.parsed.diagnostics if self.origin is None else self.origin.diagnostics
+
+    @property
+    def places(self) -> OriginMap | None:
+        """Maps the text to the file on the disk; None if they are the same."""
+        return None if self.origin is None else self.origin.places
 
     def on_disk(self, span: Span) -> Span:
         """The span on the disk for one of the text."""
         return span if self.origin is None else self.origin.places.origin(span)
 
-    def from_disk(self, offset: int) -> int | None:
-        """The offset in the text for one on the disk; None: the text has no such place."""
-        return offset if self.origin is None else self.origin.places.made(offset)
+    def from_disk(self, offset: int, exact: bool = True) -> int | None:
+        """The offset in the text for one on the disk; None: the text has no such place.
+
+        Args:
+            exact: only in parts that are the same in both texts; of others the offset is their start.
+        """
+        return offset if self.origin is None else self.origin.places.made(offset, exact)
 
     def after_models(self, span: Span) -> Span:
         """For C++, the span after the end of the text that is `span` on the disk: there the text is the C++ itself."""
@@ -145,17 +172,22 @@ class File:
 
     @property
     def is_cpp(self) -> bool:
-        """Whether it is C++, of which the text has the models of the nodes that it registers."""
+        """Whether it is C++; the text has the models of the nodes that it registers."""
         return self.origin is not None and self.origin.nodes is not None
 
     @property
     def cpp_nodes(self) -> Mapping[str, CppNode]:
-        """The nodes that it registers, by ID, if it is C++; empty for any other file."""
+        """The nodes that it registers, by ID; none unless it is C++."""
         return (self.origin.nodes if self.origin is not None else None) or {}
 
     @property
+    def signs(self) -> Signs | None:
+        """The signs of its version of the engine; None unless it is XML."""
+        return None if self.origin is None else self.origin.signs
+
+    @property
     def is_understood(self) -> bool:
-        """Whether a name that is not in this file's tree is not in the file."""
+        """Whether all of it could be read: a name that is not in its tree is then not in the file."""
         return self.origin.is_complete if self.origin else self.is_btq
 
     @cached_property
@@ -174,7 +206,7 @@ class File:
 
     @cached_property
     def defined(self) -> tuple[Definition, ...]:
-        """What the file itself defines, in the order of its text."""
+        """The definitions in the file itself, in the order of its text."""
         return tuple(
             Definition(self.path, entry, symbol)
             for entry in self.parsed.entries
@@ -183,7 +215,7 @@ class File:
 
     @property
     def uses(self) -> Iterator[tuple[Entry, Use]]:
-        """What the file refers to, each with the entry that does, in the order of its text."""
+        """The uses in the file, each with its entry, in the order of its text."""
         return ((entry, use) for entry in self.parsed.entries for use in self.facts[id(entry.item)].summary.uses)
 
     def of_type(self, kind: type[Kept]) -> tuple[Kept, ...]:
@@ -195,17 +227,17 @@ class File:
     def first_users(self, kind: Kind) -> Mapping[str, Facts]:
         """The names of a kind that the file refers to, each with the first item that does."""
         if kind not in self._first_users:
-            found = self._first_users[kind] = {}
-            for each in self.facts.values():
-                for name in each.used.get(kind, ()):
-                    found.setdefault(name, each)
+            users = self._first_users[kind] = {}
+            for facts in self.facts.values():
+                for name in facts.used.get(kind, ()):
+                    users.setdefault(name, facts)
         return self._first_users[kind]
 
-    def said(self, of: Said) -> frozenset[str]:
+    def names_used(self, sort: NameSort) -> frozenset[str]:
         """The names of a kind that the file's items refer to, or those that their facts have of another sort."""
-        if of not in self._tallies:
-            self._tallies[of] = NameCounts.of(self.facts.values(), of)
-        return self._tallies[of].names
+        if sort not in self._tallies:
+            self._tallies[sort] = NameCounts.of(self.facts.values(), sort)
+        return self._tallies[sort].names
 
     @cached_property
     def names(self) -> Names:
@@ -214,8 +246,8 @@ class File:
 
     def definitions(self, kind: Kind, name: str) -> tuple[Definition, ...]:
         """The definitions of a name in this file, in the order of its text."""
-        found = self.names.found.get((kind, name), ())
-        return tuple([Definition(self.path, self._entries[id(item)], symbol) for item, symbol in found])
+        definers = self.names.definitions.get((kind, name), ())
+        return tuple([Definition(self.path, self._entries[id(item)], symbol) for item, symbol in definers])
 
     def defines(self, kind: Kind, name: str) -> bool:
         """Whether the file defines a name; not parsed if the text rules it out."""
@@ -238,20 +270,25 @@ class File:
 
     def mentioned(self, name: str) -> Iterator[tuple[Entry, Mention]]:
         """The references with a name, in the order of the text, found lazily."""
-        return ((entry, one) for entry in self._saying(name) for one in self.mentions_of(entry) if one.name == name)
+        return (
+            (entry, mention)
+            for entry in self._entries_with(name)
+            for mention in self.mentions_of(entry)
+            if mention.name == name
+        )
 
-    def _saying(self, name: str) -> Sequence[Entry]:
+    def _entries_with(self, name: str) -> Sequence[Entry]:
         """The entries that may contain a name: those with its exact text, or all if it may be written otherwise."""
         entries = self.parsed.entries
         if not name or not _NOT_AS_IT_IS.isdisjoint(name):
             return entries
-        found: list[Entry] = []
-        at = self.text.find(name)
-        while at >= 0:
-            index = bisect_right(entries, at, key=_start_of)
-            found += entries[index - 1 : index]
-            at = self.text.find(name, entries[index].start) if index < len(entries) else -1
-        return found
+        candidates: list[Entry] = []
+        offset = self.text.find(name)
+        while offset >= 0:
+            index = bisect_right(entries, offset, key=_start_of)
+            candidates += entries[index - 1 : index]
+            offset = self.text.find(name, entries[index].start) if index < len(entries) else -1
+        return candidates
 
     @cached_property
     def kinds(self) -> frozenset[tuple[str, bool]]:
@@ -264,24 +301,24 @@ class File:
 
     @cached_property
     def item_places(self) -> dict[int, tuple[int, str]]:
-        """Where each item begins, by its `id`: its line, and the text before it."""
+        """The start of each item, by its `id`: its line, and the text before it on that line."""
         place = self.lines.place
         return {id(entry.item): place(entry.start) for entry in self.parsed.entries}
 
     def _places_on_line(self, offset: int) -> dict[int, tuple[int, str]]:
-        """The same for the items that begin in the line of an offset."""
+        """As `item_places`, for the items that begin in the line of an offset."""
         place, entries = self.lines.place, self.parsed.entries
-        line, behind = place(offset)
-        found: dict[int, tuple[int, str]] = {}
-        for at in range(bisect_left(entries, offset - len(behind), key=_start_of), len(entries)):
-            begins = place(entries[at].start)
+        line, before = place(offset)
+        places: dict[int, tuple[int, str]] = {}
+        for index in range(bisect_left(entries, offset - len(before), key=_start_of), len(entries)):
+            begins = place(entries[index].start)
             if begins[0] != line:
                 break
-            found[id(entries[at].item)] = begins
-        return found
+            places[id(entries[index].item)] = begins
+        return places
 
     def start_of(self, item: object) -> int:
-        """Where one of the file's items begins.
+        """The start of one of the file's items.
 
         Raises:
             KeyError: the item does not belong to this file.
@@ -329,7 +366,7 @@ class File:
 
     def names_of(self, kind: Kind) -> tuple[str, ...]:
         """The names of a kind that the file defines, in any order."""
-        return tuple([name for of, name in self.defined_names if of is kind])
+        return tuple([name for own_kind, name in self.defined_names if own_kind is kind])
 
     @cached_property
     def used_names(self) -> frozenset[Name]:
@@ -349,15 +386,17 @@ class File:
 
 
 def _sharing(before: Parsed, now: Parsed, change: Span | None) -> Parsed:
-    """The same, except that the item before the change is the old object if it was reparsed with an equal result: a
-    change in the first line of an item may touch the one before it.  All text up to the next item must be equal too, as
-    it is not if a following item has become a comment."""
+    """The new tree, but with the old object for the item before the change if it was reparsed with an equal result: a
+    change in the first line of an item may touch the one before it.  All text up to the next item must be equal too,
+    which it is not if a following item has become a comment."""
     old, new = before.entries, now.entries
-    at = bisect_right(old, change.start, key=_start_of) - 2 if change is not None else -1
-    is_first_one = 0 <= at < len(new) - 1 and new[at] is not old[at] and (at == 0 or new[at - 1] is old[at - 1])
-    if not is_first_one or new[at + 1].start != old[at + 1].start or new[at] != old[at]:
+    index = bisect_right(old, change.start, key=_start_of) - 2 if change is not None else -1
+    is_first_one = (
+        0 <= index < len(new) - 1 and new[index] is not old[index] and (index == 0 or new[index - 1] is old[index - 1])
+    )
+    if not is_first_one or new[index + 1].start != old[index + 1].start or new[index] != old[index]:
         return now  # and changed ones stay consecutive
-    return Parsed(now.text, now.maps, (*new[:at], old[at], *new[at + 1 :]), now.starts)
+    return Parsed(now.text, now.maps, (*new[:index], old[index], *new[index + 1 :]), now.starts)
 
 
 def _start_of(entry: Entry) -> int:
@@ -393,13 +432,13 @@ class Definition(Record):
 
 
 class Signs(Record):
-    """What XML says of the version that it is written for.
+    """Signs in XML of the version that it is written for.
 
     Attributes:
         format: its BTCPP_format; empty if it has none.
-        is_new: whether something in it is read by version 4 alone.
-        old: what version 4 does not read as version 3 does, as it is spelt; empty if something is new.
-        is_refused: whether version 4 refuses some of that.
+        is_new: whether it has a construct that version 4 alone reads.
+        old: the constructs, as they are spelt, that version 4 does not read as version 3 does; empty if `is_new`.
+        is_refused: whether version 4 refuses one of these.
     """
 
     format: str = ""
@@ -418,7 +457,7 @@ class Origin(Record):
         is_complete: whether all of it could be read, so that a name that is not in the file's text is not in this one.
         defines: the names of its trees and models.
         nodes: by ID, those that it registers, if it is C++; its diagnostics are then all there are.
-        signs: what it says of its version of the engine, if it is XML.
+        signs: of its version of the engine, if it is XML.
     """
 
     text: str

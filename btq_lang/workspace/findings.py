@@ -23,7 +23,7 @@ class Reported:
         items: the item, then the others that places count from, each after its file; empty if everything counts from
             the start of a file.
         fixed: the related places that do, after their files.
-        written: a cache for who writes them.
+        written: a cache for their writer.
     """
 
     __slots__ = ("diagnostics", "fixed", "items", "written")
@@ -31,12 +31,18 @@ class Reported:
     def __init__(self, diagnostics: Iterable[Diagnostic], *item: tuple[str, object]) -> None:
         """item: its file and itself."""
         self.diagnostics = in_order(diagnostics)
-        related = [each.place for one in self.diagnostics for each in one.related]
-        changed = [change.place for one in self.diagnostics for fix in one.fixes for change in fix.changes]
+        related = [each.place for diagnostic in self.diagnostics for each in diagnostic.related]
+        changed = [
+            change.place for diagnostic in self.diagnostics for fix in diagnostic.fixes for change in fix.changes
+        ]
         anchors = {id(place.anchor): place for place in (*related, *changed)}.values()
-        others = [(at.path, at.anchor) for at in anchors if at.path is not None and at.anchor is not None]
+        others = [
+            (place.path, place.anchor) for place in anchors if place.path is not None and place.anchor is not None
+        ]
         self.items = (*item, *others)
-        self.fixed = tuple([(at.path, at.span) for at in related if at.path is not None and at.anchor is None])
+        self.fixed = tuple(
+            [(place.path, place.span) for place in related if place.path is not None and place.anchor is None]
+        )
         self.written: Any = None
 
     def __eq__(self, other: object) -> bool:
@@ -57,12 +63,12 @@ class Reported:
         -1 for one that counts from the start of its file.
         """
         numbers = {id(item): number for number, (_, item) in enumerate(self.items)}
-        found: list[int] = []
-        for one in self.diagnostics:
-            places = [each.place for each in one.related]
-            own = [0 if at.path is None else -1 for at in places]
-            found += (0, *(numbers.get(id(at.anchor), number) for at, number in zip(places, own, strict=True)))
-        return found
+        indices: list[int] = []
+        for diagnostic in self.diagnostics:
+            places = [each.place for each in diagnostic.related]
+            own = [0 if place.path is None else -1 for place in places]
+            indices += (0, *(numbers.get(id(place.anchor), number) for place, number in zip(places, own, strict=True)))
+        return indices
 
     def placed(self, starts: Sequence[int]) -> list[Diagnostic]:
         """The diagnostics, with every place counted from the start of its file; `starts`: of the items."""
@@ -106,10 +112,10 @@ def _is_same(one: tuple[str, object], other: tuple[str, object]) -> bool:
     return one[0] == other[0] and one[1] is other[1]
 
 
-def _placed(one: Diagnostic, by: int, starts: dict[int, int]) -> Diagnostic:
+def _placed(diagnostic: Diagnostic, by: int, starts: dict[int, int]) -> Diagnostic:
     def absolute(place: Place) -> Place:
         if place.path is None:
             return Place(place.span.shifted(by)) if place.anchor is None else place
         return Place(place.span.shifted(starts[id(place.anchor)]), place.path) if place.anchor is not None else place
 
-    return relocated(one, one.span.shifted(by), absolute)
+    return relocated(diagnostic, diagnostic.span.shifted(by), absolute)

@@ -1,4 +1,7 @@
-"""Applying fixes: which of them can be applied together, and the resulting texts."""
+"""Applying fixes: which of them can be applied together, and the resulting texts.
+
+In a module of its own because a plain check applies none and does not import it.
+"""
 
 from __future__ import annotations
 
@@ -9,24 +12,24 @@ from btq_lang.util.text import Edit, apply_edits
 from btq_lang.workspace.workspace import Workspace
 
 
-def fixed(workspace: Workspace, found: Mapping[str, Sequence[Diagnostic]]) -> tuple[dict[str, str], int]:
+def fixed(workspace: Workspace, findings: Mapping[str, Sequence[Diagnostic]]) -> tuple[dict[str, str], int]:
     """The texts of files after their safe fixes, and the number of applied ones.
 
     Of overlapping fixes only the first is applied; a second round may apply the next.
 
     Args:
-        found: the diagnostics of each file that may be changed; a fix that would change another file is left out.
+        findings: the diagnostics of each file that may be changed; a fix that would change another file is left out.
     """
-    edits: dict[str, list[Edit]] = {path: [] for path in found}
+    edits: dict[str, list[Edit]] = {path: [] for path in findings}
     count = 0
-    for path, diagnostics in found.items():
+    for path, diagnostics in findings.items():
         for diagnostic in diagnostics:
             fix = next((fix for fix in diagnostic.fixes if fix.safe), None)
             if fix is not None and _fits(fix, path, edits):
                 count += 1
                 for change in fix.changes:
                     edits[change.place.path or path].append(Edit(change.place.span, change.text))
-    texts = {path: apply_edits(workspace.files[path].source, made) for path, made in edits.items() if made}
+    texts = {path: apply_edits(workspace.files[path].source, changes) for path, changes in edits.items() if changes}
     return texts, count
 
 

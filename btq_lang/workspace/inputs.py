@@ -1,4 +1,4 @@
-"""What queries read in the workspace: the inputs of the store (queries.py) that several packages ask for.
+"""The inputs of the query store (queries.py): what several packages read in the workspace.
 
 Each is a function of the workspace and of a *viewpoint*, which names the scope in which names are looked up: all that
 one program registers before it creates a tree.  That is a file with what it includes, named by its path; in the
@@ -44,7 +44,7 @@ Declared: TypeAlias = "tuple[str | None, NodeKind | None]"
 # May change with an edit of any file that is linked with the viewpoint by includes, or in which XML that is linked with
 # it looks up names.
 of_viewpoint = input_of(lambda viewpoint, *_: viewpoint)
-# Depends only on the items that define a name, in whatever file.
+# Depends only on the items that define a name, in any file.
 of_name = input_of(lambda viewpoint, kind, name: (kind, name))
 of_model = input_of(lambda viewpoint, name: (Kind.MODEL, name))
 # Never changes, for an edited item is a new one.
@@ -70,20 +70,20 @@ def _touched(after: Workspace, old: File, new: File) -> Iterator[Hashable]:
     for item in old.facts.keys() ^ new.facts.keys():
         for symbol in (old.facts.get(item) or new.facts[item]).summary.symbols:
             yield symbol.kind, symbol.name
-    if old.is_cpp and old.origin is not None and new.origin is not None:  # more is known of nodes than their models say
-        before, now = old.origin.nodes or {}, new.origin.nodes or {}
+    if old.is_cpp:  # more is known of nodes than their models say
+        before, now = old.cpp_nodes, new.cpp_nodes
         yield from ((Kind.MODEL, name) for name in before.keys() | now.keys() if before.get(name) != now.get(name))
 
 
 @of_project
 def project(workspace: Workspace) -> Project:
-    """What holds for all files."""
+    """The project of the files."""
     return workspace.project
 
 
 @of_project
 def factory(workspace: Workspace) -> Factory | None:
-    """Whose files these are; None: each file is a factory of its own."""
+    """The factory whose files these are; None: each file is a factory of its own."""
     return workspace.factory
 
 
@@ -98,8 +98,8 @@ def representative(workspace: Workspace) -> str | None:
 def of_scope(
     query: Callable[Concatenate[Store[Workspace], str, P], T],
 ) -> Callable[Concatenate[Store[Workspace], str, P], T]:
-    """Declare a query of which the viewpoint is nothing but its scope: in a factory, whose files all have one, it is
-    computed once."""
+    """Declare a query that depends on nothing but the scope of its viewpoint: it is computed once for a factory, whose
+    files have one scope."""
 
     @wraps(query)
     def ask(store: Store[Workspace], viewpoint: str, /, *key: P.args, **named: P.kwargs) -> T:
@@ -156,8 +156,8 @@ def main_tree(workspace: Workspace, viewpoint: str) -> Placed | None:
 @of_item
 def entry(workspace: Workspace, path: str, facts: Facts) -> Entry:
     """An item of a file with its syntax diagnostics, as it would be at the start of the file."""
-    found = workspace.files[path].entry_of(facts.item)
-    return Entry(0, found.item, found.in_root, found.diagnostics)
+    original = workspace.files[path].entry_of(facts.item)
+    return Entry(0, original.item, original.in_root, original.diagnostics)
 
 
 @of_item
@@ -168,7 +168,7 @@ def text(workspace: Workspace, path: str, facts: Facts) -> str:
 
 @of_item
 def unknown_units(workspace: Workspace, path: str, facts: Facts) -> tuple[int, ...]:
-    """Where the words of an item begin that its diagnostics call unknown units."""
+    """The starts of the words of an item that its diagnostics call unknown units."""
     problems = workspace.files[path].entry_of(facts.item).diagnostics
     return tuple(sorted([problem.span.start for problem in problems if problem.rule == "unknown-unit"]))
 
@@ -180,18 +180,18 @@ def unknown_units(workspace: Workspace, path: str, facts: Facts) -> tuple[int, .
 def definition(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Placed | None:
     """The item with the definition of a name that counts."""
     for file in workspace.scope(viewpoint).files(kind):
-        if found := file.names.found.get((kind, name)):
-            return file.path, file.facts[id(found[0][0])]
+        if definers := file.names.definitions.get((kind, name)):
+            return file.path, file.facts[id(definers[0][0])]
     return None
 
 
 @of_model
 def declared(workspace: Workspace, viewpoint: str, name: str) -> Declared:
-    """What the model of a custom node declares; nothing if it has none."""
+    """The declaration of a custom node by its model; empty if it has none."""
     scope = workspace.scope(viewpoint)
     for file in scope.files(Kind.MODEL):
-        if found := file.names.found.get((Kind.MODEL, name)):
-            model = found[0][1].target
+        if definers := file.names.definitions.get((Kind.MODEL, name)):
+            model = definers[0][1].target
             category = model.category.raw if isinstance(model, Model) else None
             return category, _of_library(scope, name) if scope.node_paths else None
     pooled = workspace.find(viewpoint, Kind.MODEL, name)
@@ -201,9 +201,9 @@ def declared(workspace: Workspace, viewpoint: str, name: str) -> Declared:
 
 
 def _of_library(scope: Scope, name: str) -> NodeKind | None:
-    """What a node does, if the model that counts is of a library that btq knows."""
-    found, distribution = scope.find(Kind.MODEL, name), distribution_among(scope.node_paths)
-    if found is None or distribution is None or found.path != FILES[distribution]:
+    """The behavior of a node, if the model that counts is of a library that btq knows."""
+    model, distribution = scope.find(Kind.MODEL, name), distribution_among(scope.node_paths)
+    if model is None or distribution is None or model.path != FILES[distribution]:
         return None
     from btq_lang.catalog.nav2.nodes import nodes_of  # few projects have these models
 
@@ -211,7 +211,7 @@ def _of_library(scope: Scope, name: str) -> NodeKind | None:
 
 
 def symbol(facts: Facts, kind: Kind, name: str) -> Symbol:
-    """How an item defines a name."""
+    """The symbol with which an item defines a name."""
     return next(each for each in facts.summary.symbols if each.kind is kind and each.name == name)
 
 
@@ -224,9 +224,11 @@ def names(workspace: Workspace, viewpoint: str, kind: Kind) -> tuple[str, ...]:
 @of_viewpoint
 def claiming(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
     """The requirements in scope whose claims may name their own subjects, in the order of their definitions."""
-    found: frozenset[str] = frozenset().union(*[file.said("claiming") for file in _files(workspace, viewpoint)])
-    names = workspace.scope(viewpoint).names(Kind.REQUIREMENT) if found else ()
-    return tuple([name for name in names if name in found])
+    claimers: frozenset[str] = frozenset().union(
+        *[file.names_used("claiming") for file in _files(workspace, viewpoint)]
+    )
+    names = workspace.scope(viewpoint).names(Kind.REQUIREMENT) if claimers else ()
+    return tuple([name for name in names if name in claimers])
 
 
 @of_viewpoint
@@ -234,7 +236,7 @@ def asked_for(workspace: Workspace, viewpoint: str) -> frozenset[str]:
     """The names in all clauses in scope, and those by which `apply` selects nodes."""
     asked: set[str] = set()
     for file in _files(workspace, viewpoint):
-        asked |= file.said("asked_for")
+        asked |= file.names_used("asked_for")
         for apply in file.of_type(Apply):
             for selector in (*apply.targets, *apply.exceptions):
                 words = selector.path.names if selector.path is not None else ()
@@ -274,8 +276,8 @@ def _files(workspace: Workspace, viewpoint: str) -> Iterator[File]:
 
 
 def _items(workspace: Workspace, viewpoint: str, *kinds: type[Item]) -> tuple[Placed, ...]:
-    found: list[Placed] = []
+    placed: list[Placed] = []
     for file in _files(workspace, viewpoint):
         if any(map(file.of_type, kinds)):
-            found += [(file.path, facts) for facts in file.facts.values() if type(facts.item) in kinds]
-    return tuple(found)
+            placed += [(file.path, facts) for facts in file.facts.values() if type(facts.item) in kinds]
+    return tuple(placed)

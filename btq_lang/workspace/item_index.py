@@ -19,11 +19,11 @@ from btq_lang.workspace.symbols import Summary, Symbol, asked_for, claiming
 
 Name: TypeAlias = tuple[Kind, str]
 # The names of a kind that an item refers to, or the property of its facts with other names.
-Said: TypeAlias = Kind | Literal["asked_for", "claiming", "node_names", "runs"]
+NameSort: TypeAlias = Kind | Literal["asked_for", "claiming", "node_names", "runs"]
 
 
 class Facts:
-    """What follows from an item alone: computed on demand, and valid as long as the item exists."""
+    """The facts of an item: they follow from it alone, are computed on demand, and are valid as long as it exists."""
 
     def __init__(self, item: Item) -> None:
         self.item = item
@@ -55,14 +55,14 @@ class Facts:
     @cached_property
     def used(self) -> Mapping[Kind, frozenset[str]]:
         """The names that it refers to, by their kind."""
-        found: dict[Kind, set[str]] = {}
+        names_by_kind: dict[Kind, set[str]] = {}
         for use in self.summary.uses:
-            found.setdefault(use.kind, set()).add(use.name)
-        return {kind: frozenset(names) for kind, names in found.items()}
+            names_by_kind.setdefault(use.kind, set()).add(use.name)
+        return {kind: frozenset(names) for kind, names in names_by_kind.items()}
 
-    def names_of(self, of: Said) -> frozenset[str]:
+    def names_used(self, sort: NameSort) -> frozenset[str]:
         """The names of a kind that it refers to, or the value of the property with this name."""
-        names: frozenset[str] = self.used.get(of, frozenset()) if isinstance(of, Kind) else getattr(self, of)
+        names: frozenset[str] = self.used.get(sort, frozenset()) if isinstance(sort, Kind) else getattr(self, sort)
         return names
 
     @cached_property
@@ -84,24 +84,24 @@ class Facts:
 class NameCounts:
     """For each of some names, the number of a file's items that have it."""
 
-    def __init__(self, of: Said, counts: dict[str, int]) -> None:
-        self._of = of
+    def __init__(self, sort: NameSort, counts: dict[str, int]) -> None:
+        self._sort = sort
         self._counts = counts
 
     @classmethod
-    def of(cls, items: Iterable[Facts], of: Said) -> NameCounts:
+    def of(cls, items: Iterable[Facts], sort: NameSort) -> NameCounts:
         """A tally of the names of a kind that items use, or of another set of names in their facts."""
-        names = [each.names_of(of) for each in items if type(each.item) not in _SAYING_NOTHING]
+        names = [each.names_used(sort) for each in items if type(each.item) not in _USING_NOTHING]
         counts: dict[str, int] = {}
         for name in chain.from_iterable(names):
             counts[name] = counts.get(name, 0) + 1
-        return cls(of, counts)
+        return cls(sort, counts)
 
     def edited(self, gone: Iterable[Facts], come: Iterable[Facts]) -> NameCounts:
         """The tally after an edit that replaced some items; the same object if it is equal."""
         changes: dict[str, int] = {}
         for facts, change in (*((each, 1) for each in come), *((each, -1) for each in gone)):
-            for name in facts.names_of(self._of):
+            for name in facts.names_used(self._sort):
                 changes[name] = changes.get(name, 0) + change
         if not any(changes.values()):
             return self
@@ -110,63 +110,67 @@ class NameCounts:
             counts[name] = counts.get(name, 0) + change
             if not counts[name]:
                 del counts[name]
-        return NameCounts(self._of, counts)
+        return NameCounts(self._sort, counts)
 
     @cached_property
     def names(self) -> frozenset[str]:
         return frozenset(self._counts)
 
 
-_SAYING_NOTHING = (Model, Signal)  # most other items are of these types
+_USING_NOTHING = (Model, Signal)  # most other items are of these types
 
 
 class Names:
     """The names that a file defines, each with the items and symbols that define it, in the order of the text."""
 
-    def __init__(self, found: dict[Name, list[tuple[Item, Symbol]]]) -> None:
-        self.found = found
+    def __init__(self, definitions: dict[Name, list[tuple[Item, Symbol]]]) -> None:
+        self.definitions = definitions
 
     @classmethod
     def of(cls, facts: Iterable[Facts]) -> Names:
-        found: dict[Name, list[tuple[Item, Symbol]]] = {}
-        for each in facts:
-            for symbol in each.summary.symbols:
-                found.setdefault((symbol.kind, symbol.name), []).append((each.item, symbol))
-        return cls(found)
+        definitions: dict[Name, list[tuple[Item, Symbol]]] = {}
+        for item_facts in facts:
+            for symbol in item_facts.summary.symbols:
+                definitions.setdefault((symbol.kind, symbol.name), []).append((item_facts.item, symbol))
+        return cls(definitions)
 
     def edited(self, gone: Iterable[Facts], come: Iterable[Facts]) -> Names | None:
         """The names after an edit that replaced some items; None if they must be recomputed: a name has several
         definitions, or the position of the new ones is unclear, for instance because they are in several places."""
         before = [(symbol.kind, symbol.name) for each in gone for symbol in each.summary.symbols]
-        now = [((one.kind, one.name), [(each.item, one)]) for each in come for one in each.summary.symbols]
+        now = [((symbol.kind, symbol.name), [(each.item, symbol)]) for each in come for symbol in each.summary.symbols]
         added = dict(now)
-        if any(len(self.found[name]) > 1 for name in before) or len(added) < len(now):
+        if any(len(self.definitions[name]) > 1 for name in before) or len(added) < len(now):
             return None
         if before == [*added]:
-            after = Names({**self.found, **added})
-            after.__dict__.update({known: names for known, names in self.__dict__.items() if known != "found"})
+            after = Names({**self.definitions, **added})
+            after.__dict__.update({name: value for name, value in self.__dict__.items() if name != "definitions"})
             return after
-        known, names = [*self.found.items()], [*self.found]
-        at = names.index(before[0]) if before else 0
-        if not before or names[at : at + len(before)] != before or added.keys() - before & self.found.keys():
+        defined, names = [*self.definitions.items()], [*self.definitions]
+        index = names.index(before[0]) if before else 0
+        if (
+            not before
+            or names[index : index + len(before)] != before
+            or added.keys() - before & self.definitions.keys()
+        ):
             return None
-        after = Names(dict([*known[:at], *now, *known[at + len(before) :]]))
+        after = Names(dict([*defined[:index], *now, *defined[index + len(before) :]]))
         if "by_kind" in self.__dict__:
             after.by_kind = self.by_kind | after._by_kind({kind for kind, _ in (*before, *added)})
         return after
 
     @cached_property
     def all(self) -> frozenset[Name]:
-        return frozenset(self.found)
+        return frozenset(self.definitions)
 
     @cached_property
     def by_kind(self) -> dict[Kind, tuple[str, ...]]:
         return self._by_kind(Kind)
 
     def _by_kind(self, kinds: Iterable[Kind]) -> dict[Kind, tuple[str, ...]]:
-        return {kind: tuple([name for of, name in self.found if of is kind]) for kind in kinds}
+        return {kind: tuple([name for own_kind, name in self.definitions if own_kind is kind]) for kind in kinds}
 
     @cached_property
     def repeated(self) -> frozenset[Name]:
-        """Those with several definitions."""
-        return frozenset([name for name, found in self.found.items() if len(found) > 1])
+        """The names with several definitions."""
+        return frozenset([name for name, definers in self.definitions.items() if len(definers) > 1])

@@ -78,34 +78,34 @@ class LoadedFiles(Record):
     problems: tuple[LoadProblem, ...] = ()
 
 
-def find_project(start: str, known: Mapping[str, str] | None = None) -> FoundProject:
+def find_project(start: str, overlay: Mapping[str, str] | None = None) -> FoundProject:
     """The project of a file or folder: the nearest folder above with a btq.toml, or a pyproject.toml with `[tool.btq]`.
 
     If a folder has both, btq.toml counts.
 
     Args:
-        known: texts that replace those on the disk, by path.
+        overlay: texts that replace those on the disk, by path.
     """
-    known = known or {}
+    overlay = overlay or {}
     if _project_file:
-        return _project_in(_project_file, absolute("."), known)
+        return _project_in(_project_file, absolute("."), overlay)
     start = absolute(start)
     folder = start if os.path.isdir(start) else os.path.dirname(start)
     for root in _upwards(folder):
         for kind in PROJECT_FILES:
             path = absolute(os.path.join(root, kind))
-            if path not in known and not os.path.exists(path):  # a folder of that name is a mistake worth reporting
+            if path not in overlay and not os.path.exists(path):  # a folder of that name is a mistake worth reporting
                 continue
-            if kind == "pyproject.toml" and not has_btq_table(known.get(path) or read(path)[0] or ""):
+            if kind == "pyproject.toml" and not has_btq_table(overlay.get(path) or read(path)[0] or ""):
                 continue
-            return _project_in(path, root, known)
+            return _project_in(path, root, overlay)
     return FoundProject(Project(folder), None)
 
 
-def _project_in(path: str, root: str, known: Mapping[str, str]) -> FoundProject:
-    text, problem = (known[path], None) if path in known else read(path)
+def _project_in(path: str, root: str, overlay: Mapping[str, str]) -> FoundProject:
+    text, problem = (overlay[path], None) if path in overlay else read(path)
     project, problems = parse_project(text or "", "pyproject.toml" if keys_above(path) else "btq.toml", root)
-    reported = tuple(LoadProblem(path, found.message, found.position) for found in problems)
+    reported = tuple(LoadProblem(path, complaint.message, complaint.position) for complaint in problems)
     lost = tuple(folder for folder in project.include_paths if not os.path.isdir(folder))
     return FoundProject(replace(project, lost_paths=lost), path, (problem, *reported) if problem else reported)
 
@@ -124,16 +124,16 @@ def matching(folder: str, pattern: str) -> tuple[str, ...]:
     """The files that a pattern below a folder matches, sorted."""
     from glob import glob  # few projects name files by patterns
 
-    found = glob(pattern, root_dir=folder, recursive=True)
-    paths = sorted(absolute(os.path.join(folder, each)) for each in found)
+    names = glob(pattern, root_dir=folder, recursive=True)
+    paths = sorted(absolute(os.path.join(folder, each)) for each in names)
     return tuple(path for path in paths if os.path.isfile(path))
 
 
 def package_folder(name: str, start: str) -> str | None:
     """The folder of a ROS package: in the workspace around a folder, else where AMENT_PREFIX_PATH says."""
     for path in collect((_workspace_of(start),), Project(), ("package.xml",))[0]:
-        found = _PACKAGE_NAME.search(read(path)[0] or "") if path.endswith("/package.xml") else None
-        if found is not None and found[1] == name:
+        match = _PACKAGE_NAME.search(read(path)[0] or "") if path.endswith("/package.xml") else None
+        if match is not None and match[1] == name:
             return os.path.dirname(path)
     for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep):
         share = absolute(os.path.join(prefix, "share", name))
@@ -158,16 +158,16 @@ def load(
     paths: Iterable[str],
     project: Project,
     includes_of: Callable[[str, str], Iterable[str]],
-    known: Mapping[str, str] | None = None,
+    overlay: Mapping[str, str] | None = None,
 ) -> LoadedFiles:
     """Read files and folders, and all that the files include, directly or not.
 
     Args:
         paths: as for `collect`.
         includes_of: the include strings of a file, from its path and its text.
-        known: texts from elsewhere (standard input), by path: they are given files that are not read from the disk.
+        overlay: texts from elsewhere (standard input), by path: they are given files that are not read from the disk.
     """
-    given, unreachable = collect(paths, project)
+    named, unreachable = collect(paths, project)
     problems = list(unreachable)
     texts: dict[str, str] = {}
     damaged: list[str] = []
@@ -181,8 +181,8 @@ def load(
             damaged.extend([path] if problem else [])
         return text is not None
 
-    texts.update(known or {})
-    readable = (*texts, *(path for path in given if path not in texts and add(path)))
+    texts.update(overlay or {})
+    readable = (*texts, *(path for path in named if path not in texts and add(path)))
     waiting = list(readable)
     for path in waiting:
         for include in includes_of(path, texts[path]):
@@ -273,8 +273,10 @@ def decoded(path: str, data: bytes) -> tuple[str | None, LoadProblem | None]:
         text = data.decode("utf-8")
     except UnicodeDecodeError as error:
         before = data[: error.start].decode("utf-8").removeprefix(_BOM)
-        found = "this is UTF-16; save it as UTF-8" if is_utf16 else f"this is not UTF-8: byte 0x{data[error.start]:02x}"
-        problem = LoadProblem(path, found, LineIndex(before).position(len(before)))
+        message = (
+            "this is UTF-16; save it as UTF-8" if is_utf16 else f"this is not UTF-8: byte 0x{data[error.start]:02x}"
+        )
+        problem = LoadProblem(path, message, LineIndex(before).position(len(before)))
         text = data.decode("utf-16" if is_utf16 else "utf-8", "replace")
     return text.removeprefix(_BOM), problem
 
@@ -346,8 +348,8 @@ def use_project_file(path: str | None) -> None:
 
 def shown(path: str) -> str:
     """An absolute path for display: relative to the working folder if it is inside it."""
-    here = (_folder or absolute(".")).rstrip("/") + "/"
-    return path.removeprefix(here)
+    folder = (_folder or absolute(".")).rstrip("/") + "/"
+    return path.removeprefix(folder)
 
 
 _folder = ""  # else the current one
@@ -417,13 +419,13 @@ def _is_folder(entry: os.DirEntry[str]) -> bool:
 
 
 def _identity(path: str) -> tuple[int, int] | None:
-    """What all paths of a regular file have in common; None for anything else."""
+    """The identity of a regular file, the same for all its paths; None for anything else."""
     status = _status(path)
     return (status.st_dev, status.st_ino) if status is not None and stat.S_ISREG(status.st_mode) else None
 
 
 def _status(path: str) -> os.stat_result | None:
-    """What the system knows of a path; None if nothing is there."""
+    """The status of a path; None if nothing is there."""
     try:
         return os.stat(path)
     except (OSError, ValueError):  # ValueError: a NUL in the path

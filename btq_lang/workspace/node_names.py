@@ -1,4 +1,4 @@
-"""What a written node is called, and what that means.
+"""The names of written nodes, and what these mean.
 
 One invariant: besides the node, only what its model declares counts, which the caller looks up.
 """
@@ -18,7 +18,7 @@ from btq_lang.workspace.inputs import Declared
 
 
 class NodeMeaning(Record):
-    """What a node means.
+    """The meaning of a node.
 
     Attributes:
         kind: the built-in, if it is one; for an older engine's word, the one of today.
@@ -37,7 +37,7 @@ class NodeMeaning(Record):
 
 
 def meaning_of(node: Node, declared: Callable[[str], Declared]) -> NodeMeaning:
-    """What a node means.
+    """The meaning of a node.
 
     Args:
         declared: returns what a node's model in scope declares, given the node's name.
@@ -52,11 +52,13 @@ def meaning_of(node: Node, declared: Callable[[str], Declared]) -> NodeMeaning:
     if kind is not None:
         return NodeMeaning(kind, category or kind.category, behavior=kind)
     of_model, known_node = declared(name.text)
-    known = KNOWN_WORDS.get(name.text) if of_model is None and not name.quoted else None
-    if known is None:
+    old_word = KNOWN_WORDS.get(name.text) if of_model is None and not name.quoted else None
+    if old_word is None:
         return NodeMeaning(None, category or of_model, of_model, behavior=known_node)
-    kind = BUILTINS.get(known.replacement or "")
-    return NodeMeaning(kind, category or known.category, is_outdated=kind is None and category is None, behavior=kind)
+    kind = BUILTINS.get(old_word.replacement or "")
+    return NodeMeaning(
+        kind, category or old_word.category, is_outdated=kind is None and category is None, behavior=kind
+    )
 
 
 def kind_of(node: Node) -> NodeKind | None:
@@ -87,8 +89,8 @@ def tag_of(node: Node) -> str:
 def names_of(node: Node, kind: NodeKind | None, category: str | None) -> frozenset[str]:
     """Every name by which a path can name a node: its ID, all spellings of its kind, its label."""
     label = node.name.text if node.name is not None else None
-    found = _called(node.id.text if node.id is not None else None, label, kind.tag if kind else "", category)
-    return found | {legal_name(label)} if label is not None and is_placeholder(node) else found
+    names = _called(node.id.text if node.id is not None else None, label, kind.tag if kind else "", category)
+    return names | {legal_name(label)} if label is not None and is_placeholder(node) else names
 
 
 def kinds_of(node: Node, kind: NodeKind | None, category: str | None) -> frozenset[str]:

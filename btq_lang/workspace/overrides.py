@@ -35,10 +35,10 @@ def severities_at(
     root: str, severities: Severities, overrides: tuple[Override, ...], path: str
 ) -> Mapping[str, Severity | None]:
     """The severities of rules in a file."""
-    found = dict(severities)
+    effective = dict(severities)
     for number in overrides_at(root, overrides, path):
-        found.update(overrides[number].severities)
-    return found
+        effective.update(overrides[number].severities)
+    return effective
 
 
 def overrides_at(root: str, overrides: tuple[Override, ...], path: str) -> Iterator[int]:

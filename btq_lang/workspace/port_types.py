@@ -1,4 +1,4 @@
-"""The types as which the value of a SubTree's port is read in the tree below it.
+"""The types with which a tree reads the values that a SubTree passes to its ports.
 
 One invariant: the result follows the engine: an entry of the tree is read as the type of each port to which it is
 assigned, and a SubTree passes it on.  Unknown types, and those that accept anything, are left out.
@@ -41,10 +41,10 @@ def meetings(scope: Scope, version: str, tree: str, port: str) -> Iterator[Meeti
     waiting = [(tree, port)]
     seen = set(waiting)
     for name, key in waiting:
-        found = scope.find(Kind.TREE, name)
-        if found is None or not isinstance(found.symbol.target, Tree):
+        definition = scope.find(Kind.TREE, name)
+        if definition is None or not isinstance(definition.symbol.target, Tree):
             continue
-        for node in found.symbol.target.walk():
+        for node in definition.symbol.target.walk():
             is_subtree = node.category is not None and node.category.raw == "SubTree"
             for pair in node.attributes:
                 text = pair.value.text if pair.value is not None else ""
@@ -53,7 +53,7 @@ def meetings(scope: Scope, version: str, tree: str, port: str) -> Iterator[Meeti
                     continue
                 if not is_subtree:
                     if type_ := _port_type(scope, version, node, meets):
-                        yield Meeting(found, node, pair, type_)
+                        yield Meeting(definition, node, pair, type_)
                 elif (below := (node.id.text if node.id is not None else "", meets)) not in seen:
                     waiting.append(below)
                     seen.add(below)

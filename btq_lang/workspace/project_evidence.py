@@ -26,7 +26,7 @@ Complaint: TypeAlias = tuple[str, tuple[str, ...]]  # the message, and the keys 
 
 
 class SignalSource(Record):
-    """Where the samples of a signal come from: a field of a topic, or a column of a file.
+    """The source of the samples of a signal: a field of a topic, or a column of a file.
 
     Attributes:
         signal: its name.
@@ -48,7 +48,7 @@ class SignalSource(Record):
 
 
 class EvidenceSettings(Record):
-    """What a project declares about logs.
+    """The settings of a project for logs.
 
     Attributes:
         logs: patterns of paths, relative to the project file.
@@ -80,7 +80,7 @@ def read_evidence(table: object) -> tuple[EvidenceSettings, list[Complaint]]:
         signals = None
     sources = []
     for name, source in (signals or {}).items():
-        wrong = [*_wrong(name, source)]
+        wrong = [*_mistakes(name, source)]
         complaints += [(message, ("signals", name, *below)) for message, below in wrong]
         if not wrong:
             unit = source.get("unit")
@@ -88,22 +88,22 @@ def read_evidence(table: object) -> tuple[EvidenceSettings, list[Complaint]]:
     return EvidenceSettings(tuple(logs or ()), store, tuple(sources)), complaints
 
 
-def _wrong(name: str, source: Any) -> Iterator[Complaint]:
-    """What is wrong with the source of a signal, and at which of its keys."""
+def _mistakes(name: str, source: Any) -> Iterator[Complaint]:
+    """The mistakes in the source of a signal, each with the key that has it."""
     key = f"evidence.signals.{name}"
     if not isinstance(source, dict):
         yield f'`{key}` must be a table such as {{ topic = "/battery_state", field = "percentage" }}', ()
         return
-    for each in source:
-        if each not in SOURCE_KEYS:
-            yield f"unknown key `{key}.{each}`{did_you_mean(near(each, SOURCE_KEYS, 1))}", (each,)
-    for each in (*TEXTS, "unit"):
-        if each in source and not (isinstance(source[each], str) and source[each]):
-            yield f"`{key}.{each}` must be a string", (each,)
-    for each in NUMBERS:
-        number = source.get(each, 0.0)
+    for field in source:
+        if field not in SOURCE_KEYS:
+            yield f"unknown key `{key}.{field}`{did_you_mean(near(field, SOURCE_KEYS, 1))}", (field,)
+    for field in (*TEXTS, "unit"):
+        if field in source and not (isinstance(source[field], str) and source[field]):
+            yield f"`{key}.{field}` must be a string", (field,)
+    for field in NUMBERS:
+        number = source.get(field, 0.0)
         if isinstance(number, bool) or not isinstance(number, int | float) or not abs(number) <= float_info.max:
-            yield f"`{key}.{each}` must be a number", (each,)
+            yield f"`{key}.{field}` must be a number", (field,)
     unit = source.get("unit")
     if isinstance(unit, str) and unit and parse_unit(unit) is None:
         yield f"unknown unit `{unit}`{did_you_mean(nearest_units(unit))}", ("unit",)
@@ -113,9 +113,9 @@ def _wrong(name: str, source: Any) -> Iterator[Complaint]:
     kind, wanted, others = OF_A_TOPIC if "topic" in source else OF_A_FILE
     if wanted not in source:
         yield f"`{key}` must have a `{wanted}` beside its `{kind}`", ()
-    for each in others:
-        if each in source:
-            yield f"`{key}.{each}` does not go with a `{kind}`", (each,)
+    for field in others:
+        if field in source:
+            yield f"`{key}.{field}` does not go with a `{kind}`", (field,)
 
 
 # Each key with a line for editors.

@@ -132,7 +132,7 @@ class Store(Generic[State]):
         self._count = 0  # of numbers
         self._first = 0  # the last number before the current top-level query
         self._start = 0  # the index on the path where Python's calls begin
-        self._circles: list[_Answer] = []  # answers in circles of which another part is open
+        self._circles: list[_Answer] = []  # answers of circles, another part of which is open
         self._hubs: list[_Answer] = []  # those that are not clean, and whose dependents are not suspect yet
 
     # ---- used by queries ----
@@ -262,14 +262,14 @@ class Store(Generic[State]):
                     waiting.append((self._path[middle], middle))
         finally:
             self._close(0)
-            for each in self._circles:  # an exception has left them open
-                each.low = None
+            for part in self._circles:  # an exception has left them open
+                part.low = None
             self._circles.clear()
 
     def _close(self, start: int) -> None:
         """Leave a path from an index on."""
-        for each in self._path[start:]:
-            each.low = None
+        for left in self._path[start:]:
+            left.low = None
         del self._path[start:]
 
     def _open(self, answer: _Answer) -> None:
@@ -299,16 +299,16 @@ class Store(Generic[State]):
         circle: list[_Answer] = []
         while self._circles and self._circles[-1].number >= answer.number:
             circle.append(self._circles.pop())
-        for each in circle:
-            self._replace(each, _declared(each))
-        for each in circle:  # each has just found that another one differs
-            each.state = _CLEAN
+        for part in circle:
+            self._replace(part, _declared(part))
+        for part in circle:  # each has just found that another one differs
+            part.state = _CLEAN
 
     def _verify(self, answer: _Answer) -> None:
         """Check whether the dependencies of an answer are unchanged; else it is stale."""
-        for each in answer.dependencies:
-            if each.state != _CLEAN:
-                self._settle(each)
+        for dependency in answer.dependencies:
+            if dependency.state != _CLEAN:
+                self._settle(dependency)
                 if answer.state == _STALE:
                     return
 
@@ -320,11 +320,11 @@ class Store(Generic[State]):
         finally:
             self._dependencies = outer
         before = set(answer.dependencies)
-        for each in before.difference(dependencies):
-            each.dependents.discard(answer)
+        for dependency in before.difference(dependencies):
+            dependency.dependents.discard(answer)
         answer.dependencies = tuple(dependencies)
-        for each in dependencies:
-            each.dependents.add(answer)
+        for dependency in dependencies:
+            dependency.dependents.add(answer)
         return value
 
     def _replace(self, answer: _Answer, value: object) -> None:

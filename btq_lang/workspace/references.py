@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 class What(Enum):
-    """What a word may name, as far as its place determines it."""
+    """The kind of thing that a word may name, as far as its place determines it."""
 
     __hash__ = object.__hash__  # `Enum` computes it in Python
 
@@ -64,7 +64,7 @@ class Mention(Record):
         span: the name, counted from the item; of a key without its braces and `@`.
         word: that contains it, to see whether it is quoted.
         defines: whether the name is defined here, and not used.
-        node: that it is at, or that it replaces.
+        node: the node that has it, or that it replaces.
         owner: the requirement of a parameter, the model of a port or of its own name, the tree of a key; else None.
         pair: the attribute with a port or a key.
         writes: whether it is a key that a script assigns.
@@ -316,7 +316,7 @@ def _pair(
 
 
 def _content(key: str, node: syntax.Node) -> str | None:
-    """What the value of an attribute contains: of a port of a built-in node, or of an attribute that every node may
+    """The content of the value of an attribute: of a port of a built-in node, or of an attribute that every node may
     have."""
     attribute = RESERVED_ATTRIBUTES.get(key)
     if attribute is not None:
@@ -423,29 +423,29 @@ def _values(
     to: ReferenceListener,
 ) -> None:
     """The names and quantities in clauses, conditions and bounds."""
-    for found in () if to.skips_values else syntax.walk(part):
-        if isinstance(found, syntax.Word):  # nearly half of them are
-            if found.kind == QUANTITY:
-                to.word(What.QUANTITY, found)
-            elif found.kind == NUMBER:
-                to.value(found)
-        elif isinstance(found, (syntax.Operand, syntax.Amount)):
-            if found.word.kind == NAME and found.word.raw not in ("true", "false"):
-                to.word(What.VALUE, found.word, owner=owner)
-        elif isinstance(found, syntax.Call):
-            to.word(What.VALUE, found.signal, owner=owner)
-        elif isinstance(found, syntax.Claim):
-            to.word(What.VALUE, found.resource, owner=owner)
-        elif isinstance(found, syntax.Path):
-            _path(found, to)
-        elif isinstance(found, syntax.Every):
-            to.word(What.PLACE, found.name)
+    for piece in () if to.skips_values else syntax.walk(part):
+        if isinstance(piece, syntax.Word):  # nearly half of them are
+            if piece.kind == QUANTITY:
+                to.word(What.QUANTITY, piece)
+            elif piece.kind == NUMBER:
+                to.value(piece)
+        elif isinstance(piece, (syntax.Operand, syntax.Amount)):
+            if piece.word.kind == NAME and piece.word.raw not in ("true", "false"):
+                to.word(What.VALUE, piece.word, owner=owner)
+        elif isinstance(piece, syntax.Call):
+            to.word(What.VALUE, piece.signal, owner=owner)
+        elif isinstance(piece, syntax.Claim):
+            to.word(What.VALUE, piece.resource, owner=owner)
+        elif isinstance(piece, syntax.Path):
+            _path(piece, to)
+        elif isinstance(piece, syntax.Every):
+            to.word(What.PLACE, piece.name)
 
 
 def _quantities(part: object, to: ReferenceListener) -> None:
-    for found in () if to.skips_values else syntax.walk(part):
-        if isinstance(found, syntax.Word) and found.kind == QUANTITY:
-            to.word(What.QUANTITY, found)
+    for piece in () if to.skips_values else syntax.walk(part):
+        if isinstance(piece, syntax.Word) and piece.kind == QUANTITY:
+            to.word(What.QUANTITY, piece)
 
 
 def _path(path: syntax.Path | None, to: ReferenceListener) -> None:

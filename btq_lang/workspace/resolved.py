@@ -31,8 +31,8 @@ def tree_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts)
 @inputs.of_scope
 def tree_named(store: Store[Workspace], viewpoint: str, name: str) -> ResolvedTree | None:
     """The nodes of the tree with a name."""
-    found = store.ask(inputs.definition, viewpoint, Kind.TREE, name)
-    return store.ask(tree_nodes, viewpoint, *found) if found is not None else None
+    tree = store.ask(inputs.definition, viewpoint, Kind.TREE, name)
+    return store.ask(tree_nodes, viewpoint, *tree) if tree is not None else None
 
 
 @inputs.of_scope
@@ -43,8 +43,8 @@ def trees_called(store: Store[Workspace], viewpoint: str, name: str) -> tuple[st
 
 
 class ResolvedNode:
-    """A node as it is written, with what is around it and what it means.  Equal only to itself: its place is its
-    identity.
+    """A written node, with its place in the tree and its meaning.  Equal only to itself: its place is its identity.
+
 
     Attributes:
         within: its tree.
@@ -150,19 +150,19 @@ class ResolvedNode:
 
     @property
     def shown_kind(self) -> str:
-        """As a message names it: its kind, or what is written in its place."""
+        """The node as a message names it: its kind, or the word in its place."""
         return f"`{self.node.head.text}`"
 
     @property
     def shown(self) -> str:
-        """As a message names it among others: its kind and its instance name, if it has one."""
+        """The node as a message names it among others: its kind, and its instance name if it has one."""
         return self.node.shown
 
     # ---- what it means ----
 
     @property
     def flow(self) -> Flow:
-        """What it does with its children; empty if nothing is known of that."""
+        """The flow of its children; empty if it is unknown."""
         return self.behavior.flow if self.behavior is not None else ""
 
     @property
@@ -244,15 +244,16 @@ class ResolvedTree:
 
     def _read(self, declared: Callable[[str], Declared]) -> Iterator[ResolvedNode]:
         waiting: list[tuple[Node, ResolvedNode | None, int]] = []
-        waiting += [(child, None, at) for at, child in enumerate(self.item.children) if isinstance(child, Node)]
-        waiting.reverse()
+        tops = [(child, None, place) for place, child in enumerate(self.item.children) if isinstance(child, Node)]
+        waiting += reversed(tops)
         while waiting:
             node, parent, index = waiting.pop()
-            found = ResolvedNode(node, self, parent, index, declared)
+            resolved = ResolvedNode(node, self, parent, index, declared)
             if parent is not None:
-                parent.children.append(found)
-            yield found
+                parent.children.append(resolved)
+            yield resolved
             if node.children:
-                children = [(child, found, at) for at, child in enumerate(node.children) if isinstance(child, Node)]
-                children.reverse()
-                waiting += children
+                children = [
+                    (child, resolved, place) for place, child in enumerate(node.children) if isinstance(child, Node)
+                ]
+                waiting += reversed(children)

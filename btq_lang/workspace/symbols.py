@@ -1,4 +1,4 @@
-"""What an item defines and refers to: a summary made from its tree alone.
+"""The names that an item defines and refers to: a summary made from its tree alone.
 
 One invariant: a summary depends only on the item, so it is made once (`references.summarize`) and is valid as long as
 the item exists.  Which definition a use refers to is for the workspace.
@@ -41,7 +41,7 @@ class Use(Record):
 
     Attributes:
         span: the name, counted from the item.
-        node: that it is at, if any.
+        node: the node that has it, if any.
     """
 
     kind: Kind
@@ -51,7 +51,7 @@ class Use(Record):
 
 
 class Summary(Record):
-    """All that an item defines and refers to, in the order of the text."""
+    """The symbols and uses of an item, in the order of the text."""
 
     symbols: tuple[Symbol, ...]
     uses: tuple[Use, ...]
@@ -88,8 +88,10 @@ def asked_for(item: syntax.Item) -> frozenset[str]:
 
 def claiming(summary: Summary) -> frozenset[str]:
     """The requirements that an item defines whose claims may name their own subjects: in clauses, or in a text."""
-    found = [(symbol.name, symbol.target) for symbol in summary.symbols if symbol.kind is Kind.REQUIREMENT]
-    return frozenset([name for name, target in found if isinstance(target, syntax.Requirement) and _may_claim(target)])
+    requirements = [(symbol.name, symbol.target) for symbol in summary.symbols if symbol.kind is Kind.REQUIREMENT]
+    return frozenset(
+        [name for name, target in requirements if isinstance(target, syntax.Requirement) and _may_claim(target)]
+    )
 
 
 def _may_claim(requirement: syntax.Requirement) -> bool:
@@ -106,17 +108,17 @@ def names_subject(item: object) -> bool:
 
 def same_requirement(first: syntax.Requirement, second: syntax.Requirement) -> bool:
     """Whether two definitions are equivalent (docs/language.md): texts compare after folding blanks."""
-    return _saying(first) == _saying(second)
+    return _content(first) == _content(second)
 
 
 def interface(model: syntax.Model) -> object:
-    """What a model says of its node; equal for equivalent models, as palettes that tools write repeat them."""
+    """The content of a model; equal for equivalent models, which the palettes that tools write repeat."""
     ports = tuple([(port.direction, port.name, port.type, port.default) for port in model.ports])
     return model.category.raw, syntax.shape(ports)
 
 
 def differences(one: Symbol, other: Symbol) -> Iterator[str]:
-    """What two models say otherwise of their node, as a message names it: its category, or ports by name."""
+    """The differences between two models of a node, as a message names them: its category, or ports by name."""
     first, second = one.target, other.target
     if not (isinstance(first, syntax.Model) and isinstance(second, syntax.Model)):
         return
@@ -145,9 +147,9 @@ def has_ports_of(one: Symbol, other: Symbol) -> bool:
         return False
     ports = {port.id.text: port for port in model.ports if port.id is not None}
     return model.category.raw == shorter.category.raw and all(
-        (known := ports.get(port.id.text)) is not None
-        and known.direction.raw == port.direction.raw
-        and may_be_one_type(known.type, port.type)
+        (own := ports.get(port.id.text)) is not None
+        and own.direction.raw == port.direction.raw
+        and may_be_one_type(own.type, port.type)
         for port in shorter.ports
         if port.id is not None
     )
@@ -169,13 +171,13 @@ def _asked_by(requirement: syntax.Requirement) -> frozenset[str]:
 
 
 def _words_in(part: object) -> frozenset[str]:
-    """Each name, and of `a-b`, which may be meant as a subtraction, both sides too."""
+    """The names in a part; for `a-b`, which may be meant as a subtraction, both sides too."""
     words = [word for word in syntax.walk(part) if isinstance(word, syntax.Word)]
     names = [word.text for word in words if word.kind == NAME]
     return frozenset([*names, *(side for name in names if "-" in name for side in name.split("-"))])
 
 
-def _saying(requirement: syntax.Requirement) -> object:
+def _content(requirement: syntax.Requirement) -> object:
     text = " ".join(requirement.text.text.split()) if requirement.text else None
     return text, syntax.shape((requirement.quality, requirement.parameters, requirement.clauses))
 

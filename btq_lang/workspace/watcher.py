@@ -31,7 +31,7 @@ def watch(
     """
 
     def stamps() -> dict[str, Hashable]:
-        return {path: found for path in files() if (found := stamp(path)) is not None}
+        return {path: value for path in files() if (value := stamp(path)) is not None}
 
     def changes(before: dict[str, Hashable]) -> Iterator[tuple[str, ...]]:
         pause = INTERVAL

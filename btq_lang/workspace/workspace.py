@@ -49,7 +49,7 @@ class Workspace:
         self._closures: dict[str, tuple[str, ...]] = {}
 
     def __reduce__(self) -> tuple[object, ...]:
-        """What makes it again in another process."""
+        """The arguments with which another process makes it again."""
         return Workspace, (self.files, self.project, self.factory)
 
     @classmethod
@@ -70,9 +70,13 @@ class Workspace:
             after._take_over(self, path)
         return after
 
+    def with_read(self, file: File) -> Workspace:
+        """The workspace after an edit that replaces a file, which may be in another language, by this one."""
+        return self.with_file(file.path, file.text, file.origin)
+
     @cached_property
     def moved(self) -> Workspace:
-        """The same files as the engine takes them that the project moves to."""
+        """The same files, for the engine that the project moves to."""
         target = self.project.moves_to or self.project.target
         engines, written_for = (ENGINES.get(target, target),), self.project.engines
         project = replace(self.project, engines=engines, moves_to=None, written_for=written_for)
@@ -80,7 +84,7 @@ class Workspace:
 
     @cached_property
     def moved_nodes(self) -> Workspace:
-        """The same, with the nodes of Nav2 in the distribution that the project moves to."""
+        """As `moved`, with the nodes of Nav2 in the distribution that the project moves to."""
         target = FILES.get(self.project.moves_to or "")
 
         def those_of_target(paths: tuple[str, ...]) -> tuple[str, ...]:
@@ -107,10 +111,10 @@ class Workspace:
         self._everywhere.clear()
 
     def _take_over(self, before: Workspace, edited: str) -> None:
-        """Copy what is known of includes, and of the names in files that do not see the edited one."""
-        for known in ("included_files", "missions"):
-            if known in before.__dict__:
-                self.__dict__[known] = before.__dict__[known]
+        """Copy cached results about includes, and the scopes of files that do not see the edited one."""
+        for attribute in ("included_files", "missions"):
+            if attribute in before.__dict__:
+                self.__dict__[attribute] = before.__dict__[attribute]
         self._closures = before._closures
         self._scopes = {path: scope for path, scope in before._scopes.items() if edited not in scope.paths}
 
@@ -144,25 +148,28 @@ class Workspace:
         return hash(tuple(self.files))
 
     @cached_property
-    def origins(self) -> Mapping[str, Origin]:
-        """The origins of the files that are written in another language, by path."""
-        return {path: file.origin for path, file in self.files.items() if file.origin is not None}
+    def foreign(self) -> Mapping[str, File]:
+        """The files that are written in another language, by path."""
+        return {path: file for path, file in self.files.items() if file.origin is not None}
 
     @cached_property
     def xml(self) -> tuple[str, ...]:
-        """Those of them that are XML, which looks up in its pool what it lacks."""
-        return tuple([path for path in self.origins if not self.files[path].is_cpp])
+        """The files that are XML, which look up in their pool what they lack."""
+        return tuple([path for path, file in self.foreign.items() if not file.is_cpp])
 
     # ---- includes and scopes ----
 
     def included(self, path: str, include: str, of_package: bool = False) -> str | None:
-        """The file that an `include` in `path` refers to, if it is there; files of a ROS package are known only on the
-        robot."""
+        """The file that an `include` in `path` refers to, if the workspace has it.
+
+        Args:
+            of_package: whether it is in a ROS package, which is known only on the robot.
+        """
         candidates = () if of_package else include_candidates(self.project, path, include)
         return next((each for each in candidates if each in self.files), None)
 
     def included_by(self, path: str, include: Include) -> str | None:
-        """As `included`."""
+        """As `included`, for an include of the tree."""
         return None if include.path is None else self.included(path, include.path.text, is_of_package(include))
 
     def closure(self, path: str) -> tuple[str, ...]:
@@ -232,17 +239,17 @@ class Workspace:
         factory."""
         if self.factory is not None:
             return dict.fromkeys(self.files, min(self.files, default=""))
-        found = {path: path for path in self.files}
+        leaders = {path: path for path in self.files}
 
         def first(path: str) -> str:
-            while found[path] != path:
-                path = found[path]
+            while leaders[path] != path:
+                path = leaders[path]
             return path
 
         for path in self.files:
             for target in self._targets(path):
-                one, other = sorted((first(path), first(target)))
-                found[other] = one
+                low, high = sorted((first(path), first(target)))
+                leaders[high] = low
         return {path: first(path) for path in self.files}
 
     def linked(self, *paths: str) -> list[str]:
@@ -250,30 +257,30 @@ class Workspace:
         if not {*self.project.node_files}.isdisjoint(paths):
             return list(self.missions)  # all files see their models
         missions = {self.missions[path] for path in paths}
-        return [other for other, of in self.missions.items() if of in missions]
+        return [other for other, mission in self.missions.items() if mission in missions]
 
     # ---- definitions ----
 
     def files_defining(self, kind: Kind, name: str) -> tuple[str, ...]:
         """The files of the project that define a name, to suggest where it could come from; this is known even if a
         file's tree was released."""
-        foreign = [path for path in self._foreign.get(name, ()) if self.files[path].defines(kind, name)]
-        own = [path for path in self._own if self.files[path].defines(kind, name)]
+        foreign = [path for path in self._foreign_defining.get(name, ()) if self.files[path].defines(kind, name)]
+        own = [path for path in self._own_files if self.files[path].defines(kind, name)]
         return (*own, *foreign)
 
     @cached_property
-    def _foreign(self) -> Mapping[str, list[str]]:
+    def _foreign_defining(self) -> Mapping[str, list[str]]:
         """The files in another language that define a tree or model of a name."""
-        found: dict[str, list[str]] = {}
-        for path, origin in self.origins.items():
-            for name in origin.defines:
-                found.setdefault(name, []).append(path)
-        return found
+        paths_by_name: dict[str, list[str]] = {}
+        for path, file in self.foreign.items():
+            for name in file.origin.defines if file.origin is not None else ():
+                paths_by_name.setdefault(name, []).append(path)
+        return paths_by_name
 
     @cached_property
-    def _own(self) -> tuple[str, ...]:
+    def _own_files(self) -> tuple[str, ...]:
         """The files in this language."""
-        return tuple([path for path in self.files if path not in self.origins])
+        return tuple([path for path in self.files if path not in self.foreign])
 
     def defined_anywhere(self, kind: Kind, name: str) -> tuple[Definition, ...]:
         """Every definition of a name in the project."""
@@ -285,26 +292,26 @@ class Workspace:
 
     def find(self, path: str, kind: Kind, name: str) -> Definition | None:
         """The definition that a name means in a file: the first one in scope, else that in the pool, if all agree."""
-        found = self.scope(path).find(kind, name)
-        if found is not None:
-            return found
+        definition = self.scope(path).find(kind, name)
+        if definition is not None:
+            return definition
         pooled = self.pooled(path, kind, name)
         models = [each.symbol.target for each in pooled]
         agree = len({interface(model) if isinstance(model, Model) else id(model) for model in models}) == 1
         return pooled[0] if agree and not _may_be_of_nav2(models[0], name) else None
 
     def pooled(self, path: str, kind: Kind, name: str) -> tuple[Definition, ...]:
-        """What an XML file may mean by a name outside its scope: a tree of its folder's XML, else of its project; the
-        project's models of a node.  A program may register all of these files, or only some."""
+        """The possible meanings of a name outside the scope of an XML file: a tree of its folder's XML, else of its
+        project; the project's models of a node.  A program may register all of these files, or only some."""
         anywhere = self.defined_anywhere(kind, name) if self.files[path].origin is not None else ()
         pool = self.project.pool_of(path) if anywhere else None  # most names that are looked up are nowhere
         if pool is None:
             return ()
         scope = self.scope(path).paths
-        found = [each for each in anywhere if each.path.startswith(pool) and each.path not in scope]
+        in_pool = [each for each in anywhere if each.path.startswith(pool) and each.path not in scope]
         folder = posixpath.dirname(path)
-        near = [each for each in found if posixpath.dirname(each.path) == folder and each.path in self.origins]
-        return tuple((near or found) if kind is Kind.TREE else found)
+        near = [each for each in in_pool if posixpath.dirname(each.path) == folder and each.path in self.foreign]
+        return tuple((near or in_pool) if kind is Kind.TREE else in_pool)
 
     # ---- missions ----
 
@@ -322,16 +329,16 @@ class Workspace:
             return self.scope(path).find(Kind.TREE, self.factory.main[0])
         file = self.files[path]
         for root in file.of_type(Root):
-            given = (pair.value for pair in root.attributes if pair.key.text == "main_tree_to_execute")
-            named = root.name or next(given, None)
+            values = (pair.value for pair in root.attributes if pair.key.text == "main_tree_to_execute")
+            named = root.name or next(values, None)
             if named is not None:
                 return self.scope(path).find(Kind.TREE, named.text)
         trees = file.names.by_kind[Kind.TREE]
-        if len(trees) > 1 or any(len(file.names.found[Kind.TREE, name]) > 1 for name in trees):
-            runs = file.said("runs")
+        if len(trees) > 1 or any(len(file.names.definitions[Kind.TREE, name]) > 1 for name in trees):
+            runs = file.names_used("runs")
             trees = tuple([name for name in trees if name not in runs])
-        found = file.definitions(Kind.TREE, trees[0]) if len(trees) == 1 else ()
-        return found[0] if len(found) == 1 else None
+        definitions = file.definitions(Kind.TREE, trees[0]) if len(trees) == 1 else ()
+        return definitions[0] if len(definitions) == 1 else None
 
 
 class Scope:
@@ -365,14 +372,14 @@ class Scope:
             )
             and not any(file.is_swallowed for file in self._files)
         )
-        self._found: dict[Name, tuple[Definition, ...]] = {}
+        self._definitions: dict[Name, tuple[Definition, ...]] = {}
         self._names: dict[Kind, tuple[str, ...]] = {}
         self._repeated: frozenset[Name] | None = None
 
     def defines(self, kind: Kind, name: str) -> bool:
         """Whether a name is defined."""
         key = kind, name
-        return bool([file for file in self.files(kind) if key in file.names.found])
+        return bool([file for file in self.files(kind) if key in file.names.definitions])
 
     def files(self, kind: Kind) -> list[File]:
         """The files whose definitions of a kind count."""
@@ -380,18 +387,18 @@ class Scope:
 
     def find(self, kind: Kind, name: str) -> Definition | None:
         """The definition of a name that counts: the first one."""
-        found = self.all(kind, name)
-        return found[0] if found else None
+        definitions = self.all(kind, name)
+        return definitions[0] if definitions else None
 
     def target(self, kind: Kind, name: str) -> Target | None:
-        """What that definition defines."""
-        found = self.find(kind, name)
-        return found.symbol.target if found is not None else None
+        """The target of that definition."""
+        definition = self.find(kind, name)
+        return definition.symbol.target if definition is not None else None
 
     def all(self, kind: Kind, name: str) -> tuple[Definition, ...]:
         """Every definition of a name, the one that counts first."""
-        found = self._found.get((kind, name))
-        return self._look_up(kind, name) if found is None else found
+        definitions = self._definitions.get((kind, name))
+        return self._look_up(kind, name) if definitions is None else definitions
 
     def is_repeated(self, kind: Kind, name: str) -> bool:
         """Whether a name has several definitions: hardly any has, so this is worth checking before looking at all of
@@ -404,48 +411,50 @@ class Scope:
         """All names of a kind, in the order of their definitions."""
         names = self._names.get(kind)
         if names is None:
-            known = [file.names.by_kind[kind] for file in self.files(kind)]
-            names = self._names[kind] = known[0] if len(known) == 1 else tuple(dict.fromkeys(chain(*known)))
+            by_file = [file.names.by_kind[kind] for file in self.files(kind)]
+            names = self._names[kind] = by_file[0] if len(by_file) == 1 else tuple(dict.fromkeys(chain(*by_file)))
         return names
 
     def _look_up(self, kind: Kind, name: str) -> tuple[Definition, ...]:
         key = kind, name
-        found: tuple[Definition, ...] = ()
+        definitions: tuple[Definition, ...] = ()
         for file in self.files(kind):
-            if key in file.names.found:
-                found += file.definitions(kind, name)
-        if kind is Kind.MODEL and len(found) > 1 and self.node_paths:
+            if key in file.names.definitions:
+                definitions += file.definitions(kind, name)
+        if kind is Kind.MODEL and len(definitions) > 1 and self.node_paths:
             # Nothing says more than C++ but what is known of Nav2's nodes.
-            found = _richest_first(found, tuple(FILES.values()) if found[0].path in self._cpp else self.node_paths)
-        self._found[key] = found
-        return found
+            definitions = _richest_first(
+                definitions, tuple(FILES.values()) if definitions[0].path in self._cpp else self.node_paths
+            )
+        self._definitions[key] = definitions
+        return definitions
 
 
 def _may_be_of_nav2(target: object, name: str) -> bool:
     """Whether Nav2 has a node of a name, in no distribution with all ports of the model: either may be meant."""
-    known = ports_of(name) if isinstance(target, Model) else None
+    nav2_ports = ports_of(name) if isinstance(target, Model) else None
     ports = target.ports if isinstance(target, Model) else ()
-    return known is not None and not known.issuperset([port.id.text for port in ports if port.id is not None])
+    return nav2_ports is not None and not nav2_ports.issuperset([port.id.text for port in ports if port.id is not None])
 
 
-def _richest_first(found: tuple[Definition, ...], node_paths: tuple[str, ...]) -> tuple[Definition, ...]:
+def _richest_first(models: tuple[Definition, ...], node_paths: tuple[str, ...]) -> tuple[Definition, ...]:
     """The models of a node, the one that counts first: that of a file of nodes, if it has the ports of the first one.
 
     Groot writes models without types, and not always with all ports; such a file says more about the same node.  A
     model with other ports is of another node.
     """
-    for each in found[1:]:
-        if each.path in node_paths and has_ports_of(each.symbol, found[0].symbol):
-            return each, *(other for other in found if other is not each)
-    return found
+    for model in models[1:]:
+        if model.path in node_paths and has_ports_of(model.symbol, models[0].symbol):
+            return model, *(other for other in models if other is not model)
+    return models
 
 
 def _repeated(files: list[Names]) -> frozenset[Name]:
     """The names with several definitions, in one of these files or in two of them."""
     seen: set[Name] = set()
-    found: set[Name] = set()
+    repeated: set[Name] = set()
     for names in files:
-        found |= names.repeated
-        found |= seen & names.all
+        repeated |= names.repeated
+        repeated |= seen & names.all
         seen |= names.all
-    return frozenset(found)
+    return frozenset(repeated)

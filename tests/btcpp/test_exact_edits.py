@@ -94,12 +94,11 @@ def test_words_of_published_files(shared: Path) -> None:
     placed = 0
     for path in sorted((shared / "corpus").rglob("*.xml"))[::60]:
         file = file_of("tree.xml", path.read_text(encoding="utf-8", errors="replace"))
-        for start, end, *_ in share_of(file.origin.places.pieces[::7], 2) if file.origin else ():
+        for start, end, *_ in share_of(file.places.pieces[::7], 2) if file.places else ():
             edit = Edit(Span(start, end), f"{file.text[start:end]}x")
             if (edits := exact_edits(file, edit)) is not None:
                 placed += 1
-                assert file.origin is not None
-                xml = apply_edits(file.origin.text, edits)
+                xml = apply_edits(file.source, edits)
                 assert file_of("tree.xml", xml).text == apply_edits(file.text, [edit]), (path, edit)
     assert placed > 100
 

@@ -154,8 +154,8 @@ def test_what_can_be_no_tag_is_refused_directly_below_a_reactive_sequence() -> N
 
 def test_files_of_any_name_that_begin_like_xml_are_xml() -> None:
     xml = '<root BTCPP_format="4"><BehaviorTree ID="T"><A/></BehaviorTree></root>'
-    assert workspace_of({"a.tree": f"\n{xml}"}).files["a.tree"].origin is not None
-    assert workspace_of({"a.btq": xml}).files["a.btq"].origin is None
+    assert workspace_of({"a.tree": f"\n{xml}"}).files["a.tree"].is_foreign
+    assert not workspace_of({"a.btq": xml}).files["a.btq"].is_foreign
 
 
 def test_a_file_of_xml_is_a_value() -> None:
@@ -166,7 +166,7 @@ def test_a_file_of_xml_is_a_value() -> None:
     again = pickle.loads(pickle.dumps(file))
     assert isinstance(again, File)
     assert again == file
-    assert again.origin is not None
+    assert again.is_foreign
     workspace = Workspace({"a.xml": again}, Project())
     assert workspace.scope("a.xml").find(Kind.TREE, "T") is not None
     assert check(workspace, "a.xml") == check(Workspace({"a.xml": file}, Project()), "a.xml")

@@ -10,7 +10,7 @@ import pytest
 from nav2_clone import files, read
 
 from btq_lang.catalog.nav2 import DISTRIBUTIONS
-from btq_lang.catalog.nav2.read_once import READ_ONCE, is_read_once
+from btq_lang.catalog.nav2.creation import READ_ONCE, is_read_once
 from btq_lang.commands.explain_nav2 import models_of
 
 HEAD = re.compile(r"^(?:[\w:<>&*]+ )*(\w+)::(\w+)\(", re.MULTILINE)

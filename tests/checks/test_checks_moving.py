@@ -11,11 +11,10 @@ from moving_pages import moving_pages
 
 from btq_lang.btcpp.opening import file_of
 from btq_lang.catalog import versions
-from btq_lang.catalog.changes import ANY, BehaviorChange
 from btq_lang.catalog.engine_changes import ENGINE_CHANGES
 from btq_lang.catalog.nav2 import DISTRIBUTIONS, PACKAGED
 from btq_lang.catalog.nav2.changes import CHANGES
-from btq_lang.catalog.versions import at_least, last_of, numbers
+from btq_lang.catalog.versions import ANY, BehaviorChange, at_least, last_of, numbers
 from btq_lang.checks import check
 from btq_lang.commands.target import with_target
 from btq_lang.diagnostics.model import Diagnostic

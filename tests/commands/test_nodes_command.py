@@ -202,7 +202,7 @@ def test_folders_of_tests_and_of_builds_are_read_only_where_they_are_named(tmp_p
     def of_pattern(pattern: str) -> list[str]:
         (tmp_path / "btq.toml").write_text(f'nodes = ["{pattern}"]\nexclude = ["src/old/"]\n')
         files = open_workspace(str(tmp_path)).files.values()
-        return sorted(node for file in files if file.origin and file.origin.nodes for node in file.origin.nodes)
+        return sorted(node for file in files for node in file.cpp_nodes)
 
     assert of_command(".") == of_pattern("**/*.cpp") == ["Src", "Src_Log"]
     assert of_command("test") == of_pattern("test/**/*.cpp") == ["Test"]

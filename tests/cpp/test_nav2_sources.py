@@ -13,8 +13,8 @@ from nav2_clone import COUNTS, files, read
 from nav2_differences import differences
 from nav2_sources import PALETTE
 
+from btq_lang.catalog.cpp_classes import BASES
 from btq_lang.catalog.kinds import CATEGORIES
-from btq_lang.catalog.nav2.bases import BASES
 from btq_lang.cpp.nodes import read_nodes
 
 BRANCHES = (*COUNTS, "main")  # where the nodes are those of Lyrical

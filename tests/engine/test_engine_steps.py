@@ -9,9 +9,8 @@ from typing import NamedTuple
 import pytest
 from engine_loader import Answer, Engine
 
-from btq_lang.catalog.changes import BehaviorChange
 from btq_lang.catalog.engine_changes import ENGINE_CHANGES
-from btq_lang.catalog.versions import at_least
+from btq_lang.catalog.versions import BehaviorChange, at_least
 
 ROOT = '<root BTCPP_format="4" main_tree_to_execute="Main"><BehaviorTree ID="Main">{}</BehaviorTree></root>'
 ONE, OTHER = "<AlwaysSuccess/>", "<AlwaysFailure/>"

@@ -151,7 +151,7 @@ def test_names_of_published_files(shared: Path) -> None:
     done = 0
     for path in share_of(chance.sample(sorted((shared / "corpus").rglob("*.xml")), 40), 2):
         file = file_of("trees.xml", path.read_bytes().decode(errors="replace").removeprefix("\ufeff"))
-        if file.origin is None or not file.origin.is_complete:
+        if not (file.is_foreign and file.is_understood):
             continue
         workspace = Workspace({"trees.xml": file}, Project())
         mentions = [(entry, each) for entry in file.parsed.entries for each in file.mentions_of(entry)]

@@ -2,8 +2,7 @@ import pickle
 
 import pytest
 
-from btq_lang.util.fields import fields_of
-from btq_lang.util.record import Part, Record, replace
+from btq_lang.util.record import Part, Record, fields_of, replace
 
 
 class Point(Record):

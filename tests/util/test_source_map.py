@@ -39,8 +39,7 @@ def test_there_and_back(path: Path) -> None:
     assert problems == ()
     for group in groups:
         for file in group.workspace.files.values():
-            if file.origin is not None:
-                places = file.origin.places
+            if (places := file.places) is not None:
                 for start, end, first, last in places.pieces:
                     if end - start == last - first > 0:
                         made = places.made(first)

@@ -14,7 +14,7 @@ from btq_lang.parser import parse
 from btq_lang.syntax.tokens import COMMENT
 from btq_lang.workspace.comments import Comment, Comments, comments
 
-PLACES = ("before", "within", "behind", "first", "last")
+PLACES = ("before", "within", "after", "first", "last")
 
 
 def places(text: str) -> dict[str, dict[str, list[str]]]:
@@ -38,7 +38,7 @@ def test_the_key_is_where_the_element_begins_in_the_file() -> None:
     (foo,) = parsed.trees[0].children
     assert comments(parsed) == {
         text.index("signal b"): Comments(before=(Comment(0, "# of the signal"),)),
-        tree.start + foo.start: Comments(behind=(Comment(text.index("//"), "// of Foo"),)),
+        tree.start + foo.start: Comments(after=(Comment(text.index("//"), "// of Foo"),)),
     }
 
 
@@ -97,10 +97,10 @@ def test_a_comment_behind_a_line_with_a_block_is_the_first_in_the_block() -> Non
     """) == {
         "BehaviorTree A  # 1": {"first": ["1"]},
         "->  # 2": {"first": ["2"]},
-        "Foo  # 3": {"behind": ["3"]},
+        "Foo  # 3": {"after": ["3"]},
         "Bar  # 4": {"first": ["4"], "last": ["5"]},
         "Baz  # 6": {"first": ["6"]},
-        "satisfices safety  # 7": {"behind": ["7"]},
+        "satisfices safety  # 7": {"after": ["7"]},
     }
 
 
@@ -114,7 +114,7 @@ def test_comments_in_brackets_and_in_front_are_within() -> None:
             /* 8
         */  Bar
     """) == {
-        "Foo ( # 3": {"within": ["1", "2", "3", "4", "5", "6"], "behind": ["7"]},
+        "Foo ( # 3": {"within": ["1", "2", "3", "4", "5", "6"], "after": ["7"]},
         "Bar": {"within": ["8"]},
     }
 
@@ -140,12 +140,12 @@ def test_lines_of_clauses_ports_and_models_are_elements() -> None:
                 # 11
     """) == {
         "Action Foo": {"last": ["3"]},
-        "input x : string  # 2": {"before": ["1"], "behind": ["2"]},
+        "input x : string  # 2": {"before": ["1"], "after": ["2"]},
         "input y : string": {"before": ["4"]},
         "satisfices safety": {"before": ["5"]},
         "Foo": {"before": ["6"], "last": ["11"]},
         "satisfies QualityReq r": {"before": ["7"], "last": ["10"]},
-        "takes at most 3 s  # 9": {"before": ["8"], "behind": ["9"]},
+        "takes at most 3 s  # 9": {"before": ["8"], "after": ["9"]},
     }
 
 

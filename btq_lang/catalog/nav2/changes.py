@@ -1,4 +1,4 @@
-"""What a release of Nav2 changes for trees that were written for an earlier one: one row a change.
+"""The changes of Nav2's releases for trees that were written for an earlier one: one row a change.
 
 Nodes and ports that a release removes follow from the files of nodes beside this module; the rows here say what
 replaces them, and what a tree that still loads means from then on.  Determined in the sources of the branches and, for
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from btq_lang.catalog.changes import ANY, BehaviorChange
+from btq_lang.catalog.versions import ANY, BehaviorChange
 
 # The names after a release that renamed a node, or a port of one.
 RENAMED: Final = {("lyrical", "IsPathValid"): "ValidatePath", ("lyrical", "IsStopped"): "CheckStopStatus"}
@@ -24,9 +24,9 @@ _CLEARS: Final = ("ClearEntireCostmap", "ClearCostmapExceptRegion", "ClearCostma
 
 
 def _read_again(since: str, nodes: tuple[str, ...], *ports: str) -> tuple[BehaviorChange, ...]:
-    what = "reads the entry in `{}` at each start, no longer only when the tree is created"
+    effect = "reads the entry in `{}` at each start, no longer only when the tree is created"
     instead = "write the value itself if the entry changes meanwhile and must not count"
-    return tuple(BehaviorChange(since, nodes, what.format(port), instead, port, _ENTRY) for port in ports)
+    return tuple(BehaviorChange(since, nodes, effect.format(port), instead, port, _ENTRY) for port in ports)
 
 
 CHANGES: Final = (

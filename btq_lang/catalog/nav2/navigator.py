@@ -83,16 +83,16 @@ def outside_entries(
     """
     letter = distribution[0]
     codes = ERROR_CODES[letter] if codes is None else codes
-    found: dict[str, Direction] = {}
-    for name, of in ENTRIES.items():
-        if letter in of:
-            found[name] = "inout" if name in READ else "output"
+    entries: dict[str, Direction] = {}
+    for name, letters in ENTRIES.items():
+        if letter in letters:
+            entries[name] = "inout" if name in READ else "output"
         elif name in READ:
-            found[name] = "input"
-    found = {(renamed or {}).get(name, name): direction for name, direction in found.items()}
+            entries[name] = "input"
+    entries = {(renamed or {}).get(name, name): direction for name, direction in entries.items()}
     if letter in "kl":
         codes = tuple(f"{prefix}_error_{part}" for prefix in codes for part in ("code", "msg"))
-    return (*found.items(), *((code, "inout") for code in codes))
+    return (*entries.items(), *((code, "inout") for code in codes))
 
 
 class NavigatorParameter(Record):

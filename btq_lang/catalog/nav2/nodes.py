@@ -1,4 +1,4 @@
-"""What Nav2's nodes do: its control nodes, its decorators, and the leaves that are not as other leaves are.
+"""The behavior of Nav2's nodes: its control nodes, its decorators, and the leaves that differ from others.
 
 One invariant: every row was read in the C++ code of the branches; where they differ there is a row for the older ones.
 Actions without a row run on a server; conditions without a row answer within the tick.  Which ports a node has is in
@@ -161,10 +161,10 @@ _DECORATORS: Final = (
 )
 
 
-def _notices(tag: str, doc: str, what: str) -> NodeKind:
+def _notices(tag: str, doc: str, condition: str) -> NodeKind:
     semantics = (
-        f"At its first tick it fails and remembers {what}; it succeeds at a later one. A parent that resets it when "
-        "it has failed makes it start again, so that it never succeeds: only WhileDoElse keeps its condition."
+        f"At its first tick it fails and remembers {condition}; it succeeds at a later one. A parent that resets it "
+        "when it has failed makes it start again, so that it never succeeds: only WhileDoElse keeps its condition."
     )
     return NodeKind(tag, doc, semantics, "Condition", (0, 0), execution="synchronous", flow="notices", memory="failure")
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 from btq_lang.evidence.compare.model import ComparedNumber, RunComparison
-from btq_lang.util.fields import as_dict
+from btq_lang.util.record import as_dict
 
 FORMAT: Final = "btq-comparison"
 VERSION: Final = 2

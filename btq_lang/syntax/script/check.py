@@ -29,12 +29,12 @@ def check_script(
         ValueError: a version is not numbers separated by points.
     """
     is_old = not any(NEW_SCRIPTS.holds(version) for version in versions)
-    found = [each for each in script.problems if not (is_old and is_in_double_quotes(script.text, each.span))]
+    problems = [each for each in script.problems if not (is_old and is_in_double_quotes(script.text, each.span))]
     if script.complete:
-        found += version_problems(script, versions)
+        problems += version_problems(script, versions)
         if expects_value and script.statements:
-            found += _value_problems(script.statements[-1], script.text)
-    return tuple(sorted(found, key=lambda problem: problem.span))
+            problems += _value_problems(script.statements[-1], script.text)
+    return tuple(sorted(problems, key=lambda problem: problem.span))
 
 
 def is_in_double_quotes(text: str, span: Span) -> bool:

@@ -136,15 +136,15 @@ def no_such(text: str, span: Span) -> Diagnostic:
 # ---- grammar ----
 
 
-def missing_operand(text: str, before: Span | None, at: Span) -> Diagnostic:
-    """A missing operand at `at`; `before`: the operator that needs it, None at the start of a statement."""
-    here = text[at.start : at.end]
+def missing_operand(text: str, before: Span | None, place: Span) -> Diagnostic:
+    """A missing operand at `place`; `before`: the operator that needs it, None at the start of a statement."""
+    following = text[place.start : place.end]
     if before is None:
-        return error(at, f"missing operand before `{here}`")
+        return error(place, f"missing operand before `{following}`")
     operator = text[before.start : before.end]
-    if operator == "(" and here == ")":
-        return error(Span(before.start, at.end), "missing expression between the brackets")
-    if operator in _POSTFIX and (here == operator or text.endswith(operator, 0, before.start)):
+    if operator == "(" and following == ")":
+        return error(Span(before.start, place.end), "missing expression between the brackets")
+    if operator in _POSTFIX and (following == operator or text.endswith(operator, 0, before.start)):
         return error(before, f"scripts have no `{operator}{operator}`; write {_POSTFIX[operator]}")
     what = "right-hand side of" if operator == ":=" else "operand after"
     return error(before, f"missing {what} `{operator}`")
@@ -157,13 +157,13 @@ def unary_plus(text: str, span: Span) -> Diagnostic:
     return error(span, message, replace_fix("Remove the `+`", span, "", safe=True))
 
 
-def unclosed_bracket(text: str, bracket: Span, at: Span) -> Diagnostic:
-    if at.start == len(text):
+def unclosed_bracket(text: str, bracket: Span, place: Span) -> Diagnostic:
+    if place.start == len(text):
         end = len(text.rstrip())
         return error(bracket, "missing `)` for this `(`", replace_fix("Add the `)`", Span(end, end), ")"))
-    if text[at.start] == ";":
-        return error(at, "unexpected `;` inside brackets")
-    return error(bracket, f"missing `)` before `{text[at.start : at.end]}`")
+    if text[place.start] == ";":
+        return error(place, "unexpected `;` inside brackets")
+    return error(bracket, f"missing `)` before `{text[place.start : place.end]}`")
 
 
 def not_assignable(operator: Span, is_equals: bool) -> Diagnostic:

@@ -178,13 +178,13 @@ class _Parser:
 
     def operand(self) -> Expression:
         """`x`, `30`, `'text'`, `true`, `(a + b)`, `-x`, `~x`, `!x`"""
-        at = self.at
-        kind = self.kinds[at]
-        start, end = self.starts[at], self.ends[at]
+        index = self.at
+        kind = self.kinds[index]
+        start, end = self.starts[index], self.ends[index]
         if kind in OPERANDS:
             self.at += 1
             self.height = 0
-            meant = self.meant.get(at)
+            meant = self.meant.get(index)
             if kind == NAME:
                 return Name(start, end, self.text[start:end] if meant is None else meant)
             if kind == NUMBER:
@@ -205,41 +205,41 @@ class _Parser:
             return ScriptGroup(start, self.ends[self.at - 1], inner)
         if kind == "-" or kind == "!" or kind == "~":
             return self.prefixed()
-        if kind == "+" and (self.kinds[at + 1] in BEGINS or self.kinds[at + 1] in ("+", "-")):
+        if kind == "+" and (self.kinds[index + 1] in BEGINS or self.kinds[index + 1] in ("+", "-")):
             self.problems.append(mistakes.unary_plus(self.text, Span(start, end)))
             return self.prefixed()
         self.no_operand()
 
     def prefixed(self) -> Expression:
         """`-x`, `~x`, `!x`; a `+` was reported and is ignored."""
-        at = self.at
+        index = self.at
         self.depth += 1
         if self.depth > 2 * MAX_DEPTH + 1:
-            self.stop(mistakes.too_deep(self.span(at), MAX_DEPTH))
+            self.stop(mistakes.too_deep(self.span(index), MAX_DEPTH))
         self.at += 1
         operand = self.operand()
         self.depth -= 1
-        if self.kinds[at] == "+":
+        if self.kinds[index] == "+":
             return operand
         self.height += 1
         if self.height > MAX_DEPTH:
-            self.stop(mistakes.too_deep(self.span(at), MAX_DEPTH))
-        return Unary(self.starts[at], operand.end, self.kinds[at], operand)
+            self.stop(mistakes.too_deep(self.span(index), MAX_DEPTH))
+        return Unary(self.starts[index], operand.end, self.kinds[index], operand)
 
     # ---- errors ----
 
     def no_operand(self) -> NoReturn:
         """Report a missing operand."""
-        at = self.at
-        kind, before = self.kinds[at], self.kinds[at - 1] if at else ";"
+        index = self.at
+        kind, before = self.kinds[index], self.kinds[index - 1] if index else ";"
         if kind == ERROR:
             self.unreadable()
-        waiting = None if before == ";" or before == ")" or before in OPERANDS else self.span(at - 1)
+        waiting = None if before == ";" or before == ")" or before in OPERANDS else self.span(index - 1)
         if waiting is None and kind == ")":
-            self.stop(error(self.span(at), "unexpected `)`: no bracket is open"))
+            self.stop(error(self.span(index), "unexpected `)`: no bracket is open"))
         if waiting is None and kind == ":":
-            self.stop(error(self.span(at), "unexpected `:` without `?`; assign a value with `:=`"))
-        self.stop(mistakes.missing_operand(self.text, waiting, self.span(at)))
+            self.stop(error(self.span(index), "unexpected `:` without `?`; assign a value with `:=`"))
+        self.stop(mistakes.missing_operand(self.text, waiting, self.span(index)))
 
     def unexpected(self, statement: Expression) -> NoReturn:
         """Report that what follows a statement neither separates nor begins one."""
@@ -287,8 +287,8 @@ class _Parser:
 
     def is_unit(self) -> bool:
         """Whether it is `30 sec` without an operator after it"""
-        kinds, at = self.kinds, self.at
-        return kinds[at] == NAME and kinds[at - 1] == NUMBER and kinds[at + 1] not in RANK
+        kinds, index = self.kinds, self.at
+        return kinds[index] == NAME and kinds[index - 1] == NUMBER and kinds[index + 1] not in RANK
 
     def unreadable(self) -> NoReturn:
         span = self.span(self.at)

@@ -10,8 +10,7 @@ from collections.abc import Iterator
 from itertools import chain
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from btq_lang.util.fields import fields_of
-from btq_lang.util.record import Part, Record
+from btq_lang.util.record import Part, Record, fields_of
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
@@ -157,20 +156,20 @@ def variables(script: Script) -> tuple[Variable, ...]:
 
     They include the names of enumerations, which only the robot's own code can register.
     """
-    found: list[Variable] = []
+    occurrences: list[Variable] = []
     stack: list[Expression] = list(reversed(script.statements))
     while stack:
         node = stack.pop()
         if isinstance(node, Name):
-            found.append(Variable(node.name, Span(node.start, node.end), reads=True))
+            occurrences.append(Variable(node.name, Span(node.start, node.end), reads=True))
         elif isinstance(node, Assign) and isinstance(target := ungrouped(node.target), Name):
             reads = node.operator not in (":=", "=")
             creates = node.operator == ":="
-            found.append(Variable(target.name, Span(target.start, target.end), reads, True, creates))
+            occurrences.append(Variable(target.name, Span(target.start, target.end), reads, True, creates))
             stack.append(node.value)
         else:
             stack.extend(reversed(children(node)))
-    return tuple(found)
+    return tuple(occurrences)
 
 
 def operands(script: Script) -> Iterator[Name]:

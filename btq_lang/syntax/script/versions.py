@@ -1,4 +1,4 @@
-"""What engines before 4.9 refuse, or read differently from 4.9 and later.
+"""Scripts that engines before 4.9 refuse, or read differently from 4.9 and later.
 
 One invariant: a script without problems here is read alike by all the given versions, and a fix adds brackets,
 blanks or `;` only, so that the newest engine reads the script as before.
@@ -26,14 +26,14 @@ def version_problems(script: tree.Script, versions: Iterable[str]) -> list[Diagn
     targets = _targets(versions)
     if not targets.old:
         return []
-    found: list[Diagnostic] = _separators(script, targets)
+    problems: list[Diagnostic] = _separators(script, targets)
     scopes: list[tree.Expression] = list(reversed(script.statements))
     while scopes:
         members = _scope(scopes.pop(), scopes)
-        found += _mixed(members, script.text, targets)
+        problems += _mixed(members, script.text, targets)
         for node, parent in members:
-            found += _node(node, parent, script.text, targets)
-    return found
+            problems += _node(node, parent, script.text, targets)
+    return problems
 
 
 class _Targets(Record):
@@ -46,10 +46,10 @@ class _Targets(Record):
 
 
 def _targets(versions: Iterable[str]) -> _Targets:
-    given = tuple(versions)
-    old = tuple(version for version in given if not NEW_SCRIPTS.holds(version))
+    engines = tuple(versions)
+    old = tuple(version for version in engines if not NEW_SCRIPTS.holds(version))
     early = tuple(version for version in old if not SCRIPT_RANKS.holds(version))
-    return _Targets(early, tuple(version for version in old if SCRIPT_RANKS.holds(version)), old, len(given))
+    return _Targets(early, tuple(version for version in old if SCRIPT_RANKS.holds(version)), old, len(engines))
 
 
 def _node(node: tree.Expression, parent: tree.Expression | None, text: str, targets: _Targets) -> Iterable[Diagnostic]:
@@ -157,8 +157,8 @@ def _mixed(members: _Members, text: str, targets: _Targets) -> Iterable[Diagnost
         refusals += [(middle[0], targets.middle)] if middle else []
     for pair, refusing in refusals:
         first, second = (_symbol(firsts[group]) for group in pair)
-        what = f"`{first}` beside `{second}` without brackets"
-        yield _refused(_brackets(_to_separate(members)), members[0][0], what, refusing, targets)
+        mixture = f"`{first}` beside `{second}` without brackets"
+        yield _refused(_brackets(_to_separate(members)), members[0][0], mixture, refusing, targets)
 
 
 def _group(node: tree.Expression | None) -> str | None:
@@ -191,23 +191,23 @@ def _place(node: tree.Expression) -> int:
 
 def _separators(script: tree.Script, targets: _Targets) -> list[Diagnostic]:
     """Check separators: up to 4.8, exactly one `;` between two statements and none after the last; later any number."""
-    found: list[Diagnostic] = []
+    problems: list[Diagnostic] = []
     text, statements = script.text, script.statements
     for before, after in zip_longest(statements, statements[1:]):
         end = len(text) if after is None else after.start
         count = text.count(";", before.end, end)
         if after is not None and count == 0:
             fix = Fix("Add the `;`", (FixEdit(Place(Span(before.end, before.end)), ";"),), safe=True)
-            found.append(_refused(fix, after, "a statement without a `;` before it", targets.old, targets))
+            problems.append(_refused(fix, after, "a statement without a `;` before it", targets.old, targets))
         elif count > (after is not None):
             first = text.index(";", before.end)
             if after is not None:
                 first = text.index(";", first + 1)
             span = Span(first, text.rindex(";", first, end) + 1)
             fix = Fix("Remove it", (FixEdit(Place(span), ""),), safe=True)
-            what = "a `;` after the last statement" if after is None else "more than one `;` between statements"
-            found.append(_refused(fix, span, what, targets.old, targets))
-    return found
+            excess = "a `;` after the last statement" if after is None else "more than one `;` between statements"
+            problems.append(_refused(fix, span, excess, targets.old, targets))
+    return problems
 
 
 def _glued_number(node: tree.ScriptBinary, text: str, targets: _Targets) -> Iterable[Diagnostic]:
@@ -245,7 +245,7 @@ def _brackets(nodes: Iterable[tree.Expression]) -> Fix:
     for node in nodes:
         inserted[node.start] = inserted.get(node.start, "") + "("
         inserted[node.end] = inserted.get(node.end, "") + ")"
-    changes = tuple(FixEdit(Place(Span(at, at)), inserted[at]) for at in sorted(inserted))
+    changes = tuple(FixEdit(Place(Span(offset, offset)), inserted[offset]) for offset in sorted(inserted))
     return Fix("Add the brackets", changes, safe=True)
 
 
