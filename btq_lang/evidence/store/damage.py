@@ -6,6 +6,7 @@ import os
 from typing import Any, Final
 
 from btq_lang.evidence.store.tables import COMMON, OF_CLAUSE, OPTIONAL, ROWS, files_of, quoted
+from btq_lang.evidence.wording import message_of
 
 
 def incomplete(connection: Any, store: str) -> str | None:
@@ -63,7 +64,7 @@ def damage(connection: Any, store: str) -> str | None:
             types = {name: kind for name, kind, *_ in connection.execute(f"DESCRIBE FROM {source}").fetchall()}
             connection.execute(f"SELECT max(COLUMNS(*)) FROM {source}").fetchall()
         except duckdb.Error as error:
-            return f"{file}: {' '.join(str(error).split())}; {_AGAIN}"
+            return f"{file}: {message_of(error)}; {_AGAIN}"
         if wrong := _columns(table).items() - types.items():
             return _lacking(file, *min(wrong))
     return None

@@ -19,6 +19,7 @@ from btq_lang.evidence.store.damage import LATER, damage, incomplete, judged_ear
 from btq_lang.evidence.store.queries import REPEATED
 from btq_lang.evidence.store.rows import file_of
 from btq_lang.evidence.store.tables import COMMON, OF_CLAUSE, OPTIONAL, ROWS, files_of, quoted
+from btq_lang.evidence.wording import message_of
 
 
 class NoEngine(Exception):
@@ -47,7 +48,7 @@ def write_parquet(folder: str, common: Mapping[str, str]) -> None:
     except duckdb.Error as error:
         if match := re.search(r'"errno":"(\d+)"', str(error)):
             raise OSError(int(match[1]), os.strerror(int(match[1]))) from error
-        raise NoEngine(" ".join(str(error).split())) from error
+        raise NoEngine(message_of(error)) from error
     finally:
         cursor.close()
 
@@ -79,7 +80,7 @@ def asked(store: str, label: str | None = None) -> Callable[[str], list[dict[str
             names = [str(column[0]) for column in result.description]
             return [dict(zip(names, row, strict=True)) for row in result.fetchall()]
         except duckdb.Error as error:
-            raise NoEngine(damage(connection, store) or f"{store}: {' '.join(str(error).split())}") from error
+            raise NoEngine(damage(connection, store) or f"{store}: {message_of(error)}") from error
 
     if problem := incomplete(connection, store):
         raise NoEngine(problem)
@@ -191,7 +192,7 @@ def asked_by(url: str, store: str) -> Callable[[str], list[dict[str, Any]]]:
 
 
 def _failed(url: str, error: Exception) -> NoEngine:
-    return NoEngine(f"{url}: {' '.join(str(error).split()) or type(error).__name__}")
+    return NoEngine(f"{url}: {message_of(error)}")
 
 
 # The rows of a group are in memory together: fewer than DuckDB's 122 880 take less, and a few bytes more on the disk.
