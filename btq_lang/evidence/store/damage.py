@@ -1,4 +1,4 @@
-"""What is wrong with the files of a store: those that are missing, damaged, of another table or of earlier verdicts."""
+"""Problems with the files of a store: missing, damaged, of another table or of earlier verdicts."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def incomplete(connection: Any, store: str) -> str | None:
 
 
 def judged_earlier(logs: str, store: str) -> str:
-    """That some logs have verdicts of an earlier version of btq, and what to do."""
+    """A sentence: some logs have verdicts of an earlier version of btq; and what to do."""
     again = f"read such logs again with btq verify LOG --store {store}, or remove their folders"
     return f"an earlier version of btq, with other rules, has judged {logs}; {again}"
 

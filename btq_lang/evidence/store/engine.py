@@ -63,7 +63,7 @@ def asked(store: str, label: str | None = None) -> Callable[[str], list[dict[str
         NoEngine: DuckDB is missing, or the store has no sets or a damaged one; so does the function.
     """
     duckdb = imported()
-    # In a folder with a name of its own, which DuckDB makes when it is needed, and removes.
+    # DuckDB makes this folder when it needs it, and removes it.
     spilled = os.path.join(tempfile.gettempdir(), f"btq-{uuid.uuid4().hex}")
     connection = duckdb.connect(config={"memory_limit": _MOST, "temp_directory": spilled})
 
@@ -118,9 +118,9 @@ def imported() -> Any:
 
 @lru_cache(1)
 def _writer(process: int) -> Any:
-    """A connection of this process: one that was made before a fork is not for both.
+    """A connection of this process: a connection made before a fork must not serve both processes.
 
-    Its limit is what lets go of text that has been read; otherwise all of it stays.
+    Its memory limit frees text that has been read; otherwise all of it stays.
     """
     return imported().connect(config={"threads": 1, "memory_limit": _MEMORY, "temp_directory": ""})
 
@@ -195,7 +195,8 @@ def _failed(url: str, error: Exception) -> NoEngine:
     return NoEngine(f"{url}: {message_of(error)}")
 
 
-# The rows of a group are in memory together: fewer than DuckDB's 122 880 take less, and a few bytes more on the disk.
+# The rows of a group are in memory together: fewer than DuckDB's 122 880 take less memory, and few more bytes on the
+# disk.
 _OPTIONS: Final = "FORMAT parquet, COMPRESSION zstd, PARQUET_VERSION v2, ROW_GROUP_SIZE 20480"
 _KEPT: Final = "ANTI JOIN left_out"
 _BUFFER: Final = 4_000_000  # bytes of text that are read at once
