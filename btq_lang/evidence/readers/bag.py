@@ -232,7 +232,7 @@ _IDL_RULE: Final = f"{'=' * 80}\n"
 
 
 def limit_chunks() -> None:
-    """Make `rosbags` decompress chunks of MCAP files up to MOST_UNPACKED; it has no limit by itself."""
+    """Make `rosbags` decompress chunks of MCAP files up to MOST_UNPACKED; without this it has no limit."""
     from lz4.frame import LZ4FrameDecompressor  # type: ignore[import-untyped]  # it has no stubs
     from rosbags.rosbag2 import storage_mcap
 
