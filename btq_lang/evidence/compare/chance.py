@@ -41,9 +41,9 @@ class Shuffles:
         """The p-value of the difference between the sums of the sides, in both directions.
 
         It is the share of shuffles with such a difference; no more are drawn than it takes to know that it is common.
-        If none has it, it is the tail of the normal distribution that a sum over shuffles tends to
-        (Lehmann, *Nonparametrics*, appendix 4).  That happens by chance once in as many comparisons as there are
-        shuffles, so how good the tail is changes little.
+        If none has it, it is the tail of the normal distribution that a sum over shuffles tends to (Lehmann,
+        *Nonparametrics*, appendix 4).  That happens by chance once in as many comparisons as there are shuffles, so the
+        precision of the tail changes little.
 
         Args:
             scores: of the units of the first side, then of the second; their sum in each stratum is 0.
