@@ -73,7 +73,7 @@ def shown_now(requirements: Requirements, judged: Iterable[RequirementVerdict]) 
 
 
 def _is_named(clause: ClauseVerdict, subject: Subject | None) -> bool:
-    """Whether a clause was judged at a node with the name of the subject; true if the subject is no single node."""
+    """Whether a clause was judged at a node with the name of the subject; true if the subject is not a single node."""
     if not isinstance(subject, NodeTarget):
         return True
     name, kind, head = subject.node.node.name, subject.node.kind, subject.node.node.head
