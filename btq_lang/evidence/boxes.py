@@ -94,7 +94,7 @@ def _bounds(demand: Demand) -> tuple[Quantity, ...]:
 
 
 def _key(applied: Applied) -> _Key:
-    """What is the same in all missions that have the node."""
+    """The key of a requirement at a node, the same in all missions that have the node."""
     where = id(applied.node.node) if applied.node is not None else applied.requirement.claims[0].text
     return applied.requirement.name, applied.argument_list, where
 

@@ -41,13 +41,13 @@ if TYPE_CHECKING:
 
 
 class Measure:
-    """A measured value, with the bound that it is compared with, or of two the one that it is closer to violating.
+    """A measured value with its bound; of two bounds, the one that it is closer to violating.
 
     Attributes:
         unit: to print both in; None for a number of starts.
         excess: how far the value is on the wrong side of the bound, in SI; negative on the right side.
         is_upper: the value is bounded from above.
-        name: of what a condition compares, as typed: `battery`, `max(force)`.
+        name: the operand of a condition, as typed: `battery`, `max(force)`.
     """
 
     # Not a Record: a log has as many as it has judgements, and a Record takes three times as long to make.

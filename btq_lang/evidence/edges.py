@@ -1,4 +1,4 @@
-"""The bound of a clause as something that may be moved: an editor judges a changed one by what was measured.
+"""The bound of a clause that may be moved: an editor judges a changed bound by the measures that were kept.
 
 One invariant: only a bound for which every judgement is decided by one measure, whatever the bound, has an edge: a
 constant on one side, not of a sum, and not of a count whose starts may be unknown.

@@ -182,7 +182,7 @@ class Explainer:
 
 
 _NO_CHILD: Final[tuple[int, Outcome | None, FailureOrigin | None]] = (0, None, None)
-# They run other children after one has failed, whose results then do not matter.
+# After a child has failed, these run other children, whose results then do not matter.
 _GOES_ON: Final = frozenset(
     [kind.tag for kind in BUILTINS.values() if kind.flow in ("parallel", "parallel-all", "try")]
 )

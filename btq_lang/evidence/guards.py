@@ -156,5 +156,5 @@ def _guard(tree: LoggedTree, uid: int, condition: int, requirement: str) -> Guar
     return Guard(path, requirement, words(enforced="refusal") & {purpose}, halts=False)
 
 
-# The ends of the names of Sequences that check a success, and the verbs of their clauses.
+# The last word in the name of a Sequence that checks a success, and the verb of its clause.
 _CHECKED: Final = {"leaves": "leaves", "used": "uses"}

@@ -86,7 +86,7 @@ def _pieces(log: NamedLog, roots: Set[int]) -> Iterator[tuple[int, int]]:
 
 
 def _transitions(log: NamedLog, begin: int, end: int, uids: dict[int, int]) -> Iterator[Transition]:
-    """The changes of the nodes that have a uid."""
+    """The transitions of the nodes that have a uid."""
     for time, node, status in zip(log.times[begin:end], log.changed[begin:end], log.statuses[begin:end], strict=True):
         if node in uids:
             yield time, uids[node], status

@@ -56,7 +56,7 @@ def other_times(read_from: Iterable[tuple[str, SampleSeries]], report: VerdictRe
 
 
 def missions_with_errors(report: VerdictReport, missions: Sequence[Candidate]) -> Iterator[str]:
-    """Reports missions with errors, of which clauses may be missing."""
+    """Reports missions with errors, whose clauses may be missing."""
     judged = {mission.file for mission in report.missions}
     for mission in missions:
         if mission.path in judged:

@@ -106,7 +106,7 @@ def open_reason(requirement: ResolvedRequirement) -> str:
 
 
 def open_clauses(requirement: ResolvedRequirement) -> tuple[ClauseVerdict, ...]:
-    """What a report has of an open requirement: each clause, or one without text if there is none."""
+    """The clauses of an open requirement in a report; one without text if it has none."""
     texts = [Demand(requirement, claim, None, "").text for claim in requirement.claims]
     return tuple(_without_evidence(requirement, text, OPEN, open_reason(requirement)) for text in texts or [""])
 

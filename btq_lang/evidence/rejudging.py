@@ -1,4 +1,4 @@
-"""Judges a clause again after its bound or its odds have been edited, by what was kept of its judgements."""
+"""Judges a clause again after its bound or its odds have been edited, by the counts that were kept."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 class Shown(Record):
-    """What logs show of a clause of the present text.
+    """A clause of the present text with its verdict.
 
     Attributes:
         verdict: None: the logs were not judged by this clause, but by an earlier one.
@@ -73,7 +73,7 @@ def shown_now(requirements: Requirements, judged: Iterable[RequirementVerdict]) 
 
 
 def _is_named(clause: ClauseVerdict, subject: Subject | None) -> bool:
-    """Whether a clause was judged at a node of that name; also where it is about no single node."""
+    """Whether a clause was judged at a node with the name of the subject; true if the subject is not a single node."""
     if not isinstance(subject, NodeTarget):
         return True
     name, kind, head = subject.node.node.name, subject.node.kind, subject.node.node.head
@@ -109,7 +109,7 @@ def _again(demand: Demand, clause: ClauseVerdict, edge: Edge | None) -> Shown:
 
 
 def _moved(value: RunValue, edge: Edge) -> RunValue:
-    """What a run shows with another bound."""
+    """The value of a run with another bound."""
     if value.si is None:
         return value
     verdict = VIOLATED if edge.is_broken_by(value.si) else UNKNOWN if value.verdict == UNKNOWN else SATISFIED

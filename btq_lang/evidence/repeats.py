@@ -36,7 +36,7 @@ class LoggedRuns:
     Attributes:
         log, number: which session: of the log, counted from 0 among those that were judged.
         whose: only runs with equal ones may be one: the mission, and the label.
-        robot: its name, if the log has one; other robots have other runs.
+        robot: its name, if the log has one; robots with other names have other runs.
         begins, ends: in µs since the epoch.
         first, last: the numbers of their rows among the transitions of the session, from 1.
     """

@@ -57,7 +57,7 @@ def explained(clause: ClauseVerdict, violation: Violation, medians: Mapping[str,
 
 
 def reason(violation: Violation, medians: Mapping[str, float]) -> str:
-    """What was measured, and the first link of each kind that led to it."""
+    """The measure, and the first link of each kind that led to it."""
     bound = f", bound {violation.bound}" if violation.bound else ""
     parts = [f"{violation.why}{bound}"]
     kinds = {link.kind: link for link in reversed(violation.chain)}

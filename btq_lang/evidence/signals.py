@@ -135,8 +135,8 @@ class Signals:
 
 
 def _before_samples(signal: ResolvedSignal, is_sampled: bool, with_initial: bool) -> SampleValue | UnknownValue:
-    """The value of a signal before its first sample.  What it has `initially` was not measured: that may say which
-    activations a requirement is about, and never that one satisfies it; nor that in a log without any sample.
+    """The value of a signal before its first sample.  Its value `initially` was not measured: it may decide which
+    activations a requirement is about, but never that one satisfies it, and nothing in a log without any sample.
     """
     if not is_sampled:
         return UnknownValue(_none_of(signal))

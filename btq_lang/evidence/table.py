@@ -1,4 +1,4 @@
-"""Verdicts for people at a terminal, with lines broken at its width; other output is not broken."""
+"""Verdicts for people at a terminal, with lines broken at its width; for other output, lines are not broken."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ class Tally:
 
     Attributes:
         counted, violated, unknown, cut_off, why, violations, worst, bounded: as in `ClauseVerdict`.
-        by_run: what the last runs show, more of them than count.
+        by_run: the values of the last runs, and of some before them.
         distribution: of the measures.
         limits: which limits of the probability decide.
     """
@@ -143,7 +143,7 @@ class Tally:
             self.by_run[:] = self._last_runs()
 
     def _last_runs(self) -> tuple[RunValue, ...]:
-        """What the last runs show, whatever the order in which logs were read."""
+        """The values of the last runs, whatever the order in which logs were read."""
         return tuple(sorted(self.by_run, key=attrgetter("start"))[-MOST_RUNS:])
 
     def is_worst_in(self, run: Run) -> bool:
@@ -206,7 +206,7 @@ class Tally:
         return tally
 
     def fields(self) -> dict[str, Any]:
-        """What `ClauseVerdict` has of it, by name."""
+        """The fields of `ClauseVerdict` that come from the tally, by name."""
         same = ("counted", "violated", "unknown", "cut_off", "worst", "limits", "bounded")
         fields = {name: getattr(self, name) for name in same}
         lists = {"violations": tuple(self.violations), "by_run": self._last_runs()}
@@ -233,7 +233,7 @@ class Tally:
         return lower_limit(k, n, confidence, self.limits), upper_limit(k, n, confidence, self.limits)
 
     def more(self) -> int | None:
-        """How many more that hold would decide an undecided verdict."""
+        """How many more judgements that hold would decide an undecided verdict."""
         if self._odds is None or self._confidence is None or self.verdict() != UNDECIDED:
             return None
         n, most, wanted = self.counted + self.unknown, self._most, self._odds.probability

@@ -87,7 +87,7 @@ class Worst(Record):
 
 
 class RunValue(Record):
-    """What a run shows of a clause.
+    """The value of a clause in a run.
 
     Attributes:
         run: its number; in the summary of a store, that in its log.
@@ -214,7 +214,7 @@ class ClauseVerdict(Record):
     Attributes:
         text: as typed, with its scopes and odds; empty if an open requirement has no clause.
         path: of the node, as the engine names it; all paths for a subtree that is used several times.
-        of: what it measures if that is more than a node: `from … to …`, `sum of …`; else empty.
+        of: its subject if that is more than a node: `from … to …`, `sum of …`; else empty.
         why: why the verdict is unknown, never exercised or open, or why parts of an undecided one are unknown; else
             empty.
         unit: what is counted: `activations` or `runs`.
@@ -272,7 +272,7 @@ class RequirementVerdict(Record):
 
 
 class EvidenceFile(Record):
-    """What was read from a file.
+    """A file that was read.
 
     Attributes:
         runs, first_run: how many runs of the mission are in it, and the number of the first.

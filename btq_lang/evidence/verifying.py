@@ -96,7 +96,7 @@ def verify_logs(
 
 
 def logs_below(paths: Sequence[str], project: Project) -> tuple[Sequence[str], list[str]]:
-    """The logs that paths denote, and what is wrong with the paths."""
+    """The logs that paths denote, and problems with the paths."""
     files, unreachable = collect(paths, project, (*SUFFIXES, METADATA))
     logs = whole_bags(files)
     problems = [*map(str, unreachable), *(f"{shown(log)}: {IS_SPECIAL}" for log in logs if is_special(log))]
@@ -136,7 +136,7 @@ def verify(
     jobs: int = 1,
     progress: Callable[[int, int], None] = lambda files, runs: None,
 ) -> VerdictReport:
-    """Judge missions by logs, of which one that cannot be read is a problem of the report.
+    """Judge missions by logs; one that cannot be read is a problem of the report.
 
     Args:
         jobs: how many processes judge logs; the report is the same.

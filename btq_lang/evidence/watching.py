@@ -145,7 +145,7 @@ class _Listener:
                 clause.record(partial(self._judged, clause))
 
     def look(self, activation: Activation) -> None:
-        """Tell which clauses an activation breaks that is still open."""
+        """Tell which clauses an open activation breaks."""
         path = self._paths[activation.uid]
         self._note(activation)
         for clause in self._clauses:

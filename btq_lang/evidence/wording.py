@@ -1,4 +1,4 @@
-"""Formats measures and times for people."""
+"""Formats measures, times and errors for people."""
 
 from __future__ import annotations
 
@@ -52,6 +52,11 @@ def first_of(texts: Sequence[str]) -> str:
     """The first five texts, and how many more there are."""
     more = len(texts) - _NAMED
     return "; ".join([*texts[:_NAMED], *([f"{more} more"] if more > 0 else [])])
+
+
+def message_of(error: Exception) -> str:
+    """The message of an error in one line; its class if it has none."""
+    return " ".join(str(error).split()) or type(error).__name__
 
 
 def _readable(seconds: float) -> Unit:

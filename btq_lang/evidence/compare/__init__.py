@@ -1,8 +1,8 @@
-"""Two versions compared by what a store has of them.
+"""Two versions compared by the verdicts and durations in a store.
 
 One invariant: only what chance hardly explains is called a change, whatever the number of comparisons.
 
-    questions.py    what is asked of the store, as SQL
+    questions.py    the questions to the store, as SQL
     mission_numbers.py  the answers, of a mission
     measures.py     durations and other measures by run, and how they differ
     failures.py     in how many runs nodes failed and clauses were violated

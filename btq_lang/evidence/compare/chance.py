@@ -1,7 +1,7 @@
 """How likely a difference at least as large is where nothing has changed.
 
 One invariant: what is shuffled or counted are runs, groups of runs, or robots, never activations: those of one run are
-not independent of each other.  What differs without a change, such as robots, may part them in strata.
+not independent of each other.  What differs without a change, such as robots, may divide them into strata.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Failures: TypeAlias = tuple[tuple[int, int], tuple[int, int]]  # of each side, h
 
 
 class Shuffles:
-    """Random ways to part the units of each stratum into two sides of the same sizes as those that are compared.
+    """Random divisions of the units of each stratum into two sides of the same sizes as the compared ones.
 
     The seed is fixed.
     """
@@ -40,10 +40,10 @@ class Shuffles:
     def probability(self, scores: Sequence[float], most: int) -> float:
         """The p-value of the difference between the sums of the sides, in both directions.
 
-        It is the share of shuffles with such a difference, of which there are no more than it takes to know that it is
-        common.  Where not one has it, it is the tail of the normal distribution that a sum over shuffles tends to
-        (Lehmann, *Nonparametrics*, appendix 4).  That happens by chance once in as many comparisons as there are
-        shuffles, so how good the tail is changes little.
+        It is the share of shuffles with such a difference; no more are drawn than it takes to know that it is common.
+        If none has it, it is the tail of the normal distribution that a sum over shuffles tends to (Lehmann,
+        *Nonparametrics*, appendix 4).  That happens by chance once in as many comparisons as there are shuffles, so the
+        precision of the tail changes little.
 
         Args:
             scores: of the units of the first side, then of the second; their sum in each stratum is 0.
@@ -71,7 +71,7 @@ class Shuffles:
         return erfc(observed / sqrt(2 * variance))
 
     def _rarest(self) -> float:
-        """The p-value of a difference that no other way to part the units has, but for the exchange of the sides."""
+        """The p-value of a difference that no other division of the units has, but for the exchange of the sides."""
         return _extremes(sizes := [(size, len(units) - size) for units, size in self._strata]) / _ways(sizes)
 
     def _draw(self) -> Iterator[bytearray]:
@@ -140,7 +140,7 @@ def is_too_few(sizes: Sequence[tuple[int, int]], comparisons: int) -> bool:
 
 
 def _ways(sizes: Sequence[tuple[int, int]]) -> int:
-    """In how many ways units can be parted."""
+    """In how many ways units can be divided."""
     return prod(comb(first + second, first) for first, second in sizes)
 
 

@@ -118,7 +118,7 @@ class _Mission:
         self.comparisons: Final = len(self._measures) + len(self._numbers.failures)
 
     def changes(self, comparisons: int) -> Iterator[ComparedNumber]:
-        """All that is compared, with p-values before Holm.
+        """All comparisons, with p-values before Holm.
 
         Args:
             comparisons: how many there are in all missions.
@@ -178,7 +178,7 @@ class _Mission:
         )
 
     def _tested(self, newly: Newly, changes: Sequence[ComparedNumber]) -> Newly:
-        """With how likely the violations of its clauses are by chance."""
+        """The requirement with the p-value of the violations of its clauses."""
         direction = "less reliable" if newly.after == VIOLATED else "more reliable"
         p = [
             change.p if change.direction == direction else 1.0

@@ -27,10 +27,10 @@ class FailedRuns(Record):
 
 
 def failed_runs(rows: Iterable[Mapping[str, Any]], sides: tuple[str, str]) -> list[FailedRuns]:
-    """The failures of what has results on both sides, and failed in some of the runs.
+    """The failures of nodes and clauses that have results on both sides, and failed in some of the runs.
 
-    What failed in none, or in all, has the p-value 1 however its runs are parted, so there is nothing to correct for
-    (Tarone, *Biometrics* 46, 1990).
+    What failed in no run, or in all, has the p-value 1 for every division of its runs, so there is nothing to correct
+    for (Tarone, *Biometrics* 46, 1990).
 
     Args:
         rows: the answer to `questions.FAILURES`.

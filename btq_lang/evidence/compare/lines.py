@@ -26,7 +26,7 @@ class DifferenceLine(Record):
         requirement: that it is about; empty where it is about a node alone.
         name: the requirement with its title or clause, or the node.
         text: both sides, and how likely that is by chance.
-        more: what is the same change, or comes of it; may be empty.
+        more: what is the same change, or follows from it; may be empty.
     """
 
     finding: str
@@ -38,7 +38,8 @@ class DifferenceLine(Record):
 
 
 def certain(comparison: RunComparison) -> list[DifferenceLine]:
-    """What is certain and large enough: what is newly violated, what got worse by the largest share, then the rest.
+    """The changes that are certain and large enough: first new violations, then what got worse, the largest share
+    first, then the rest.
 
     What another change explains has no line of its own; that of a requirement also says what is measured for it.
     """
@@ -71,7 +72,7 @@ def certain(comparison: RunComparison) -> list[DifferenceLine]:
 
 
 def by_chance(comparison: RunComparison) -> list[DifferenceLine]:
-    """What differs most of what chance may explain: requirements, then the least likely differences."""
+    """The largest differences that chance may explain: requirements, then the least likely differences."""
     lines = [
         replace(_turned(newly), is_worse=False)
         for newly in (*comparison.newly, *comparison.no_longer)
@@ -103,7 +104,7 @@ def percent(change: ComparedNumber) -> str:
 
 
 def _turned(newly: Newly) -> DifferenceLine:
-    """How a requirement came to be violated, or no longer."""
+    """How a requirement became violated, or no longer is."""
     first, second = (f"{k:,} of {n:,}" for k, n in zip(newly.violated, newly.counted, strict=True))
     is_worse = newly.after == VIOLATED
     verdict = f"was {newly.before}" if is_worse else f"is {newly.after}"
@@ -122,7 +123,7 @@ def _causes_in_requirements(changes: Sequence[ComparedNumber]) -> dict[str, str]
 
 
 def _folded(change: ComparedNumber, changes: Sequence[ComparedNumber]) -> str:
-    """What is the same change, or comes of it."""
+    """What is the same change, or follows from it."""
     effects = [effect for effect in changes if effect.cause == change.key and effect.direction == change.direction]
     effects.sort(key=lambda effect: effect.before)  # what is inside takes less time
     keys = [*change.same, *(key for effect in effects for key in (effect.key, *effect.same))]
@@ -181,7 +182,7 @@ def heading(comparison: RunComparison, sides: tuple[str, str]) -> str:
 
 
 def remarks(comparison: RunComparison, sides: tuple[str, str]) -> Iterator[str]:
-    """What was compared and not found to have changed, what could not be compared, and what has too few runs."""
+    """What did not change, what could not be compared, and what has too few runs."""
     if not all(comparison.runs):
         return
     if comparison.labels:

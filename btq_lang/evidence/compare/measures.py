@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class ShuffledUnit(NamedTuple):
-    """What is shuffled: a run, a group of runs, or a robot."""
+    """A unit of the shuffles: a run, a group of runs, or a robot."""
 
     side: str
     stratum: str
@@ -109,7 +109,7 @@ def probability(
 
 
 def rest(measure: Measure, parts: Sequence[Measure]) -> Measure:
-    """What is left of the sum of a unit's values without those of the parts, and the ranks of that."""
+    """The rest of the sum of each unit's values without those of the parts, and its ranks."""
     sums = {
         unit: values.number * values.mean - sum(part[unit].number * part[unit].mean for part in parts if unit in part)
         for unit, values in measure.items()

@@ -20,7 +20,7 @@ from btq_lang.util.grouping import grouped
 
 
 class Numbers:
-    """What is compared of a mission.
+    """The numbers that are compared of a mission.
 
     Attributes:
         over, group: as in `Comparison`.
@@ -66,7 +66,7 @@ class Numbers:
         self.failures: Final[Sequence[FailedRuns]] = failed_runs(self._asked(questions.FAILURES), sides)
 
     def symbol(self, key: Key) -> str:
-        """The unit that a measure is shown in."""
+        """The unit in which a measure is shown."""
         return self._symbols.get(key, "s") if key.requirement else "s"
 
     def is_duration(self, key: Key) -> bool:
@@ -78,13 +78,13 @@ class Numbers:
         return numbers.get(self.sides[0], 0), numbers.get(self.sides[1], 0)
 
     def inside(self, keys: Sequence[Key]) -> dict[Key, Collection[Key]]:
-        """Which of some nodes and clauses were active only while which others were."""
+        """For some nodes and clauses, the others around them: those that were active whenever they were."""
         rows = self._asked(questions.INSIDE, keys=questions.numbered(keys), sample=questions.SAMPLE)
         around = grouped((keys[row["around"]], keys[row["within"]]) for row in rows)
         return {key: {*around.get(key, ())} for key in keys}
 
     def failed_together(self, keys: Sequence[Key]) -> Sequence[Row]:
-        """In how many runs the same of some nodes and clauses failed, by their places."""
+        """In how many runs the same ones of some nodes and clauses failed, by their places."""
         return self._asked(questions.FAILED_TOGETHER, keys=questions.numbered(keys))
 
     def _is_in_both(self, measure: Measure) -> bool:

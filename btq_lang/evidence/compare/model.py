@@ -1,4 +1,4 @@
-"""What changed between two sides of a store, as data."""
+"""The changes between two sides of a store, as data."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class ComparedNumber(Record):
         what: `mean` of a measure, by run; `failures`: the share of runs with a failure or a violation.
         unit: that the measure is shown in; values are in SI.
         before, after: the number on each side; of several robots, the average over those that ran both.
-        interval: that has the difference, `after` less `before`, with 95 %; None where the spread does not tell.
+        interval: the 95 % interval of the difference, `after` less `before`; None where the spread is unknown.
         counts: how many values, or runs, each side has.
         units: how many runs, groups of runs or robots with such values each side has.
         failed: in how many of the runs it failed, or was violated; None for a measure.
@@ -90,7 +90,7 @@ class ComparedNumber(Record):
 
     @property
     def direction(self) -> Finding:
-        """What it is called if it is a change."""
+        """The word for the difference if it is a change."""
         is_more = self.after > self.before
         if self.what == "failures":
             return "less reliable" if is_more else "more reliable"
@@ -100,7 +100,7 @@ class ComparedNumber(Record):
 
 
 class RunComparison(Record):
-    """What changed in a mission; nothing is compared of one that only one side ran.
+    """The changes in a mission; one that only one side ran has no comparison.
 
     Attributes:
         runs, robots: how many each side has.

@@ -1,4 +1,4 @@
-"""What changed in the verdicts on requirements, between two sides of a store.
+"""The changes in the verdicts on requirements between two sides of a store.
 
 One invariant: a clause whose bound was edited says nothing about the robot, so no verdict on it counts as a change.
 """

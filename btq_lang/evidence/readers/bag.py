@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, Final
 from btq_lang.evidence.readers import sqlite
 from btq_lang.evidence.readers.tree import NotALog
 from btq_lang.evidence.readers.truncated_bags import MCAP, BagDatabase, WholeFile
+from btq_lang.evidence.wording import message_of
 
 if TYPE_CHECKING:
     from rosbags.interfaces import Connection
@@ -56,7 +57,7 @@ class Bag:
                     break
                 except Exception as error:  # `rosbags` does not wrap what its parts raise
                     self.remarks.append(
-                        f"the bag is damaged, and what comes after the damage is left out: {_message(error)}"
+                        f"the bag is damaged, and what comes after the damage is left out: {message_of(error)}"
                     )
                     break
                 try:
@@ -108,8 +109,8 @@ def _folder(path: str, remarks: list[str]) -> list[Any]:
     except Exception as error:  # whatever the metadata's fault is
         files = sorted(name for name in os.listdir(path) if name.endswith((".mcap", ".db3")))
         if not files:
-            raise NotALog(f"the bag cannot be read: {_message(error)}") from error
-        remarks.append(f"its files are read without {METADATA}: {_message(error)}")
+            raise NotALog(f"the bag cannot be read: {message_of(error)}") from error
+        remarks.append(f"its files are read without {METADATA}: {message_of(error)}")
         return [_file(os.path.join(path, name), remarks) for name in files]
     return [storage]
 
@@ -146,7 +147,7 @@ def _file(path: str, remarks: list[str]) -> Any:
     except (OSError, NotALog):
         raise
     except Exception as error:  # `rosbags` does not wrap what its parts raise
-        raise NotALog(f"the bag cannot be read: {_message(error)}") from error
+        raise NotALog(f"the bag cannot be read: {message_of(error)}") from error
     return storage
 
 
@@ -162,10 +163,6 @@ def files_in(folder: str) -> tuple[str, ...]:
     if "rosbag2_bagfile_information" not in text:
         return ()
     return metadata, *(os.path.join(folder, name) for name in names if name in text)
-
-
-def _message(error: Exception) -> str:
-    return " ".join(str(error).split()) or type(error).__name__
 
 
 # ---- messages ----
@@ -187,7 +184,7 @@ def _decoder(connection: Connection) -> Callable[[bytes], Any]:
             return _either(*(_decoder_of(name, "MSG", text) for text in texts))
         return _decoder_of(name, definition.format.name, definition.data)
     except Exception as error:  # a definition may contain anything
-        raise NotALog(f"the bag has no usable definition of {name}: {_message(error)}") from error
+        raise NotALog(f"the bag has no usable definition of {name}: {message_of(error)}") from error
 
 
 @lru_cache(64)
@@ -235,7 +232,7 @@ _IDL_RULE: Final = f"{'=' * 80}\n"
 
 
 def limit_chunks() -> None:
-    """Make `rosbags` decompress chunks of MCAP files up to MOST_UNPACKED; it has no limit by itself."""
+    """Make `rosbags` decompress chunks of MCAP files up to MOST_UNPACKED; without this it has no limit."""
     from lz4.frame import LZ4FrameDecompressor  # type: ignore[import-untyped]  # it has no stubs
     from rosbags.rosbag2 import storage_mcap
 

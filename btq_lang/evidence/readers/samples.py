@@ -14,6 +14,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Final
 
 from btq_lang.evidence.model import SampleSeries, SampleValue, is_sample
+from btq_lang.evidence.wording import message_of
 from btq_lang.util.spelling import did_you_mean, near
 
 if TYPE_CHECKING:
@@ -138,7 +139,7 @@ def _parquet_columns(path: str) -> tuple[list[str], Iterator[tuple[Any, ...]]]:
     try:
         columns = database.execute("DESCRIBE SELECT * FROM read_parquet(?)", [path]).fetchall()
     except duckdb.Error as error:
-        raise NoSamples(_message(error)) from error
+        raise NoSamples(message_of(error)) from error
     names = [str(name) for name, *_ in columns]
     expressions = ", ".join(_expression(str(name), str(kind)) for name, kind, *_ in columns)
 
@@ -149,7 +150,7 @@ def _parquet_columns(path: str) -> tuple[list[str], Iterator[tuple[Any, ...]]]:
                 for row in block:
                     yield tuple(float(value) if isinstance(value, Decimal) else value for value in row)
         except duckdb.Error as error:
-            raise NoSamples(_message(error)) from error
+            raise NoSamples(message_of(error)) from error
         finally:
             database.close()
 
@@ -167,10 +168,6 @@ def _engine() -> Any:
 def _expression(name: str, kind: str) -> str:
     quoted = '"' + name.replace('"', '""') + '"'
     return f"epoch_us({quoted}) / 1e6" if kind.startswith(("TIMESTAMP", "DATE")) else quoted
-
-
-def _message(error: Exception) -> str:
-    return " ".join(str(error).split())
 
 
 _NAMES: Final = "expected a line of column names, separated by commas: the time first, then signals or their entries"

@@ -21,7 +21,7 @@ from urllib.request import pathname2url
 from btq_lang.evidence.model import LogSession, SampleSeries, Transition, is_sample
 from btq_lang.evidence.readers.tree import NotALog, read_tree
 
-BESIDE: Final = ("-journal", "-wal")  # what the names of the files end with that belong to a database
+BESIDE: Final = ("-journal", "-wal")  # the suffixes of the files that belong to a database
 
 
 def read(path: str) -> Iterator[LogSession]:
@@ -129,7 +129,7 @@ def _copied(path: str, stack: ExitStack) -> str:
 
 
 def _version(path: str) -> tuple[int, int] | None:
-    """What differs when a file has been written; None if it is gone."""
+    """Size and time of a file, which differ after it was written; None if it is gone."""
     try:
         status = os.stat(path)
     except OSError:

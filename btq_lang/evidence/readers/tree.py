@@ -79,7 +79,9 @@ def kind_of(element: Element) -> str:
 
 
 def delay_of(element: Element) -> int | None:
-    """How long a Delay waits before it ticks its child, in µs; None: another node, or the value is not in the XML."""
+    """How long a Delay waits before it ticks its child, in µs; None for another node, and if the XML lacks the
+    value.
+    """
     time = element.get(_DELAYS.get(kind_of(element), "")) or ""
     return int(time) * 1000 if time.isascii() and time.isdecimal() and len(time) <= _MOST_TIME else None
 

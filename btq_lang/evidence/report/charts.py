@@ -130,7 +130,7 @@ def _began(labels: Sequence[tuple[str, str]]) -> str:
 
 
 def date(time: int, by: str) -> str:
-    """A time, as exactly as what it is the begin of asks for: a run, a minute or longer."""
+    """A time to the minute or the day, depending on what begins then: a run, a minute or longer."""
     begin = moment(time)
     if begin is None:
         return f"{time} µs"

@@ -1,4 +1,4 @@
-"""What the page shows, as data.
+"""The contents of the page, as data.
 
 One invariant: what is loaded are counts and the worst violation of each clause.
 """

@@ -50,7 +50,9 @@ def _extent(overview: StoreOverview) -> str:
 
 
 def _tiles(overview: StoreOverview) -> list[tuple[str, int | str, str]]:
-    """The numbers of what got worse, where something is compared, and of what is violated: class, number and words."""
+    """How many things got worse, where something is compared, and how many requirements are violated: class, number and
+    words.
+    """
     tiles: list[tuple[int | str, str]] = []
     if compared := overview.comparisons:
         findings = [line.finding for comparison in compared for line in certain(comparison)]

@@ -1,4 +1,4 @@
-"""What is wrong with the files of a store: those that are missing, damaged, of another table or of earlier verdicts."""
+"""Problems with the files of a store: missing, damaged, of another table or of earlier verdicts."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import os
 from typing import Any, Final
 
 from btq_lang.evidence.store.tables import COMMON, OF_CLAUSE, OPTIONAL, ROWS, files_of, quoted
+from btq_lang.evidence.wording import message_of
 
 
 def incomplete(connection: Any, store: str) -> str | None:
@@ -48,7 +49,7 @@ def incomplete(connection: Any, store: str) -> str | None:
 
 
 def judged_earlier(logs: str, store: str) -> str:
-    """That some logs have verdicts of an earlier version of btq, and what to do."""
+    """A sentence: some logs have verdicts of an earlier version of btq; and what to do."""
     again = f"read such logs again with btq verify LOG --store {store}, or remove their folders"
     return f"an earlier version of btq, with other rules, has judged {logs}; {again}"
 
@@ -63,7 +64,7 @@ def damage(connection: Any, store: str) -> str | None:
             types = {name: kind for name, kind, *_ in connection.execute(f"DESCRIBE FROM {source}").fetchall()}
             connection.execute(f"SELECT max(COLUMNS(*)) FROM {source}").fetchall()
         except duckdb.Error as error:
-            return f"{file}: {' '.join(str(error).split())}; {_AGAIN}"
+            return f"{file}: {message_of(error)}; {_AGAIN}"
         if wrong := _columns(table).items() - types.items():
             return _lacking(file, *min(wrong))
     return None

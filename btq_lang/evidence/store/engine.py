@@ -19,6 +19,7 @@ from btq_lang.evidence.store.damage import LATER, damage, incomplete, judged_ear
 from btq_lang.evidence.store.queries import REPEATED
 from btq_lang.evidence.store.rows import file_of
 from btq_lang.evidence.store.tables import COMMON, OF_CLAUSE, OPTIONAL, ROWS, files_of, quoted
+from btq_lang.evidence.wording import message_of
 
 
 class NoEngine(Exception):
@@ -47,7 +48,7 @@ def write_parquet(folder: str, common: Mapping[str, str]) -> None:
     except duckdb.Error as error:
         if match := re.search(r'"errno":"(\d+)"', str(error)):
             raise OSError(int(match[1]), os.strerror(int(match[1]))) from error
-        raise NoEngine(" ".join(str(error).split())) from error
+        raise NoEngine(message_of(error)) from error
     finally:
         cursor.close()
 
@@ -62,7 +63,7 @@ def asked(store: str, label: str | None = None) -> Callable[[str], list[dict[str
         NoEngine: DuckDB is missing, or the store has no sets or a damaged one; so does the function.
     """
     duckdb = imported()
-    # In a folder with a name of its own, which DuckDB makes when it is needed, and removes.
+    # DuckDB makes this folder when it needs it, and removes it.
     spilled = os.path.join(tempfile.gettempdir(), f"btq-{uuid.uuid4().hex}")
     connection = duckdb.connect(config={"memory_limit": _MOST, "temp_directory": spilled})
 
@@ -79,7 +80,7 @@ def asked(store: str, label: str | None = None) -> Callable[[str], list[dict[str
             names = [str(column[0]) for column in result.description]
             return [dict(zip(names, row, strict=True)) for row in result.fetchall()]
         except duckdb.Error as error:
-            raise NoEngine(damage(connection, store) or f"{store}: {' '.join(str(error).split())}") from error
+            raise NoEngine(damage(connection, store) or f"{store}: {message_of(error)}") from error
 
     if problem := incomplete(connection, store):
         raise NoEngine(problem)
@@ -117,9 +118,9 @@ def imported() -> Any:
 
 @lru_cache(1)
 def _writer(process: int) -> Any:
-    """A connection of this process: one that was made before a fork is not for both.
+    """A connection of this process: a connection made before a fork must not serve both processes.
 
-    Its limit is what lets go of text that has been read; otherwise all of it stays.
+    Its memory limit frees text that has been read; otherwise all of it stays.
     """
     return imported().connect(config={"threads": 1, "memory_limit": _MEMORY, "temp_directory": ""})
 
@@ -191,10 +192,11 @@ def asked_by(url: str, store: str) -> Callable[[str], list[dict[str, Any]]]:
 
 
 def _failed(url: str, error: Exception) -> NoEngine:
-    return NoEngine(f"{url}: {' '.join(str(error).split()) or type(error).__name__}")
+    return NoEngine(f"{url}: {message_of(error)}")
 
 
-# The rows of a group are in memory together: fewer than DuckDB's 122 880 take less, and a few bytes more on the disk.
+# The rows of a group are in memory together: fewer than DuckDB's 122 880 take less memory, and few more bytes on the
+# disk.
 _OPTIONS: Final = "FORMAT parquet, COMPRESSION zstd, PARQUET_VERSION v2, ROW_GROUP_SIZE 20480"
 _KEPT: Final = "ANTI JOIN left_out"
 _BUFFER: Final = 4_000_000  # bytes of text that are read at once

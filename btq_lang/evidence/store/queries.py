@@ -1,8 +1,8 @@
-"""The questions that a summary asks of a store: all SQL of it, as one table.
+"""The questions that a summary asks of a store, as one table of SQL.
 
-One invariant: it is the part of SQL that every engine has, in DuckDB's words: aggregates, CASE, joins, and windows that
-number rows in one direction, with no NULLS LAST.  So one text runs on DuckDB and, translated word by word, on
-other engines.
+One invariant: the questions use the part of SQL that every engine has, in DuckDB's words: aggregates, CASE, joins, and
+windows that number rows in one direction, with no NULLS LAST.  So one text runs on DuckDB and, translated word by word,
+on other engines.
 
 `{by}` are the columns that part the summary: `mission`, and those that the user names.
 """

@@ -199,11 +199,16 @@ def digest(folder: str) -> str:
     """The SHA-256 of all rows."""
     digest_of_rows = hashlib.sha256()
     for name in ROWS:
-        with open(file_of(folder, name), "rb") as file:
-            while block := file.read(_BLOCK):
-                digest_of_rows.update(block)
+        hash_file(digest_of_rows, file_of(folder, name))
         digest_of_rows.update(b"\0")
     return digest_of_rows.hexdigest()
+
+
+def hash_file(hashed: hashlib._Hash, path: str) -> None:
+    """Add the bytes of a file to a hash."""
+    with open(path, "rb") as file:
+        while block := file.read(_BLOCK):
+            hashed.update(block)
 
 
 def _counted(row: tuple[Any, ...], is_counted: bool) -> tuple[Any, ...]:

@@ -25,7 +25,7 @@ from typing import Any, Final
 
 from btq_lang.evidence.readers import sqlite
 from btq_lang.evidence.store.engine import NoEngine, write_parquet
-from btq_lang.evidence.store.rows import Rows, digest, file_of
+from btq_lang.evidence.store.rows import Rows, digest, file_of, hash_file
 from btq_lang.evidence.store.tables import ROWS
 from btq_lang.util.record import Record
 
@@ -190,9 +190,7 @@ def sha256(log: str) -> str:
         if path != log:
             name = path.removeprefix(log).lstrip(os.sep)
             digest_of_files.update(f"{name}\0{os.path.getsize(path)}\0".encode(errors="surrogateescape"))
-        with open(path, "rb") as file:
-            while block := file.read(_BLOCK):
-                digest_of_files.update(block)
+        hash_file(digest_of_files, path)
     return digest_of_files.hexdigest()
 
 
@@ -224,4 +222,3 @@ _OLD: Final = ".old-"
 _ASIDE: Final = re.compile(rf"{re.escape(_OLD)}([0-9a-f]{{64}})-[0-9a-f]{{32}}")
 _LIFE: Final = 86_400.0  # s for which a draft may be unchanged: more than clocks of several machines differ
 _SHORT: Final = 16
-_BLOCK: Final = 1 << 20

@@ -17,11 +17,11 @@ def files_of(store: str, table: str) -> str:
 
 
 def quoted(text: str) -> str:
-    """A text as SQL."""
+    """A text as a string literal of SQL."""
     return "'" + text.replace("'", "''") + "'"
 
 
-# What all rows of a table have in common in a set; the other columns are in the rows that `rows.py` writes.
+# The columns that all rows of a table in a set have in common; `rows.py` writes the others.
 COMMON: Final = {
     "runs": ("log", "label", "source"),
     "activations": ("log", "label"),
@@ -113,8 +113,8 @@ ROWS: Final = {
         "most_si": "DOUBLE",
     },
 }
-# What the sets of earlier versions may lack, which then is NULL.
+# Columns that the sets of earlier versions may lack; they are then NULL.
 OPTIONAL: Final = {"clauses": ("lower_si", "upper_si", "goal_si")}
-# What a verdict has of its clause.
+# The columns that a verdict takes from its clause.
 OF_CLAUSE: Final = ("mission", "robot", "requirement", "clause", "node")
 _SETS: Final = "[0-9a-f]*"

@@ -24,7 +24,7 @@ MOST_KEPT: Final = 1000  # transitions in the publisher's buffer; older ones are
 
 
 class BadReply(Exception):
-    """A reply that is not as the protocol has it, or an error; the message says what came instead."""
+    """A reply that does not follow the protocol, or an error; the message says what came instead."""
 
 
 class Reply(Record):

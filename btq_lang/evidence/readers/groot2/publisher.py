@@ -27,11 +27,11 @@ class NoAnswer(Exception):
 
 
 class NotAPublisher(NotALog):
-    """What listens at the address is something else; the message says what came."""
+    """Something else listens at the address; the message says what came."""
 
 
 def check_installed() -> None:
-    """Check that what reads a running robot is there.
+    """Check that the packages that read a running robot are installed.
 
     Raises:
         NoLive: it is not.
@@ -101,7 +101,7 @@ class Publisher:
                 return
 
     def _look_who_is_there(self) -> None:
-        """Find out what does not answer, by a connection of its own."""
+        """Find out, by a new connection, what it is that does not answer."""
         greeting = _greeted(self._address)
         if greeting is None:
             self._silences = 0
