@@ -70,7 +70,12 @@ def _uncreated(view: View, tree: str, named: Sequence[EntryMention], but: set[st
             continue
         if use & EntryUse.OUTSIDE and next(each for each in named if each.name == name) is not mention:
             continue  # programs set what scripts read first
-        is_certain = not use & EntryUse.STRANGE and (not use & EntryUse.OUTSIDE or _is_known_root(view, tree))
+        of_program = view.ask(lookups.set_in_cpp)
+        is_in_cpp = name.removeprefix("@") in of_program.names
+        if is_in_cpp and use & EntryUse.OUTSIDE:
+            continue
+        is_seen = not use & EntryUse.STRANGE and not is_in_cpp and not of_program.has_unseen
+        is_certain = is_seen and (not use & EntryUse.OUTSIDE or _is_known_root(view, tree))
         message = f"a script assigns to `{name}`, which nothing creates"
         creating, fixes = _creating(view, mention)
         notes = (f"the engine throws when it runs the script; {creating}",)
@@ -119,7 +124,7 @@ def _unset(view: View, tree: str, named: Sequence[EntryMention], but: set[str]) 
                 outside.append(mention)
         elif not use & EntryUse.STRANGE and view.ask(_needs, tree, name):
             yield _not_given(view, tree, mention)
-    of_program = view.ask(lookups.set_in_cpp)
+    of_program = view.ask(lookups.set_in_cpp).names
     outside = [each for each in outside if each.name not in of_program and view.ask(_needs, tree, each.name)]
     if outside and _is_known_root(view, tree):
         yield from _never_set(view, outside)

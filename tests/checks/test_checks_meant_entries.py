@@ -141,7 +141,8 @@ def test_words_that_are_values_are_never_meant_as_entries(value: str, type_: str
 
 
 def test_the_default_of_a_port_is_a_value() -> None:
-    text = "Action Go\n    input mode : Mode = FAST\nBehaviorTree Main\n    ->\n        Find (m = {FAST})\n        Go (mode = {})\n"
+    model = "Action Go\n    input mode : Mode = FAST\n"
+    text = f"{model}BehaviorTree Main\n    ->\n        Find (m = {{FAST}})\n        Go (mode = {{}})\n"
     assert findings(text.replace("{}", "FAST"), RULE) == []
     other = text.replace("{FAST}", "{SLOW}").replace("{}", "SLOW")
     assert findings(other, RULE) == [f"6 warning «SLOW» {text_of('SLOW')}`{{SLOW}}`?"]
