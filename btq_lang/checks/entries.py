@@ -13,7 +13,7 @@ from typing import TypeAlias
 
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.names import is_port_name
+from btq_lang.catalog.names import is_entry_name, is_port_name
 from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import callers
@@ -88,7 +88,7 @@ def handling(store: Store[Workspace], viewpoint: str, tree: str) -> Handling:
         _has_verbatim(item, nodes.all)
         or bool(store.ask(inputs.entry, *found).diagnostics)
         or any(map(_names_by_value, nodes.given))
-        or any(not touch.name.removeprefix("@").isidentifier() for touch in touches),
+        or any(not is_entry_name(touch.name.removeprefix("@")) for touch in touches),
         any(_is_stranger(view, seen) for seen in nodes.all),
     )
 
@@ -253,7 +253,7 @@ def _call(view: View, seen: ResolvedNode) -> SubTreeCall | None:
     values: list[str] = []
     for pair in seen.node.attributes:
         port, text = pair.key.text, pair.value.text if pair.value is not None else ""
-        if not is_port_name(port):
+        if not is_port_name(port, view.target):
             continue
         # In version 3 a SubTree maps names to names; a file that does not say its version may be for that one.
         is_name = text.isidentifier() and not (is_new or is_plus)

@@ -61,14 +61,14 @@ def _named(source: str, setters: frozenset[str]) -> tuple[frozenset[str], bool]:
     if not setters:
         return frozenset(names), False
     calls = rf"\b(?:{'|'.join(sorted(setters))}){_GIVEN}"
-    names.update(re.findall(rf'{calls}"([A-Za-z_]\w*)"\s*[,)]', source))
+    names.update(re.findall(rf'{calls}"([A-Za-z_][\w.]*)"\s*[,)]', source))
     return frozenset(names), re.search(rf"{calls}[\w.:]+\s*,", source) is not None
 
 
 _GIVEN: Final = r"\s*(?:<[^;(){}]*>)?\s*\(\s*"
-_SETS: Final = re.compile(rf'(?:->|\.)\s*set{_GIVEN}"([A-Za-z_]\w*)"\s*,').findall
+_SETS: Final = re.compile(rf'(?:->|\.)\s*set{_GIVEN}"([A-Za-z_][\w.]*)"\s*,').findall
 _SETS_UNQUOTED: Final = re.compile(
-    rf"(?:[bB]lackboard|BLACKBOARD|board|bb)\w*(?:\(\))?\s*(?:->|\.)\s*set{_GIVEN}(?!\"\w*\"\s*,)([^\s,;][^,;]*?)\s*,"
+    rf"(?:[bB]lackboard|BLACKBOARD|board|bb)\w*(?:\(\))?\s*(?:->|\.)\s*set{_GIVEN}(?!\"[\w.]*\"\s*,)([^\s,;][^,;]*?)\s*,"
 ).finditer
 _FUNCTION: Final = re.compile(r"(\w+)(?:\s*=\s*\[[^\]]*\])?\s*\([^(){};,]*?(\w+)\s*(?:,[^();]*)?\)[^(){};]*\{")
 _STATEMENTS: Final = frozenset(("if", "for", "while", "switch", "catch"))

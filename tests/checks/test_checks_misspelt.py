@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from check_asserts import findings, fixes, problems
+from check_asserts import findings, fixes, problems, show
 
 RULE = "misspelt-entry"
 
@@ -152,3 +152,19 @@ def test_a_writer_that_is_not_one(head: str, writes: str, note: str) -> None:
     nodes = f"        Find (place = {{{writes}}})\n        Lead (place = {{goal}})\n"
     (found,) = problems(f"{models}BehaviorTree Main\n    ->\n{nodes}", "unset-entry")
     assert found.notes == ("ignore this where the robot's program sets the entry", note)
+
+
+@pytest.mark.parametrize(("entry", "is_told"), [("sign.id", True), ("a.b.c", True), ("a}_{b", False), ("a-b", False)])
+def test_only_names_of_other_languages_hide_what_is_unset_and_unread(entry: str, is_told: bool) -> None:
+    text = (
+        "Action Go\n    input place\n    input id\n"
+        "BehaviorTree Main\n    SubTree Stop (speed = 3)\n"
+        f"BehaviorTree Stop\n    Go (place = {{spot}} id = {{{entry}}})\n"
+    )
+    unset = "nothing in `Stop` writes `spot`, which is read here, and no SubTree passes it"
+    told = [
+        "5:19 warning unread-argument «speed» nothing in `Stop` reads `speed`",
+        f"7:18 warning unset-entry «spot» {unset}",
+    ]
+    found = [*problems(text, "unread-argument"), *problems(text, "unset-entry")]
+    assert show(text, found) == told * is_told

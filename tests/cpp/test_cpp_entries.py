@@ -13,6 +13,7 @@ WRAPPER = "void put(const std::string & key, const T & value = {}) { blackboard_
     ("sources", "names", "has_unseen"),
     [
         (['blackboard->set("a", 1); tree.rootBlackboard()->set<std::string>( "b" , x);'], {"a", "b"}, False),
+        ([WRAPPER, 'bb->set("bt.mode", 1); put("bt.goal", g);'], {"bt.mode", "bt.goal"}, False),
         (['params.set(name, 1); blackboard->get("a", x);'], set(), False),
         (["blackboard->set(name, 1);"], set(), True),
         (['bb->set(prefix + "a", 1);'], set(), True),
