@@ -84,7 +84,7 @@ def handling(store: Store[Workspace], viewpoint: str, tree: str) -> Handling:
         tuple([port.name.text for port in (*item.ports, *declared) if port.name is not None]),
         tuple(touches),
         frozenset(_bare_values(nodes.given)),
-        tuple([call for seen in nodes.all if (call := _call(view, seen)) is not None]),
+        tuple([call for seen in nodes.all if (call := call_of(view, seen)) is not None]),
         _has_verbatim(item, nodes.all)
         or bool(store.ask(inputs.entry, *found).diagnostics)
         or any(map(_names_by_value, nodes.given))
@@ -241,7 +241,7 @@ class Blackboards:
         return name
 
 
-def _call(view: View, seen: ResolvedNode) -> SubTreeCall | None:
+def call_of(view: View, seen: ResolvedNode) -> SubTreeCall | None:
     """How a node passes entries to the tree that it runs; None if it runs none."""
     is_plus = seen.node.kind is not None and seen.node.kind.raw == "SubTreePlus"
     named = seen.node.attribute("ID") if is_plus else seen.id if seen.is_subtree else None
