@@ -11,6 +11,7 @@ which caches results from one edit to the next.  Not known here: what an edit ch
     trees.py, includes.py, elements.py, missing_ids.py, stale_models.py   likewise, of whole trees, models and files
     positional.py, literals.py, outputs.py, scripts.py, counts.py, empty.py   values, of ports too
     entries.py, pointers.py, writers.py, keys.py, misspelt.py, meant_entries.py, mixed_types.py   blackboard entries
+    typed_numbers.py   numbers as a later engine types them
     flow.py, unset.py, arguments.py   entries across trees: what is read that nothing sets, given that nothing reads
     engines.py, version3.py   which versions of the engine a file is for
     moving.py, moved_engine.py, moved_nodes.py   what another version of the engine or distribution of Nav2 changes
@@ -63,6 +64,7 @@ from btq_lang.checks import (
     shared_servers,
     stale_models,
     trees,
+    typed_numbers,
     unreachable,
     unread,
     unset,
@@ -155,6 +157,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         keys.key_in_braces,
         literals.number_for_text,
         mixed_types.entry_with_two_types,
+        typed_numbers.number_of_another_type,
         outputs.literal_for_output,
         counts.count_of_nothing,
         children.child_count,

@@ -252,6 +252,22 @@ def text_below(workspace: Workspace, viewpoint: str, tree: str, port: str) -> tu
 
 
 @of_viewpoint
+def types_below(workspace: Workspace, viewpoint: str, tree: str, port: str) -> tuple[tuple[Place, str, str, str], ...]:
+    """The ports to which a port of a tree is assigned in that tree or below: place, name, node and type of each."""
+    return tuple(
+        [
+            (
+                Place(met.pair.key.span, met.tree.path, met.tree.entry.item),
+                met.pair.key.text,
+                met.node.head.text,
+                met.type,
+            )
+            for met in meetings(workspace.scope(viewpoint), workspace.project.target, tree, port)
+        ]
+    )
+
+
+@of_viewpoint
 def is_run_elsewhere(workspace: Workspace, viewpoint: str, tree: str) -> bool:
     """Whether XML outside of an XML file's scope, which may be registered with it, runs a tree."""
     if workspace.project.pool_of(viewpoint) is None or viewpoint not in workspace.xml:
