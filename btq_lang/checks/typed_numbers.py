@@ -52,7 +52,7 @@ def _diagnostic(view: View, value: Word, other: tuple[Place, str, str, str], typ
     notes = (
         f"write `{fit}`: with a blank at its end it stays a text, which the node reads as the number",
     ) * fit.endswith(" ")
-    fixes = (replace_fix(f"Write `{fit}`", value.span, written(fit)),) if fit != number else ()
+    fixes = (replace_fix(f"Write `{fit}`", value.span, fit if _NUMBER(fit) else written(fit)),) if fit != number else ()
     # A project that does not name its engine may have an earlier one.
     severity = None if view.project.pinned else Severity.WARNING
     related = (Related(place, f"read here as {type_}"),)
