@@ -81,7 +81,7 @@ def _reason(left_out: NodesLines) -> str:
 
 def _of_nav2(workspace: Workspace, packages: Packages) -> NodesLines | None:
     """Nav2's nodes, if XML uses any."""
-    used = _used(workspace)
+    used = {name: ports for name, ports in _used(workspace).items() if name not in packages.registered}
     if not any(used.values()):
         return None  # a `Wait` alone may be anybody's
     fitting = [each for each in _of_engine(workspace, packages.engines, used) if _has(each, used)]
