@@ -36,7 +36,7 @@ def set_entries(sources: Iterable[str]) -> SetEntries:
 
 @lru_cache(1_000)  # each file of trees asks for the same sources
 def _setters(source: str) -> frozenset[str]:
-    """The functions that give their first parameter to `set`; an empty name for each other name that is no string."""
+    """The functions that give their first parameter to `set`; an empty name for each name that is not a string."""
     return frozenset([_setter(source, each.start(), each[1]) for each in _SETS_UNQUOTED(source)])
 
 
@@ -56,7 +56,7 @@ def _is_open(code: str) -> bool:
 
 @lru_cache(1_000)
 def _named(source: str, setters: frozenset[str]) -> tuple[frozenset[str], bool]:
-    """The entries that a source sets, and whether it gives one of some functions a name that is no string."""
+    """The entries that a source sets, and whether it gives one of some functions a name that is not a string."""
     names = {*_SETS(source)}
     if not setters:
         return frozenset(names), False
