@@ -73,6 +73,11 @@ def values_of(port_type: str) -> tuple[str, ...]:
     return _CLOSED.get(_plain(port_type), ())
 
 
+def is_own_value(word: str) -> bool:
+    """Whether a word is the literal of some type, in whatever case: `true`, `NaN`, `SUCCESS`."""
+    return word.casefold() in _OWN_VALUES
+
+
 def is_known_type(plain: str) -> bool:
     """Whether it is a type of the engine or of C++ itself, by the name that `plain_type` gives it.  Any other is the
     user's, and may be an alias for one of these."""
@@ -258,6 +263,9 @@ _CLOSED: Final = {
     RESULT: _RESULTS,
     "BT::NodeStatus": (*_RESULTS, "IDLE"),
 }
+_OWN_VALUES: Final = frozenset(
+    (*(value.casefold() for values in _CLOSED.values() for value in values), "nan", "inf", "infinity")
+)
 _OTHER_TYPES: Final = frozenset(("double", "float", "bool", "std::string", "BT::NodeStatus"))
 # Numbers other than 0 become 0 below the first limit and infinite above the second: the engine refuses both.
 _MAGNITUDES: Final = {"double": (0.0, 1.7976931348623157e308), "float": (7.006492321624085e-46, 3.4028235677973366e38)}

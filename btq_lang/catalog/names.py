@@ -58,6 +58,11 @@ def is_port_name(name: str, version: str = DEFAULT_VERSION) -> bool:
     return not NAME_RULES.holds(version) or _refused_character(name, _REFUSED) is None
 
 
+def is_entry_name(name: str) -> bool:
+    """Whether a blackboard entry is likely called so: `goal`, `stop_sign.wall_id`, and not `a}_{b`."""
+    return all(piece.isidentifier() for piece in name.split("."))
+
+
 def is_xml_name(name: str) -> bool:
     """Whether a name can be a tag or the name of an attribute for every reader of XML, namespaces aside."""
     if name.isascii():

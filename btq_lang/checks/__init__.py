@@ -9,7 +9,7 @@ the next.  Checks do not know what an edit changed, nor how findings are printed
     lookups.py   what only checks look up in the files, beside workspace/inputs.py
     kinds.py, names.py, ports.py, own_nodes.py, children.py, misplaced_children.py   what the engine would refuse
     trees.py, includes.py, elements.py, missing_ids.py, stale_models.py   likewise, of whole trees, models and files
-    positional.py, literals.py, port_values.py, scripts.py, strings.py   values, of ports too
+    positional.py, literals.py, port_values.py, scripts.py, strings.py, typed_numbers.py   values, of ports too
     entries.py, pointers.py, writers.py, misspelt.py, meant_entries.py, mixed_types.py   blackboard entries
     calls.py, flow.py, unset.py, arguments.py   entries across trees: read and never set, given and never read
     engines.py, version3.py   which versions of the engine a file is for
@@ -56,6 +56,7 @@ from btq_lang.checks import (
     scripts,
     stale_models,
     trees,
+    typed_numbers,
     unreachable,
     unread,
     unset,
@@ -148,6 +149,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         port_values.key_in_braces,
         literals.number_for_text,
         mixed_types.entry_with_two_types,
+        typed_numbers.number_of_another_type,
         port_values.literal_for_output,
         port_values.count_of_nothing,
         children.child_count,

@@ -13,7 +13,7 @@ from typing import TypeAlias
 
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.names import is_port_name
+from btq_lang.catalog.names import is_entry_name, is_port_name
 from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import callers
@@ -87,11 +87,11 @@ def handling(store: Store[Workspace], viewpoint: str, tree: str) -> Handling:
         tuple([port.name.text for port in (*item.ports, *declared) if port.name is not None]),
         tuple(touches),
         frozenset(_bare_values(nodes.given)),
-        tuple([call for resolved in nodes.all if (call := _call(view, resolved)) is not None]),
+        tuple([call for resolved in nodes.all if (call := call_of(view, resolved)) is not None]),
         _has_verbatim(item, nodes.all)
         or bool(store.ask(inputs.entry, *definition).diagnostics)
         or any(map(_names_by_value, nodes.given))
-        or any(not touch.name.removeprefix("@").isidentifier() for touch in touches),
+        or any(not is_entry_name(touch.name.removeprefix("@")) for touch in touches),
         any(_is_stranger(view, resolved) for resolved in nodes.all),
     )
 
@@ -244,7 +244,7 @@ class Blackboards:
         return name
 
 
-def _call(view: View, resolved: ResolvedNode) -> SubTreeCall | None:
+def call_of(view: View, resolved: ResolvedNode) -> SubTreeCall | None:
     """How a node passes entries to the tree that it runs; None if it runs none."""
     is_plus = resolved.node.kind is not None and resolved.node.kind.raw == "SubTreePlus"
     tree_name = resolved.node.attribute("ID") if is_plus else resolved.id if resolved.is_subtree else None
@@ -256,7 +256,7 @@ def _call(view: View, resolved: ResolvedNode) -> SubTreeCall | None:
     values: list[str] = []
     for pair in resolved.node.attributes:
         port, text = pair.key.text, pair.value.text if pair.value is not None else ""
-        if not is_port_name(port):
+        if not is_port_name(port, view.target):
             continue
         # In version 3 a SubTree maps names to names; a file that does not say its version may be for that one.
         is_name = text.isidentifier() and not (is_new or is_plus)

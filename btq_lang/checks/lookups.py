@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import posixpath
 import re
-from functools import lru_cache
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -13,6 +12,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name, model_name_problem
 from btq_lang.catalog.nav2 import FILES, distribution_among
 from btq_lang.catalog.nodes import BUILTINS, lookup
+from btq_lang.cpp.entries import SetEntries, set_entries
 from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.syntax.tree import Apply, Include, Item, Model, Models, Port, Root, Tree, Verbatim, models_in
@@ -182,10 +182,10 @@ def outside_entries(workspace: Workspace, viewpoint: str) -> tuple[OutsideEntry,
 
 
 @of_viewpoint
-def set_in_cpp(workspace: Workspace, viewpoint: str) -> frozenset[str]:
-    """The entries that C++ with the nodes of a file sets on a blackboard, by a string."""
-    paths = workspace.scope(viewpoint).node_paths
-    return frozenset().union(*(_set_in(file.source) for path in paths if (file := workspace.files[path]).is_cpp))
+def set_in_cpp(workspace: Workspace, viewpoint: str) -> SetEntries:
+    """The entries that C++ with the nodes of a file sets on a blackboard."""
+    files = [workspace.files[path] for path in workspace.scope(viewpoint).node_paths]
+    return set_entries([file.source for file in files if file.is_cpp])
 
 
 @of_viewpoint
@@ -260,6 +260,22 @@ def text_below(workspace: Workspace, viewpoint: str, tree: str, port: str) -> tu
             place = Place(met.pair.key.span, met.tree.path, met.tree.entry.item)
             return place, met.pair.key.text, met.node.head.text
     return None
+
+
+@of_viewpoint
+def types_below(workspace: Workspace, viewpoint: str, tree: str, port: str) -> tuple[tuple[Place, str, str, str], ...]:
+    """The ports to which a port of a tree is assigned in that tree or below: place, name, node and type of each."""
+    return tuple(
+        [
+            (
+                Place(met.pair.key.span, met.tree.path, met.tree.entry.item),
+                met.pair.key.text,
+                met.node.head.text,
+                met.type,
+            )
+            for met in meetings(workspace.scope(viewpoint), workspace.project.target, tree, port)
+        ]
+    )
 
 
 @of_viewpoint
@@ -576,17 +592,11 @@ def _distribution(workspace: Workspace, viewpoint: str) -> str | None:
 distribution = of_viewpoint(_distribution)
 
 
-@lru_cache(1_000)  # each file of trees asks for the same sources
-def _set_in(source: str) -> frozenset[str]:
-    return frozenset(_SETS(source))
-
-
 def _package(path: str) -> str:
     """The folder of a package, in which a C++ source is below `src` or `include`."""
     return _BELOW.split(path)[0] if _BELOW.search(path) else posixpath.dirname(path)
 
 
-_SETS = re.compile(r'(?:->|\.)\s*set\s*(?:<[^;(){}]*>)?\s*\(\s*"([A-Za-z_]\w*)"').findall
 _BELOW = re.compile(r"/(?:src|include)/(?!.*/(?:src|include)/)")
 _OF_LIBRARY = re.compile(r"\bBT_REGISTER_(?:ROS_)?NODES\b").search
 _LOADS_LIBRARIES = re.compile(

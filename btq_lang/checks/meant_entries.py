@@ -2,7 +2,8 @@
 `@{goal}`, `{ goal }`, `{goal.x}`.
 
 One invariant: a bare word is reported only if its port makes a text unlikely, for a text may equal the name of an
-entry. Sources: isBlackboardPointer and stripBlackboardPointer in src/tree_node.cpp of 4.6.2 and 4.10.0.
+entry; never a literal of any type, nor the default of its port.
+Sources: isBlackboardPointer and stripBlackboardPointer in src/tree_node.cpp of 4.6.2 and 4.10.0.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from collections.abc import Iterable, Iterator
 from typing import Final
 
 from btq_lang.catalog.kinds import PortKind
-from btq_lang.catalog.literals import OLD_ENTRY, check_literal, is_pointer, plain_type
+from btq_lang.catalog.literals import OLD_ENTRY, check_literal, is_own_value, is_pointer, plain_type
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.versions import OUTPUT_IN_BRACES
 from btq_lang.checks.engines import is_for_version_4
@@ -40,6 +41,8 @@ def meant_entry(view: View) -> Iterator[Diagnostic]:
             yield replaced
             continue
         if text.isidentifier():
+            if is_own_value(text):
+                continue
             names = _names(view) if names is None else names
             if text not in names:
                 continue
@@ -91,7 +94,7 @@ def with_entries(view: View, reported: Iterable[Diagnostic]) -> Iterator[Diagnos
 def entry_of(view: View, value: Word) -> str | None:
     """The entry of the tree that a value names, in its braces: bare, or in other signs."""
     if value.text.isidentifier():
-        return f"{{{value.text}}}" if value.text in _names(view) else None
+        return f"{{{value.text}}}" if not is_own_value(value.text) and value.text in _names(view) else None
     return entry_in(view, value)
 
 
@@ -142,7 +145,7 @@ def _bare_entry(view: View, resolved: ResolvedNode, pair: Pair, value: Word) -> 
     if resolved.is_subtree:
         is_certain = not view.is_xml or view.ask(is_for_version_4)  # version 3 passes the entry
     elif port is not None and port.type and plain_type(port.type) not in _TEXTS:
-        is_certain = True
+        is_certain = name != port.default
     else:
         is_certain = view.ask(_is_likely, view.facts, name, key)
     return f"{{{name}}}" if is_certain else None

@@ -44,7 +44,7 @@ def misspelt_entry(view: View) -> Iterator[Diagnostic]:
     names = dict.fromkeys((*counts, *(port.name.text for port in tree.ports if port.name is not None)))
     if (outside := view.ask(lookups.outside_entries)) and not view.ask(callers, tree.name.text):
         names |= dict.fromkeys(name for name, _ in outside)
-    of_program = view.ask(lookups.set_in_cpp)
+    of_program = view.ask(lookups.set_in_cpp).names
     if of_program and not view.ask(callers, tree.name.text):
         names |= dict.fromkeys(sorted(of_program))
     if any(mention.name[:1] == "@" for mention in mentions):
@@ -152,7 +152,7 @@ def _is_meant(store: Store[Workspace], viewpoint: str, tree: str, name: str, mea
         return False
     uses, other_uses = boards.uses_of(tree, name), boards.uses_of(tree, meant)
     is_port = boards.is_port(tree, meant)
-    of_program = store.ask(lookups.set_in_cpp, viewpoint)
+    of_program = store.ask(lookups.set_in_cpp, viewpoint).names
     if name.removeprefix("@") in of_program:
         return False
     if not any(use.writes for use in uses):  # read only

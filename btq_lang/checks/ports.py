@@ -11,7 +11,7 @@ from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.foreign_names import NAME, of_other_engines
 from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.names import is_port_name
+from btq_lang.catalog.names import is_port_name, port_name_problem
 from btq_lang.catalog.nav2 import ports_of
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS, PortKind
 from btq_lang.catalog.units import Unit, convert, dimension_name, parse_unit
@@ -19,6 +19,7 @@ from btq_lang.catalog.versions import ID_IN_COMPACT_FORM, PORTS_OF_SUBTREE, UNDE
 from btq_lang.checks import lookups
 from btq_lang.checks.kinds import model_related, way_in
 from btq_lang.checks.own_nodes import OWN, WHY, may_be_own
+from btq_lang.checks.pointers import pointed_at, remaps_all
 from btq_lang.checks.view import View, ports_beside
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related, replace_fix, write_fix
 from btq_lang.diagnostics.rules import Severity
@@ -163,6 +164,9 @@ def unknown_attribute(view: View) -> Iterator[Diagnostic]:
                 continue
             if key in _KEPT:
                 continue
+            if resolved.is_subtree and key[:1] != "_":
+                yield from _dropped(view, resolved, pair)
+                continue
             if key.casefold() in _WISHED and pair.value is not None:
                 yield _wished(view, pair, pair.value)
                 continue
@@ -178,6 +182,21 @@ def unknown_attribute(view: View) -> Iterator[Diagnostic]:
                 fixes = tuple(replace_fix(f"Replace `{key}` with `{name}`", pair.key.span, name) for name in likely)
                 message = f"the engine silently ignores `{key}`{did_you_mean(likely)}"
                 yield Diagnostic("unknown-attribute", pair.key.span, message, fixes=fixes)
+
+
+def _dropped(view: View, seen: ResolvedNode, pair: Pair) -> Iterator[Diagnostic]:
+    """An argument of a SubTree that does not reach its tree, because of its name."""
+    key = pair.key.text
+    is_same = pair.value is not None and pointed_at(key, pair.value.text) == key
+    if is_port_name(key, view.target) or (is_same and remaps_all(seen)):
+        return
+    reason = port_name_problem(key, view.target) or "it does not begin with a letter"
+    notes = (
+        "rename it here and in its tree",
+        *(("releases before 4.8.4 pass it on",) if is_port_name(key, "4.6") else ()),
+    )
+    message = f"the engine drops the argument `{key}` because of its name: {reason}"
+    yield Diagnostic("unknown-attribute", pair.key.span, message, notes=tuple(notes))
 
 
 def _wished(view: View, pair: Pair, value: Word) -> Diagnostic:

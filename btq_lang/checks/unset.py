@@ -14,18 +14,18 @@ from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import callers, is_missed
-from btq_lang.checks.entries import EntryMention, handling
+from btq_lang.checks.entries import EntryMention, call_of, handling
 from btq_lang.checks.entries import mentions as mentions_in
-from btq_lang.checks.flow import EntryUse, calls_of, of_program, uses, writes_alone
+from btq_lang.checks.flow import EntryUse, below, calls_of, of_program, uses, writes_alone
 from btq_lang.checks.meant_entries import meant_entry
 from btq_lang.checks.misspelt import misspelt_entry
 from btq_lang.checks.ports import adding_fix
 from btq_lang.checks.scripts import script_error
 from btq_lang.checks.strings import in_source
-from btq_lang.checks.view import View, port_of
+from btq_lang.checks.view import View, declared_ports, port_of
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import written
+from btq_lang.syntax.tree import port_named, written
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
@@ -39,6 +39,7 @@ def unset_entry(view: View) -> Iterator[Diagnostic]:
     name = view.tree_name
     if name is None or not view.defines_here(Kind.TREE, name.text):
         return
+    yield from _not_passed(view)
     mentions = view.ask(mentions_in, view.path, view.facts)
     diagnostics = _diagnostics(view, name.text, mentions, set())
     if not diagnostics or not view.ask(inputs.is_complete):
@@ -76,7 +77,12 @@ def _uncreated(view: View, tree: str, mentions: Sequence[EntryMention], excluded
             continue
         if use & EntryUse.OUTSIDE and next(other for other in mentions if other.name == name) is not mention:
             continue  # programs set what scripts read first
-        is_certain = not use & EntryUse.STRANGE and (not use & EntryUse.OUTSIDE or _is_known_root(view, tree))
+        set_in_cpp = view.ask(lookups.set_in_cpp)
+        is_in_cpp = name.removeprefix("@") in set_in_cpp.names
+        if is_in_cpp and use & EntryUse.OUTSIDE:
+            continue
+        is_seen = not use & EntryUse.STRANGE and not is_in_cpp and not set_in_cpp.has_unseen
+        is_certain = is_seen and (not use & EntryUse.OUTSIDE or _is_known_root(view, tree))
         message = f"a script assigns to `{name}`, which nothing creates{' before' * (name in later)}"
         creating, fixes = _creating(view, mention)
         notes = (f"the engine throws when it runs the script; {creating}",)
@@ -144,9 +150,9 @@ def _unset(view: View, tree: str, mentions: Sequence[EntryMention], excluded: se
                 outside.append(mention)
         elif not use & EntryUse.STRANGE and view.ask(_needs, tree, name):
             yield _not_given(view, tree, mention)
-    of_program = view.ask(lookups.set_in_cpp)
+    set_in_cpp = view.ask(lookups.set_in_cpp).names
     outside = [
-        mention for mention in outside if mention.name not in of_program and view.ask(_needs, tree, mention.name)
+        mention for mention in outside if mention.name not in set_in_cpp and view.ask(_needs, tree, mention.name)
     ]
     if outside and _is_known_root(view, tree):
         yield from _never_set(view, outside)
@@ -192,6 +198,42 @@ def _runs_without(store: Store[Workspace], viewpoint: str, tree: str, name: str)
     view = View(store, viewpoint)
     caller = next((caller for caller, call in calls_of(view, tree) if call.passed(name) is None), None)
     return view.declared_at(Kind.TREE, caller, f"runs `{tree}`") if caller is not None else ()
+
+
+def _not_passed(view: View) -> Iterator[Diagnostic]:
+    """An entry that a SubTree does not pass to its tree, which needs it and gets it from another one."""
+    for resolved in view.seen.subtrees:
+        call = call_of(view, resolved)
+        if call is None or view.ask(is_missed, call.tree):
+            continue
+        for name in dict.fromkeys(touch.name for touch in view.ask(handling, call.tree).touches):
+            is_passed = call.passed(name) is not None or name in call.values or name[:1] == "@"
+            if is_passed or near(name, [*call.given, *call.values]) or not view.ask(_is_expected, call.tree, name):
+                continue
+            if not view.ask(inputs.is_complete):
+                return
+            message = f"`{call.tree}` reads `{name}`, which this SubTree does not pass to it, and another one does"
+            related = view.ask(_passing, call.tree, name)
+            yield Diagnostic("unset-entry", resolved.node.head.span, message, related)
+
+
+def _is_expected(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
+    """Whether a tree needs an entry that only those can give it that run it, and one of them does."""
+    view = View(store, viewpoint)
+    use = view.ask(below, tree).use_of(name)
+    if not name.isidentifier() or use & (EntryUse.WRITTEN | EntryUse.OPEN | EntryUse.STRANGE):
+        return False
+    if port_named(declared_ports(view, tree), name) is not None or name in view.ask(lookups.set_in_cpp).names:
+        return False
+    return bool(view.ask(_passing, tree, name)) and view.ask(_needs, tree, name)
+
+
+def _passing(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> tuple[Related, ...]:
+    """The first tree that gives an entry to one that it runs."""
+    view = View(store, viewpoint)
+    calls = calls_of(view, tree)
+    caller = next((caller for caller, call in calls if name in call.given or name in call.values), None)
+    return view.declared_at(Kind.TREE, caller, f"passes `{name}` to `{tree}`") if caller is not None else ()
 
 
 def _never_set(view: View, mentions: Sequence[EntryMention]) -> Iterator[Diagnostic]:

@@ -82,7 +82,7 @@ def _reason(left_out: NodesLines) -> str:
 
 def _of_nav2(workspace: Workspace, packages: Packages) -> NodesLines | None:
     """Nav2's nodes, if XML uses any."""
-    used = _used_nodes(workspace)
+    used = {name: ports for name, ports in _used_nodes(workspace).items() if name not in packages.registered}
     if not any(used.values()):
         return None  # a `Wait` alone may be any project's
     fitting = [

@@ -29,6 +29,7 @@ class Packages(Record):
         engines: the versions of the engine that they depend on; empty if none or several do.
         depends_on: the package of the engine on which they depend.
         sources: folders with C++ that registers nodes or declares their ports, as patterns.
+        registered: the names of nodes that the C++ shows to be registered.
         parameters: files with the parameters of a bt_navigator, each with the distribution of Nav2 that it is for, if
             that is clear.
         named: the names of XML files in Python and in launch files.
@@ -37,6 +38,7 @@ class Packages(Record):
     engines: tuple[str, ...] = ()
     depends_on: str = ""
     sources: tuple[str, ...] = ()
+    registered: frozenset[str] = frozenset()
     parameters: Mapping[str, str | None] = MappingProxyType({})
     named: frozenset[str] = frozenset()
 
@@ -55,7 +57,8 @@ def packages_of(folder: str) -> Packages:
     parameters = {path: _distribution(text) for path, text in settings.items()}
     named = {name for path, text in below.items() if path.endswith(_PROGRAMS) for name in _XML(text)}
     engines = _ENGINES.get(depends_on, ())
-    return Packages(engines, depends_on, tuple(_patterns(sources)), parameters, frozenset(named))
+    registered = frozenset([name for path in sources for name in _REGISTERED(cpp[path])])
+    return Packages(engines, depends_on, tuple(_patterns(sources)), registered, parameters, frozenset(named))
 
 
 def _distribution(text: str) -> str | None:
@@ -123,3 +126,4 @@ _PORTS: Final = re.compile(r"\bprovidedPorts\s*\(").search
 _PROGRAMS: Final = (".py", ".launch.xml", ".launch")
 _XML: Final = re.compile(r"[\w.-]+\.xml\b").findall
 _NAVIGATOR: Final = re.compile(r"^[ \t]*bt_navigator[ \t]*:", re.MULTILINE).search
+_REGISTERED: Final = re.compile(r'(?i:regist)\w*\s*(?:<[^;(){}]*>)?\s*\(\s*"?([A-Za-z_]\w*)"?\s*[,)]').findall

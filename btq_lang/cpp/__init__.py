@@ -11,5 +11,6 @@ records go out: neither the disk, nor how nodes are written in a mission, is kno
     ports.py       what `providedPorts()` returns; values.py: strings, defaults and types in it
     uses.py        which ports the code of a class reads and writes, and what it does without them
     nodes.py       the nodes, and which of them end within the tick that starts them
+    entries.py     which entries the code sets on a blackboard
     findings.py    what is wrong between ports and code, and what is unseen, as diagnostics
 """

@@ -131,6 +131,30 @@ def test_bare_words(nodes: str, count: int) -> None:
     assert len(findings(text, RULE)) == count
 
 
+@pytest.mark.parametrize("value", ["true", "False", "NaN", "inf", "SUCCESS", "running", "1"])
+@pytest.mark.parametrize("type_", ["", " : Pose", " : string"])
+def test_words_that_are_values_are_never_meant_as_entries(value: str, type_: str) -> None:
+    model = f"Action Find\n    output seen\nAction Go\n    input seen{type_}\n"
+    text = f"{model}BehaviorTree Main\n    ->\n        Find (seen = {{{value}}})\n        Go (seen = {value})\n"
+    assert findings(text, RULE) == []
+    assert findings(text.replace("Main\n", "Main\n    output seen\n").replace(value, "place"), RULE) != []
+
+
+def test_the_default_of_a_port_is_a_value() -> None:
+    model = "Action Go\n    input mode : Mode = FAST\n"
+    text = f"{model}BehaviorTree Main\n    ->\n        Find (m = {{FAST}})\n        Go (mode = {{}})\n"
+    assert findings(text.replace("{}", "FAST"), RULE) == []
+    other = text.replace("{FAST}", "{SLOW}").replace("{}", "SLOW")
+    assert findings(other, RULE) == [f"6 warning «SLOW» {text_of('SLOW')}`{{SLOW}}`?"]
+
+
+def test_no_literal_that_a_type_refuses_is_meant_as_an_entry_if_it_is_a_value() -> None:
+    text = (
+        "BehaviorTree Main\n    ->\n        Find (seen = {true})\n        Repeat 3 (num_cycles = true)\n            A\n"
+    )
+    assert not any("{true}" in each.message for each in check(workspace_of({MAIN: text}), MAIN))
+
+
 def test_one_diagnostic_where_the_type_refuses_it() -> None:
     model = "Action Go\n    input speed : double\n"
     text = f"{model}BehaviorTree Main\n    ->\n        Read (out = {{v}})\n        Go (speed = v)\n"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from check_asserts import findings, fixes, problems
+from check_asserts import findings, fixes, problems, show
 
 RULE = "misspelt-entry"
 
@@ -152,3 +152,47 @@ def test_a_writer_that_is_not_one(head: str, writes: str, note: str) -> None:
     nodes = f"        Find (place = {{{writes}}})\n        Lead (place = {{goal}})\n"
     (found,) = problems(f"{models}BehaviorTree Main\n    ->\n{nodes}", "unset-entry")
     assert found.notes == ("ignore this where the robot's program sets the entry", note)
+
+
+@pytest.mark.parametrize(("entry", "is_told"), [("sign.id", True), ("a.b.c", True), ("a}_{b", False), ("a-b", False)])
+def test_only_names_of_other_languages_hide_what_is_unset_and_unread(entry: str, is_told: bool) -> None:
+    text = (
+        "Action Go\n    input place\n    input id\n"
+        "BehaviorTree Main\n    SubTree Stop (speed = 3)\n"
+        f"BehaviorTree Stop\n    Go (place = {{spot}} id = {{{entry}}})\n"
+    )
+    unset = "nothing in `Stop` writes `spot`, which is read here, and no SubTree passes it"
+    told = [
+        "5:19 warning unread-argument «speed» nothing in `Stop` reads `speed`",
+        f"7:18 warning unset-entry «spot» {unset}",
+    ]
+    found = [*problems(text, "unread-argument"), *problems(text, "unset-entry")]
+    assert show(text, found) == told * is_told
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "rest", "is_told"),
+    [
+        ("SubTree Stop (spot = {a})", "SubTree Stop", "Go (place = {spot})", True),
+        ("SubTree Stop (spot = 3)", "SubTree Stop (other = {spot})", "Go (place = {spot} id = {other})", True),
+        ("SubTree Stop (spot = {a})", "SubTree Stop", "Below", False),
+        ("SubTree Stop (spot = {a})", "SubTree Stop", "SubTree Below (spot = {spot})", True),
+        ("SubTree Stop (spot = {a})", "SubTree Stop (_autoremap = true)", "Go (place = {spot})", False),
+        ("SubTree Stop (spot = {a})", "SubTree Stop (spots = {a})", "Go (place = {spot})", False),
+        ("SubTree Stop (spot = {a})", "SubTree Stop", "Go (place = there id = {spot})", False),
+        ("SubTree Stop (spot = {a})", "SubTree Stop", "Find (place = {spot})", False),
+        ("SubTree Stop (spot = {a})", "SubTree Stop", "Go (place = {@spot})", False),
+        ("SubTree Stop (spot = {a})", "SubTree Stop", "Stranger (place = {spot})", False),
+    ],
+)
+def test_an_entry_that_one_of_several_subtrees_does_not_pass(first: str, second: str, rest: str, is_told: bool) -> None:
+    models = "Action Go\n    input place\n    input id = 1\nAction Find\n    output place\n"
+    text = (
+        f"{models}BehaviorTree Main\n    ->\n        Find (place = {{a}})\n        {first}\n        {second}\n"
+        f"BehaviorTree Stop\n    {rest}\nBehaviorTree Below\n    Go (place = {{spot}})\n"
+    )
+    message = "`Stop` reads `spot`, which this SubTree does not pass to it, and another one does"
+    found = [each for each in problems(text, "unset-entry") if "another one" in each.message]
+    assert show(text, found) == [f"10:17 warning unset-entry «Stop» {message}"] * is_told
+    related = [f"{each.message}" for problem in found for each in problem.related]
+    assert related == ["passes `spot` to `Stop`"] * is_told

@@ -260,6 +260,34 @@ def test_a_name_that_is_no_port_name() -> None:
     assert_problems(text, told, project=Project(engines=("4.6",)))  # which refuses it
 
 
+@pytest.mark.parametrize(
+    ("key", "engine", "reason"),
+    [
+        ("wall.id", "4.6", ""),
+        ("wall.id", "4.8", "it contains `.`"),
+        ("wall.id", "4.10", "it contains `.`"),
+        ("wall/id", "4.10", "it contains `/`"),
+        ("é", "4.6", "it does not begin with a letter"),
+        ("é", "4.10", "it does not begin with a letter"),
+    ],
+)
+@pytest.mark.parametrize("rest", ["", "_autoremap = true"])
+def test_an_argument_that_no_tree_gets(key: str, engine: str, reason: str, rest: str) -> None:
+    text = f'{tree(f"""SubTree Go ("{key}" = {{wall}} {rest})""")}BehaviorTree Go\n    X\n'
+    told = (
+        f'3:21 warning unknown-attribute «"{key}"» the engine drops the argument `{key}` because of its name: {reason}'
+    )
+    assert_problems(text, *[told] * bool(reason), project=Project(engines=(engine,)))
+    (found, *_) = check(workspace_of({"main.btq": text}), "main.btq")
+    renamed = "rename it here and in its tree"
+    assert found.notes == ((renamed, "releases before 4.8.4 pass it on") if key != "é" else (renamed,))
+
+
+def test_an_argument_that_a_tree_gets_without_it() -> None:
+    text = tree('SubTree Go ("wall.id" = {wall.id} _autoremap = true)') + "BehaviorTree Go\n    X\n"
+    assert_clean(text)
+
+
 # ---- duplicate-attribute ---------------------------------------------------------------------------------------------
 
 

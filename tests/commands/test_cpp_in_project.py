@@ -255,6 +255,34 @@ def test_an_entry_is_misspelt_that_only_a_program_sets(robot: Path, node: str, e
     assert found == [f"trees/m.xml:1:{column}: warning[misspelt-entry] {message}"]
 
 
+@pytest.mark.parametrize(
+    ("program", "severity"),
+    [
+        ('blackboard->set("count", 1);', None),
+        ('tree.rootBlackboard()->set<int>("count", 0);', None),
+        ("setEntry<int>(", None),
+        ('put("count", 1);', "warning"),
+        ('blackboard->set("count" + suffix, 1);', "hint"),
+        ("blackboard->set(Names::COUNT, 1);", "hint"),
+        ("setEntry(name, 1);", "hint"),
+        ('config().blackboard->get("count", value);', "warning"),
+    ],
+)
+def test_what_a_program_sets_is_created(robot: Path, program: str, severity: str | None) -> None:
+    program = program.replace("<int>(", '<int>("count", 0);')
+    wrapper = (
+        "template <typename T> void setEntry(const std::string &key, const T &value) {\n"
+        "  if (has(key)) { tree.rootBlackboard()->set<T>(key, value); }\n}\n"
+    )
+    write(robot, "src/say.cpp", f"{SETS}void run() {{ {program} }}\n")
+    write(robot, "src/tree.cpp", wrapper)
+    code = '<root BTCPP_format="4"><BehaviorTree ID="M"><Script code="count = 1"/></BehaviorTree></root>\n'
+    write(robot, "trees/m.xml", code)
+    column = code.index("count") + 1
+    message = f"trees/m.xml:1:{column}: {severity}[uncreated-entry] a script assigns to `count`, which nothing creates"
+    assert check(robot, "trees/m.xml", "--select", "uncreated-entry") == [message] * (severity is not None)
+
+
 def test_what_a_program_sets_is_not_unset(robot: Path) -> None:
     write(robot, "src/say.cpp", SETS)
     xml = '<root BTCPP_format="4"><BehaviorTree ID="M"><Sequence>{}</Sequence></BehaviorTree></root>\n'

@@ -145,6 +145,22 @@ def test_the_distribution_of_nav2(tmp_path: Path, root: str, nodes: str, line: s
     assert run_btq("check", cwd=tmp_path)[0] < 2
 
 
+@pytest.mark.parametrize(
+    ("program", "is_nav2"),
+    [
+        ('factory.registerNodeType<Spin>("Spin");', False),
+        ("#define REGISTER(Name) factory.registerNodeType<Name>(#Name)\nREGISTER(Spin);", False),
+        ('factory.registerNodeType<Spin>("Turn"); say("Spin");', True),
+    ],
+)
+def test_nodes_that_cpp_registers_are_not_nav2s(tmp_path: Path, program: str, is_nav2: bool) -> None:
+    spin = '<root BTCPP_format="4"><BehaviorTree ID="Main"><Spin spin_dist="1"/></BehaviorTree></root>\n'
+    (tmp_path / "nav.xml").write_text(spin)
+    (tmp_path / "nodes.cpp").write_text(f"void add(F& factory) {{\n{program}\n}}\n")
+    run_btq("init", "--from-xml", cwd=tmp_path)
+    assert ("nodes of Nav2" in (tmp_path / "btq.toml").read_text()) == is_nav2
+
+
 def test_a_distribution_that_lacks_a_port_is_not_proposed(tmp_path: Path) -> None:
     """The project has a node of its own that is called as one of Nav2's."""
     (tmp_path / "nav.xml").write_text(
