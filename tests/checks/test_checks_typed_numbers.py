@@ -66,7 +66,7 @@ def test_earlier_versions_give_texts(engine: str) -> None:
 
 def test_it_is_a_hint_where_no_engine_is_named() -> None:
     found = check(workspace_of({"main.xml": XML.format("10", "unsigned int")}), "main.xml")
-    assert [each.effective_severity for each in found if each.rule == "entry-with-two-types"] == [Severity.WARNING]
+    assert [each.effective_severity for each in found if each.rule == "entry-with-two-types"] == [Severity.HINT]
 
 
 def test_a_double_is_written_with_a_point() -> None:
