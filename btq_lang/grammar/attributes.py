@@ -8,8 +8,15 @@ from __future__ import annotations
 from typing import Final
 
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, replace_fix, write_fix
-from btq_lang.grammar.cursor import VALUES, shown
-from btq_lang.grammar.requirements import RequirementParser
+from btq_lang.grammar.conditions import close_group
+from btq_lang.grammar.cursor import VALUES, Cursor, shown
+from btq_lang.grammar.requirements import (
+    parse_quality_path,
+    parse_req_ref,
+    parse_requirement,
+    parse_requirement_id,
+    skip_brackets,
+)
 from btq_lang.syntax.suggestions import CHILDREN, value_meant
 from btq_lang.syntax.tokens import (
     BRACED,
@@ -40,306 +47,325 @@ from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 
 
-class AttributeParser(RequirementParser):
-    """A cursor that can read what is attached to a node."""
+def parse_pairs(cursor: Cursor) -> tuple[Pair, ...]:
+    """Pairs = "(" { ( "parameters" Pair { "," Pair } | Pair ) [ "," ] } ")";  none where no bracket opens"""
+    if cursor.kind != OPEN:
+        return ()
+    clauses: list[NodeClause] = []
+    pairs = parse_attributes(cursor, clauses)
+    if clauses:
+        span = Span(clauses[0].start, clauses[0].end).shifted(cursor.base)
+        note = "write qualities and requirements after a node, or on a line of their own in the block of a tree"
+        cursor.complain(span, "only `key = value` pairs are allowed in these brackets", notes=(note,))
+    return pairs
 
-    # ---- attributes ----
 
-    def pairs(self) -> tuple[Pair, ...]:
-        """Pairs = "(" { ( "parameters" Pair { "," Pair } | Pair ) [ "," ] } ")";  none where no bracket opens"""
-        if self.kind != OPEN:
-            return ()
-        clauses: list[NodeClause] = []
-        pairs = self.attributes(clauses)
-        if clauses:
-            span = Span(clauses[0].start, clauses[0].end).shifted(self.base)
-            note = "write qualities and requirements after a node, or on a line of their own in the block of a tree"
-            self.complain(span, "only `key = value` pairs are allowed in these brackets", notes=(note,))
-        return pairs
-
-    def attributes(self, clauses: list[NodeClause]) -> tuple[Pair, ...]:
-        """Attributes = "(" { Attribute [ "," ] } ")";  Attribute = "parameters" Pair … | NodeClause | Pair"""
-        pairs: list[Pair] = []
-        self.advance()
-        self.group += 1
-        while self.kind != CLOSE and self.kind != NEWLINE:
-            if self.at_key():
-                pairs.append(self.pair())
-            elif self.kind == NAME and self.raw in NODE_CLAUSES:
-                clauses.append(self.node_clause())
-            elif self.at_word("parameters"):
-                self.advance()
-                if not self.at_key():
-                    self.expected("`key = value` after `parameters`")
-                continue
-            else:
-                self.not_an_attribute(pairs, clauses)
-            if self.raw == ",":
-                self.advance()
-        self.group -= 1
-        self.advance()
-        return tuple(pairs)
-
-    def not_an_attribute(self, pairs: list[Pair], clauses: list[NodeClause]) -> None:
-        """Report what is in brackets and is not an attribute, and read it as what it was probably meant to be."""
-        index = self.index
-        if self.at_name() and (self.is_operator(index + 1, ":") or self.is_operator(index + 1, "==")):
-            sign = self.starts[index + 1]
-            is_assignment = self.text.startswith(":=", sign)
-            span = Span(sign, sign + (2 if is_assignment else len(self.raws[index + 1])))
-            written = "=" if self.text[sign - 1] in " \t" else " ="
-            message = f"expected `=` between key and value, found `{self.text[span.start : span.end]}`"
-            self.complain(span, message, replace_fix("Write `=`", span, written, safe=True))
-            if is_assignment:
-                self.advance()
-            pairs.append(self.pair())
-            return
-        if self.kind == NAME and self.kinds[index + 1] in (NAME, STRING) and (meant := self.misspelt_clause()):
-            clauses.append(self.node_clause(meant))
-            return
-        notes: tuple[str, ...] = ()
-        if self.kinds[index - 1] in (NAME, NUMBER, QUANTITY) and self.kind in (NAME, NUMBER, QUANTITY):
-            notes = ("a value or name of several words goes in quotes",)
-        elif self.kinds[index - 1] == OPEN and self.kind in (NUMBER, QUANTITY, STRING):
-            notes = (f"a value goes after the name of its port: `port = {shown(self.raw)}`",)
-        elif self.kinds[index - 1] == OPEN and self.kind == NAME and self.raws[index + 1] == ",":
-            notes = (CHILDREN,)
-        elif self.raw in ("+", "%") and self.kinds[index - 1] in (STRING, NAME, BRACED):
-            self.complain(self.here(), _PUT_TOGETHER, notes=(_LITERAL_OR_ENTRY,))
-            self.recover()
-            return
-        fixes = self.id_in_brackets() or self.classic_quality(clauses)
-        if self.kind == NAME and self.kinds[index + 1] in (STRING, NUMBER, QUANTITY, BRACED):
-            gap = Span(self.here().end, self.starts[index + 1])
-            fixes = (replace_fix("Put `=` after it", gap, " = "),)
-        self.expected("an attribute: key = value", notes, fixes)
-        if self.index == index:
-            self.advance()
-
-    def id_in_brackets(self) -> tuple[Fix, ...]:
-        """The fix for `SubTree (PickPlace)`, where the ID needs no brackets."""
-        index = self.index
-        if index != 2 or self.kind != NAME or self.raws[0] not in CATEGORIES or self.kinds[index + 1] != CLOSE:
-            return ()
-        before = Span(self.starts[0] + len(self.raws[0]), self.here().start)
-        after = Span(self.here().end, self.starts[index + 1] + len(self.raws[index + 1]))
-        return (Fix("Remove the brackets", (FixEdit(Place(before), " "), FixEdit(Place(after), ""))),)
-
-    def classic_quality(self, clauses: list[NodeClause]) -> tuple[Fix, ...]:
-        """The fix for `satisfices performance (QualityReq …)`, which lacks `Quality =` before the quality."""
-        if self.kind != OPEN or not self.is_word(self.index + 1, "QualityReq") or not clauses:
-            return ()
-        last = clauses[-1]
-        if not isinstance(last, Satisfices) or not last.qualities or last.end != self.last_end():
-            return ()
-        start = last.qualities[-1].path.span.start + self.base
-        return (replace_fix("Put `Quality =` before the quality", Span(start, start), "Quality = "),)
-
-    def pair(self) -> Pair:
-        """Pair = Name "=" Value"""
-        index = self.index
-        key = Word(self.kind, self.starts[index] - self.base, self.raw)
-        self.go_to(index + 2)
-        return Pair(key, self.value())
-
-    def value(self) -> Word | None:
-        """Value = STRING | NAME | NUMBER | QUANTITY | BRACED"""
-        whole = self.kind in VALUES
-        if not whole and (self.kind not in (SYMBOL, OPERATOR) or self.raw in ("=", ",")):
-            self.expected("a value: a string, a name, a number, a quantity or {key}")
-            return None
-        word = self.take()
-        if whole and (self.kind == CLOSE or not self.joins() or self.at_key()):
-            return word
-        if self.kind == STRING and word.kind != STRING:
-            return self.half_quoted(word)
-        return self.needs_quotes(word)
-
-    def half_quoted(self, word: Word) -> Word:
-        """`charger" …`: the rest is a string only because a quote is missing; or Python is meant: `f"dock{n}"`."""
-        span = word.span.shifted(self.base)
-        if word.raw.lower() in _STRING_PREFIXES and self.adjacent(self.index):
-            end = self.here().end
-            self.complain(Span(span.start, end), _PUT_TOGETHER, notes=(_LITERAL_OR_ENTRY,))
-            self.recover()
-            return Word(NAME, word.start, self.text[span.start : end])
-        fix = Fix(f"Put {self.raw[0]} before it", (FixEdit(Place(Span(span.start, span.start)), self.raw[0]),))
-        start = self.starts[self.index]
-        unclosed = [problem for problem in self.lexer.problems[self.known :] if problem.span.start == start]
-        message = f"missing quote before `{word.raw}`"
-        if self.complain_instead(unclosed, Diagnostic("syntax-error", span, message, fixes=(fix,))):
-            self.inside_out = min(self.inside_out, span.end)
-        self.recover()
-        return word
-
-    def joins(self) -> bool:
-        """Whether the current token forms one value with the one before it: there is no blank between."""
-        if not self.adjacent(self.index):
-            return False
-        return self.kind not in (NEWLINE, OPEN, CLOSE) and self.raw not in (",", "=")
-
-    def ends_value(self) -> bool:
-        """Whether the next token may follow a value."""
-        return self.kind in (NEWLINE, CLOSE) or self.raw == "," or self.raw in _ATTRIBUTE_WORDS or self.at_key()
-
-    def needs_quotes(self, word: Word) -> Word:
-        """`map/frame`, `/map`: read what is written without a blank as one value, and report that it needs quotes."""
-        cause = self.lost_quote() or self.wrong_unit()
-        while self.joins():
-            self.advance()
-        start = word.start + self.base
-        end = self.last_end() + self.base
-        raw = self.text[start:end]
-        if cause is not None:
-            self.report(cause)
-        elif word.kind == STRING:
-            note = "write a quote in a string as \\\", in a script as '; or add a closing quote that is missing above"
-            fixes: tuple[Fix, ...] = ()
-            if raw[0] == raw[-1] == '"' and raw.count('"') == 4 and "'" not in raw and self.ends_value():
-                note = "write a quote in a string as \\\", in a script as '"
-                single = raw[1:-1].replace('"', "'")
-                fixes = (write_fix(f'"{single}"', Span(start, end)),)
-            self.complain(Span(start, end), "unexpected text right after a string", *fixes, notes=(note,))
+def parse_attributes(cursor: Cursor, clauses: list[NodeClause]) -> tuple[Pair, ...]:
+    """Attributes = "(" { Attribute [ "," ] } ")";  Attribute = "parameters" Pair … | NodeClause | Pair"""
+    pairs: list[Pair] = []
+    cursor.advance()
+    cursor.group += 1
+    while cursor.kind != CLOSE and cursor.kind != NEWLINE:
+        if cursor.at_key():
+            pairs.append(parse_pair(cursor))
+        elif cursor.kind == NAME and cursor.raw in NODE_CLAUSES:
+            clauses.append(parse_node_clause(cursor))
+        elif cursor.at_word("parameters"):
+            cursor.advance()
+            if not cursor.at_key():
+                cursor.expected("`key = value` after `parameters`")
+            continue
         else:
-            # A quote or a brace in it indicates another mistake.
-            safe = self.ends_value() and not set(raw) & set("\"'{}\\")
-            self.complain(Span(start, end), "this value needs quotes", value_meant(self.text, start, end, safe=safe))
-        return Word(NAME, word.start, raw)
+            not_an_attribute(cursor, pairs, clauses)
+        if cursor.raw == ",":
+            cursor.advance()
+    cursor.group -= 1
+    cursor.advance()
+    return tuple(pairs)
 
-    # ---- qualities and requirements on nodes ----
 
-    def misspelt_clause(self) -> str | None:
-        """Report a misspelt word, `satisfys rq1`, and return the one that was probably meant."""
-        meant = meant_clause(self.raw) if self.raw not in _ATTRIBUTE_WORDS else None
-        if meant is not None:
-            self.attaches_nothing(self.here(), meant)
-        return meant
+def parse_pair(cursor: Cursor) -> Pair:
+    """Pair = Name "=" Value"""
+    index = cursor.index
+    key = Word(cursor.kind, cursor.starts[index] - cursor.base, cursor.raw)
+    cursor.go_to(index + 2)
+    return Pair(key, parse_value(cursor))
 
-    def attaches_nothing(self, span: Span, meant: str) -> None:
-        """Report a misspelt satisfices, satisfies or tags."""
-        word = self.text[span.start : span.end]
-        by = self.index + 1
-        place = span
-        if word == "satisfied" and self.is_word(by, "by") and self.kinds[by + 1] in (NAME, STRING):
-            place = Span(span.start, self.starts[by] + len("by"))
-        message = f"unknown word `{word}`; did you mean `{meant}`?"
-        self.complain(span, message, replace_fix(f"Replace `{word}` with `{meant}`", place, meant))
 
-    def node_clause(self, meant: str = "") -> NodeClause:
-        """ "satisfices" Quality { "," Quality } | "satisfies" ReqUse { "," ReqUse } | "tags" Name { "," Name }
+def parse_value(cursor: Cursor) -> Word | None:
+    """Value = STRING | NAME | NUMBER | QUANTITY | BRACED"""
+    whole = cursor.kind in VALUES
+    if not whole and (cursor.kind not in (SYMBOL, OPERATOR) or cursor.raw in ("=", ",")):
+        cursor.expected("a value: a string, a name, a number, a quantity or {key}")
+        return None
+    word = cursor.take()
+    if whole and (cursor.kind == CLOSE or not joins(cursor) or cursor.at_key()):
+        return word
+    if cursor.kind == STRING and word.kind != STRING:
+        return half_quoted(cursor, word)
+    return needs_quotes(cursor, word)
 
-        Args:
-            meant: the word to read instead of the current one.
-        """
-        start = self.start()
-        word = self.take().raw
-        if meant:
-            word = meant
-        if word == "satisfices":
-            qualities = self.satisfices()
-            return Satisfices(start, self.last_end(), qualities)
-        if word == "satisfies":
-            uses = self.satisfies()
-            return Satisfies(start, self.last_end(), uses)
-        names = self.listed(lambda: self.name("a tag"), self.list_goes_on)
-        return Tags(start, self.last_end(), names)
 
-    def satisfices(self) -> tuple[SatisficedQuality, ...]:
-        """Quality { "," Quality };  classic files omit the commas"""
-        self.skip_sign(":")
-        return self.listed(self.quality, lambda: self.at_quality() or self.list_goes_on(qualities=True))
+def parse_node_clause(cursor: Cursor, meant: str = "") -> NodeClause:
+    """ "satisfices" Quality { "," Quality } | "satisfies" ReqUse { "," ReqUse } | "tags" Name { "," Name }
 
-    def at_quality(self) -> bool:
-        return self.kind == NAME and self.raw == "Quality" and self.is_operator(self.index + 1, "=")
+    Args:
+        meant: the word to read instead of the current one.
+    """
+    start = cursor.start()
+    word = cursor.take().raw
+    if meant:
+        word = meant
+    if word == "satisfices":
+        qualities = parse_satisfices(cursor)
+        return Satisfices(start, cursor.last_end(), qualities)
+    if word == "satisfies":
+        uses = parse_satisfies(cursor)
+        return Satisfies(start, cursor.last_end(), uses)
+    names = cursor.listed(lambda cursor: cursor.name("a tag"), list_goes_on)
+    return Tags(start, cursor.last_end(), names)
 
-    def quality(self) -> SatisficedQuality | None:
-        """ "Quality" "=" QualityPath [ "(" Requirement { [ "," ] Requirement } ")" ] | QualityPath"""
-        classic = self.at_quality()
-        if classic:
-            self.advance()
-            self.advance()
-        elif self.at_word("Quality") and (self.is_operator(self.index + 1, ":") or self.names_follow(self.index + 1)):
-            self.advance()
-            has_sign = self.at(":")
-            place = Span(self.last_end() + self.base, self.here().end if has_sign else self.here().start)
-            blank = "" if self.text[place.end : place.end + 1] in (" ", "\t") else " "
-            message = f"expected `=` after `Quality`, found {self.found()}"
-            self.complain(self.here(), message, replace_fix("Write `=`", place, f" ={blank}", safe=True))
-            self.accept(":")
-            classic = True
-        path = self.quality_path()
-        if path is None:
-            return None
-        if not classic or self.kind != OPEN:
-            return SatisficedQuality(path)
-        self.advance()
-        self.group += 1
-        requirements: list[Requirement] = []
-        while self.at_word("QualityReq"):
-            requirements.append(self.requirement())
-            self.accept(",")
-        self.close_group("QualityReq or `)`")
-        return SatisficedQuality(path, tuple(requirements))
 
-    def names_follow(self, index: int) -> bool:
-        """Whether a quality's name follows, so that `Quality` before it lacks its `=`."""
-        if self.kinds[index] not in (NAME, STRING) or self.raws[index] in _ATTRIBUTE_WORDS:
+def parse_satisfices(cursor: Cursor) -> tuple[SatisficedQuality, ...]:
+    """Quality { "," Quality };  classic files omit the commas"""
+    cursor.skip_sign(":")
+    return cursor.listed(parse_quality, lambda cursor: at_quality(cursor) or list_goes_on(cursor, qualities=True))
+
+
+def parse_quality(cursor: Cursor) -> SatisficedQuality | None:
+    """ "Quality" "=" QualityPath [ "(" Requirement { [ "," ] Requirement } ")" ] | QualityPath"""
+    classic = at_quality(cursor)
+    if classic:
+        cursor.advance()
+        cursor.advance()
+    elif cursor.at_word("Quality") and (
+        cursor.is_operator(cursor.index + 1, ":") or names_follow(cursor, cursor.index + 1)
+    ):
+        cursor.advance()
+        has_sign = cursor.at(":")
+        place = Span(cursor.last_end() + cursor.base, cursor.here().end if has_sign else cursor.here().start)
+        blank = "" if cursor.text[place.end : place.end + 1] in (" ", "\t") else " "
+        message = f"expected `=` after `Quality`, found {cursor.found()}"
+        cursor.complain(cursor.here(), message, replace_fix("Write `=`", place, f" ={blank}", safe=True))
+        cursor.accept(":")
+        classic = True
+    path = parse_quality_path(cursor)
+    if path is None:
+        return None
+    if not classic or cursor.kind != OPEN:
+        return SatisficedQuality(path)
+    cursor.advance()
+    cursor.group += 1
+    requirements: list[Requirement] = []
+    while cursor.at_word("QualityReq"):
+        requirements.append(parse_requirement(cursor))
+        cursor.accept(",")
+    close_group(cursor, "QualityReq or `)`")
+    return SatisficedQuality(path, tuple(requirements))
+
+
+def parse_satisfies(cursor: Cursor) -> tuple[Requirement | ReqRef, ...]:
+    """ReqUse { "," ReqUse };  classic files omit the commas"""
+    cursor.skip_sign(":", "=")
+    if cursor.at_word("by") and cursor.kinds[cursor.index + 1] in (NAME, STRING):
+        cursor.advance()  # `satisfied by r`, reported at its first word
+    if not cursor.group:
+        skip_brackets(cursor, "requirements of a node need no brackets")
+    return cursor.listed(parse_req_use, lambda cursor: cursor.at_word("QualityReq") or list_goes_on(cursor))
+
+
+def parse_req_use(cursor: Cursor) -> Requirement | ReqRef | None:
+    """ReqUse = Requirement | ReqRef"""
+    if cursor.at_word("QualityReq"):
+        return parse_requirement(cursor)
+    if cursor.kind == NAME and cursor.raw.lower() in _REQUIREMENTS and cursor.kinds[cursor.index + 1] in (NAME, STRING):
+        return requirement_in_other_words(cursor)
+    if cursor.kind == NEWLINE and cursor.index and cursor.raws[cursor.index - 1] == ",":
+        end = cursor.last_end() + cursor.base
+        fix = replace_fix("Remove `,`", Span(end - 1, end), "", safe=True)
+        cursor.expected("another requirement after the comma", (), (fix,))
+        return None
+    name = parse_requirement_id(cursor, "a requirement: its ID, or QualityReq and a definition")
+    return parse_req_ref(cursor, name) if name is not None else None
+
+
+# ---- what productions ask and report ----
+
+
+def not_an_attribute(cursor: Cursor, pairs: list[Pair], clauses: list[NodeClause]) -> None:
+    """Report what is in brackets and is not an attribute, and read it as what it was probably meant to be."""
+    index = cursor.index
+    if cursor.at_name() and (cursor.is_operator(index + 1, ":") or cursor.is_operator(index + 1, "==")):
+        sign = cursor.starts[index + 1]
+        is_assignment = cursor.text.startswith(":=", sign)
+        span = Span(sign, sign + (2 if is_assignment else len(cursor.raws[index + 1])))
+        written = "=" if cursor.text[sign - 1] in " \t" else " ="
+        message = f"expected `=` between key and value, found `{cursor.text[span.start : span.end]}`"
+        cursor.complain(span, message, replace_fix("Write `=`", span, written, safe=True))
+        if is_assignment:
+            cursor.advance()
+        pairs.append(parse_pair(cursor))
+        return
+    if cursor.kind == NAME and cursor.kinds[index + 1] in (NAME, STRING) and (meant := misspelt_clause(cursor)):
+        clauses.append(parse_node_clause(cursor, meant))
+        return
+    notes: tuple[str, ...] = ()
+    if cursor.kinds[index - 1] in (NAME, NUMBER, QUANTITY) and cursor.kind in (NAME, NUMBER, QUANTITY):
+        notes = ("a value or name of several words goes in quotes",)
+    elif cursor.kinds[index - 1] == OPEN and cursor.kind in (NUMBER, QUANTITY, STRING):
+        notes = (f"a value goes after the name of its port: `port = {shown(cursor.raw)}`",)
+    elif cursor.kinds[index - 1] == OPEN and cursor.kind == NAME and cursor.raws[index + 1] == ",":
+        notes = (CHILDREN,)
+    elif cursor.raw in ("+", "%") and cursor.kinds[index - 1] in (STRING, NAME, BRACED):
+        cursor.complain(cursor.here(), _PUT_TOGETHER, notes=(_LITERAL_OR_ENTRY,))
+        cursor.recover()
+        return
+    fixes = id_in_brackets(cursor) or classic_quality(cursor, clauses)
+    if cursor.kind == NAME and cursor.kinds[index + 1] in (STRING, NUMBER, QUANTITY, BRACED):
+        gap = Span(cursor.here().end, cursor.starts[index + 1])
+        fixes = (replace_fix("Put `=` after it", gap, " = "),)
+    cursor.expected("an attribute: key = value", notes, fixes)
+    if cursor.index == index:
+        cursor.advance()
+
+
+def id_in_brackets(cursor: Cursor) -> tuple[Fix, ...]:
+    """The fix for `SubTree (PickPlace)`, where the ID needs no brackets."""
+    index = cursor.index
+    if index != 2 or cursor.kind != NAME or cursor.raws[0] not in CATEGORIES or cursor.kinds[index + 1] != CLOSE:
+        return ()
+    before = Span(cursor.starts[0] + len(cursor.raws[0]), cursor.here().start)
+    after = Span(cursor.here().end, cursor.starts[index + 1] + len(cursor.raws[index + 1]))
+    return (Fix("Remove the brackets", (FixEdit(Place(before), " "), FixEdit(Place(after), ""))),)
+
+
+def classic_quality(cursor: Cursor, clauses: list[NodeClause]) -> tuple[Fix, ...]:
+    """The fix for `satisfices performance (QualityReq …)`, which lacks `Quality =` before the quality."""
+    if cursor.kind != OPEN or not cursor.is_word(cursor.index + 1, "QualityReq") or not clauses:
+        return ()
+    last = clauses[-1]
+    if not isinstance(last, Satisfices) or not last.qualities or last.end != cursor.last_end():
+        return ()
+    start = last.qualities[-1].path.span.start + cursor.base
+    return (replace_fix("Put `Quality =` before the quality", Span(start, start), "Quality = "),)
+
+
+def half_quoted(cursor: Cursor, word: Word) -> Word:
+    """`charger" …`: the rest is a string only because a quote is missing; or Python is meant: `f"dock{n}"`."""
+    span = word.span.shifted(cursor.base)
+    if word.raw.lower() in _STRING_PREFIXES and cursor.adjacent(cursor.index):
+        end = cursor.here().end
+        cursor.complain(Span(span.start, end), _PUT_TOGETHER, notes=(_LITERAL_OR_ENTRY,))
+        cursor.recover()
+        return Word(NAME, word.start, cursor.text[span.start : end])
+    fix = Fix(f"Put {cursor.raw[0]} before it", (FixEdit(Place(Span(span.start, span.start)), cursor.raw[0]),))
+    start = cursor.starts[cursor.index]
+    unclosed = [problem for problem in cursor.lexer.problems[cursor.known :] if problem.span.start == start]
+    message = f"missing quote before `{word.raw}`"
+    if cursor.complain_instead(unclosed, Diagnostic("syntax-error", span, message, fixes=(fix,))):
+        cursor.inside_out = min(cursor.inside_out, span.end)
+    cursor.recover()
+    return word
+
+
+def joins(cursor: Cursor) -> bool:
+    """Whether the current token forms one value with the one before it: there is no blank between."""
+    if not cursor.adjacent(cursor.index):
+        return False
+    return cursor.kind not in (NEWLINE, OPEN, CLOSE) and cursor.raw not in (",", "=")
+
+
+def ends_value(cursor: Cursor) -> bool:
+    """Whether the next token may follow a value."""
+    return cursor.kind in (NEWLINE, CLOSE) or cursor.raw == "," or cursor.raw in _ATTRIBUTE_WORDS or cursor.at_key()
+
+
+def needs_quotes(cursor: Cursor, word: Word) -> Word:
+    """`map/frame`, `/map`: read what is written without a blank as one value, and report that it needs quotes."""
+    cause = cursor.lost_quote() or cursor.wrong_unit()
+    while joins(cursor):
+        cursor.advance()
+    start = word.start + cursor.base
+    end = cursor.last_end() + cursor.base
+    raw = cursor.text[start:end]
+    if cause is not None:
+        cursor.report(cause)
+    elif word.kind == STRING:
+        note = "write a quote in a string as \\\", in a script as '; or add a closing quote that is missing above"
+        fixes: tuple[Fix, ...] = ()
+        if raw[0] == raw[-1] == '"' and raw.count('"') == 4 and "'" not in raw and ends_value(cursor):
+            note = "write a quote in a string as \\\", in a script as '"
+            single = raw[1:-1].replace('"', "'")
+            fixes = (write_fix(f'"{single}"', Span(start, end)),)
+        cursor.complain(Span(start, end), "unexpected text right after a string", *fixes, notes=(note,))
+    else:
+        # A quote or a brace in it indicates another mistake.
+        safe = ends_value(cursor) and not set(raw) & set("\"'{}\\")
+        cursor.complain(Span(start, end), "this value needs quotes", value_meant(cursor.text, start, end, safe=safe))
+    return Word(NAME, word.start, raw)
+
+
+def misspelt_clause(cursor: Cursor) -> str | None:
+    """Report a misspelt word, `satisfys rq1`, and return the one that was probably meant."""
+    meant = meant_clause(cursor.raw) if cursor.raw not in _ATTRIBUTE_WORDS else None
+    if meant is not None:
+        attaches_nothing(cursor, cursor.here(), meant)
+    return meant
+
+
+def attaches_nothing(cursor: Cursor, span: Span, meant: str) -> None:
+    """Report a misspelt satisfices, satisfies or tags."""
+    word = cursor.text[span.start : span.end]
+    by = cursor.index + 1
+    place = span
+    if word == "satisfied" and cursor.is_word(by, "by") and cursor.kinds[by + 1] in (NAME, STRING):
+        place = Span(span.start, cursor.starts[by] + len("by"))
+    message = f"unknown word `{word}`; did you mean `{meant}`?"
+    cursor.complain(span, message, replace_fix(f"Replace `{word}` with `{meant}`", place, meant))
+
+
+def at_quality(cursor: Cursor) -> bool:
+    return cursor.kind == NAME and cursor.raw == "Quality" and cursor.is_operator(cursor.index + 1, "=")
+
+
+def names_follow(cursor: Cursor, index: int) -> bool:
+    """Whether a quality's name follows, so that `Quality` before it lacks its `=`."""
+    if cursor.kinds[index] not in (NAME, STRING) or cursor.raws[index] in _ATTRIBUTE_WORDS:
+        return False
+    return not cursor.is_operator(index + 1, "=")
+
+
+def requirement_in_other_words(cursor: Cursor) -> Requirement | ReqRef | None:
+    """`satisfies QualityRequirement ID = r`, `satisfies requirement r`"""
+    word = cursor.here()
+    if cursor.is_word(cursor.index + 1, "ID") and cursor.is_operator(cursor.index + 2, "="):
+        message = f"unknown word `{cursor.raw}`; did you mean `QualityReq`?"
+        cursor.complain(word, message, replace_fix(f"Replace `{cursor.raw}` with `QualityReq`", word, "QualityReq"))
+        return parse_requirement(cursor)
+    if cursor.raws[cursor.index + 1] in _ATTRIBUTE_WORDS or cursor.is_operator(cursor.index + 2, "="):
+        return parse_req_ref(cursor, cursor.take())
+    fix = replace_fix(f"Remove `{cursor.raw}`", Span(word.start, cursor.starts[cursor.index + 1]), "")
+    cursor.complain(word, "a requirement is named by its ID alone", fix)
+    cursor.advance()
+    return parse_req_ref(cursor, cursor.take())
+
+
+def list_goes_on(cursor: Cursor, qualities: bool = False) -> bool:
+    """Skip a comma if another element follows it; in brackets an attribute may follow instead."""
+    if cursor.at_word("and") and cursor.kinds[cursor.index + 1] in (NAME, STRING) and not cursor.group:
+        return cursor.accept_and()
+    if not cursor.at(","):
+        return False
+    following = cursor.index + 1
+    if cursor.group:
+        if cursor.kinds[following] == CLOSE:
             return False
-        return not self.is_operator(index + 1, "=")
-
-    def satisfies(self) -> tuple[Requirement | ReqRef, ...]:
-        """ReqUse { "," ReqUse };  classic files omit the commas"""
-        self.skip_sign(":", "=")
-        if self.at_word("by") and self.kinds[self.index + 1] in (NAME, STRING):
-            self.advance()  # `satisfied by r`, reported at its first word
-        if not self.group:
-            self.skip_brackets("requirements of a node need no brackets")
-        return self.listed(self.req_use, lambda: self.at_word("QualityReq") or self.list_goes_on())
-
-    def req_use(self) -> Requirement | ReqRef | None:
-        """ReqUse = Requirement | ReqRef"""
-        if self.at_word("QualityReq"):
-            return self.requirement()
-        if self.kind == NAME and self.raw.lower() in _REQUIREMENTS and self.kinds[self.index + 1] in (NAME, STRING):
-            return self.requirement_in_other_words()
-        if self.kind == NEWLINE and self.index and self.raws[self.index - 1] == ",":
-            end = self.last_end() + self.base
-            fix = replace_fix("Remove `,`", Span(end - 1, end), "", safe=True)
-            self.expected("another requirement after the comma", (), (fix,))
-            return None
-        name = self.requirement_id("a requirement: its ID, or QualityReq and a definition")
-        return self.req_ref(name) if name is not None else None
-
-    def requirement_in_other_words(self) -> Requirement | ReqRef | None:
-        """`satisfies QualityRequirement ID = r`, `satisfies requirement r`"""
-        word = self.here()
-        if self.is_word(self.index + 1, "ID") and self.is_operator(self.index + 2, "="):
-            message = f"unknown word `{self.raw}`; did you mean `QualityReq`?"
-            self.complain(word, message, replace_fix(f"Replace `{self.raw}` with `QualityReq`", word, "QualityReq"))
-            return self.requirement()
-        if self.raws[self.index + 1] in _ATTRIBUTE_WORDS or self.is_operator(self.index + 2, "="):
-            return self.req_ref(self.take())
-        fix = replace_fix(f"Remove `{self.raw}`", Span(word.start, self.starts[self.index + 1]), "")
-        self.complain(word, "a requirement is named by its ID alone", fix)
-        self.advance()
-        return self.req_ref(self.take())
-
-    def list_goes_on(self, qualities: bool = False) -> bool:
-        """Skip a comma if another element follows it; in brackets an attribute may follow instead."""
-        if self.at_word("and") and self.kinds[self.index + 1] in (NAME, STRING) and not self.group:
-            return self.accept_and()
-        if not self.at(","):
+        if cursor.is_operator(following + 1, "=") and not (qualities and cursor.is_word(following, "Quality")):
             return False
-        following = self.index + 1
-        if self.group:
-            if self.kinds[following] == CLOSE:
-                return False
-            if self.is_operator(following + 1, "=") and not (qualities and self.is_word(following, "Quality")):
-                return False
-            if self.kinds[following] == NAME and self.raws[following] in _ATTRIBUTE_WORDS:
-                return False
-        self.advance()
-        return True
+        if cursor.kinds[following] == NAME and cursor.raws[following] in _ATTRIBUTE_WORDS:
+            return False
+    cursor.advance()
+    return True
 
 
 def meant_clause(word: str) -> str | None:

@@ -1,6 +1,6 @@
 """The part of the parser that reads claims: what a node must do, and within which bounds.
 
-Each function is a production of docs/grammar.md and named after it; its docstring shows the production.
+Each `parse_…` is a production of docs/grammar.md and named after it; its docstring shows the production.
 """
 
 from __future__ import annotations
@@ -12,10 +12,17 @@ from btq_lang.catalog.units import dimension_name, parse_unit
 from btq_lang.catalog.verbs import VERBS, words
 from btq_lang.diagnostics.model import Fix, replace_fix, write_fix
 from btq_lang.grammar.clause_slips import clause_slip
-from btq_lang.grammar.conditions import COMPARISONS, HEADS, RELATIONS, ConditionParser
-from btq_lang.grammar.cursor import shown
+from btq_lang.grammar.conditions import (
+    COMPARISONS,
+    HEADS,
+    RELATIONS,
+    bound_ahead,
+    parse_cond,
+    parse_path,
+    written_otherwise,
+)
+from btq_lang.grammar.cursor import Cursor, shown
 from btq_lang.grammar.prose import MODALS, clause_meant, state_meant
-from btq_lang.lexer import Lexer
 from btq_lang.syntax.scan import number_end
 from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
 from btq_lang.syntax.tree import (
@@ -44,444 +51,445 @@ HAPPENINGS: Final = frozenset(("starts", "succeeds", "fails", "finishes", "halts
 MAX_CASES: Final = 100  # in one value: each case of a table may be another table
 
 
-class ClaimParser(ConditionParser):
-    """A cursor that can read claims.
-
-    Attributes:
-        clause_starts: where the last two clauses begin, in the file.
-        title_at: where the title of the last requirement goes, in the file; -1 if it has one.
-    """
-
-    def __init__(self, lexer: Lexer) -> None:
-        super().__init__(lexer)
-        self.clause_starts = -1, -1
-        self.title_at = -1
-
-    # ---- mistakes ----
-
-    def expected(self, what: str, notes: tuple[str, ...] = (), fixes: tuple[Fix, ...] = ()) -> None:
-        """Report that something else was expected, or a clause in the words of other notations."""
-        if self.whole_clause_slip():
-            self.recover()
-        else:
-            super().expected(what, notes, fixes)
-
-    def misspelt(self, span: Span, word: str, likely: str) -> None:
-        """Report a misspelt word, or a clause in the words of other notations."""
-        if not self.whole_clause_slip():
-            super().misspelt(span, word, likely)
-
-    def whole_clause_slip(self) -> bool:
-        """Report that the clause is written otherwise, if it is known how."""
-        last = len(self.kinds) - 2
-        for start in self.clause_starts:  # `succeeds` may be read as a clause before `in 30 s`
-            if start < self.starts[0] or last < 0:
-                continue  # of another line
-            meant = clause_slip(self.text[start : self.starts[last] + len(self.raws[last])])
-            if meant is not None and start + meant.length > self.clause_starts[1]:
-                self.written_instead(Span(start, start + meant.length), meant.clauses, meant.note)
-                return True
-        return False
-
-    def written_instead(self, span: Span, clauses: tuple[str, ...], note: str) -> None:
-        """Report what is written instead of a clause, if it is known; otherwise only the note."""
-        if not clauses:
-            self.complain(span, note)
-            return
-        fixes = [write_fix(clause, span) for clause in clauses if not _OPEN.search(clause)]
-        message = " or ".join(f"`{shown(clause)}`" for clause in clauses)
-        self.complain(span, f"this clause is written {message}", *fixes, notes=(note,) if note else ())
-
-    # ---- claims ----
-
-    def claim(self) -> Claim | None:
-        """Claim = [ Subject ] Verb"""
-        start = self.start()
-        subject: Subject | None = None
-        if not (self.kind == NAME and self.raw in VERB_WORDS):
-            subject = self.subject()
-        if not (self.kind == NAME and self.raw in VERB_WORDS) and not self.blank_in_path(subject, VERB_WORDS):
-            if subject is not None:
-                self.no_verb(subject)
-            return None
-        if isinstance(subject, Path) and subject.names[0].raw in MODALS and len(subject.names) == 1:
-            self.verb_in_other_words(self.index - 1, "")
-            subject = None
-        return self.verb(start, subject)
-
-    def verb(self, start: int, subject: Subject | None) -> Claim:
-        """Verb = "takes" Bound | "succeeds" [ "within" Bounded ] | "needs" Cond | …; the verb of a subject"""
-        verb = self.take()
-        bound: Bound | None = None
-        condition: Condition | None = None
-        resource: Word | None = None
-        per: Path | Word | None = None
-        event: Event | None = None
-        every = False
-        operand = VERBS[verb.raw].operand
-        if operand == "duration":
-            bound = self.bound()
-        elif operand == "deadline":
-            if self.accept_word("within"):
-                bound = self.within()
-            elif self.kind == QUANTITY:
-                self.no_within()
-        elif operand == "condition":
-            if verb.raw == "never" and self.raw in HAPPENINGS and self.kinds[self.index + 1] == NEWLINE:
-                self.expected("a condition", (_NEVER_FAILS,))
-            elif self.at_word("to") and self.verb_in_other_words(self.index - 1, self.before_verb(subject)):
-                self.recover()
-            elif not self.signal_last(verb.raw):
-                condition = self.cond()
-        elif operand == "use":
-            bound = self.bound()
-            resource = self.plain_name("a signal") if self.expect_word("of", forgotten=self.kind == NAME) else None
-        elif operand == "count":
-            bound = self.bound()
-            per = self.path("a node") if self.accept_word("per") else None
-        elif operand == "rate":
-            if self.accept_word("every"):
-                every = True
-                bound = self.within()
-                if self.raws[self.index - 1].endswith("Hz") and self.whole_clause_slip():
-                    bound = None
-            else:
-                bound = self.bound()
-                if self.kind == NEWLINE:
-                    self.expected("`per` and a time", ("a rate is written `runs at least 10 per 1 s`",))
-                else:
-                    per = self.quantity("a duration: 1 s") if self.expect_word("per") else None
-        elif operand == "event":
-            event = self.event()
-        else:
-            bound = self.within() if self.expect_word("within") else None
-            event = self.event() if self.expect_word("after", ("of", "from", "since")) else None
-        return Claim(start, self.last_end(), subject, verb, bound, condition, resource, per, event, every)
-
-    def every_meant(self) -> bool:
-        """Report `all MoveBase`, and read it as `every`."""
-        if self.kind != NAME or self.raw not in ("all", "each", "any"):
-            return False
-        if self.kinds[self.index + 1] != NAME or self.raws[self.index + 1] in VERB_WORDS:
-            return False
-        fix = replace_fix(f"Replace `{self.raw}` with `every`", self.here(), "every", safe=True)
-        self.complain(self.here(), "all nodes of a kind are written `every …`", fix)
-        self.advance()
-        return True
-
-    def is_verb(self, further: int) -> bool:
-        """Whether the word `further` tokens ahead is a verb."""
-        index = self.index + further
-        return index < len(self.kinds) and self.kinds[index] == NAME and self.raws[index] in VERB_WORDS
-
-    def no_verb(self, subject: Subject) -> None:
-        """Report a subject without a verb, or of a misspelt verb that was read as a subject."""
-        first = subject.names[0] if isinstance(subject, Path) and len(subject.names) == 1 else None
-        if isinstance(subject, Path) and (self.in_other_words(subject) or self.situation(first)):
-            self.recover()
-        elif isinstance(subject, Path) and self.kind == NAME and self.raw in NO_VERBS:
-            self.expected(_A_VERB, (NO_VERBS[self.raw],))
-        elif isinstance(subject, Path) and (self.at_word("and") or self.at(",")):
-            note = "a clause applies to one node; write it for each, or `sum of A, B` for the time of both"
-            self.expected(_A_VERB, (note,))
-        elif first is not None and first.raw == "at" and (fixes := self.takes_before(first)):
-            self.expected(f"a verb before `at {self.raw}`", (MEANT["at"],), fixes)
-        elif first is not None and first.kind == NAME and (noted := MEANT.get(first.raw) or NO_VERBS.get(first.raw)):
-            self.expected(f"a verb after `{first.raw}` (takes, succeeds, needs, keeps, …)", (noted,))
-        elif first is not None and self.kind == OPERATOR and self.raw in COMPARISONS and self.whole_clause_slip():
-            self.recover()
-        elif first is not None and self.kind == OPERATOR and self.raw in COMPARISONS:
-            start = first.start + self.base
-            fix = replace_fix("Put `keeps` before it", Span(start, start), "keeps ")
-            message = "expected a verb before the condition: `keeps`, `never`, `needs` or `leaves`"
-            notes = ("`keeps` holds while the node runs, `needs` when it starts, `leaves` when it has succeeded",)
-            self.complain(Span(start, self.here().end), message, fix, notes=notes)
-            self.recover()
-        elif self.kind == NAME and (likely := near(self.raw, VERB_WORDS, limit=1)):
-            self.misspelt(self.here(), self.raw, likely[0])
-            self.recover()
-        elif not isinstance(subject, Path):
-            self.expected(_A_VERB)
-        elif len(subject.names) == 1 and (likely := near(subject.names[0].raw, VERB_WORDS | HEADS, limit=1)):
-            self.misspelt(subject.span.shifted(self.base), subject.names[0].raw, likely[0])
-            self.recover()
-        else:
-            name = "/".join(word.raw for word in subject.names)
-            note = (
-                f"btq reads `{shown(name)}` as the subject of a clause; write a verb after it, or begin with a "
-                "clause word: in at least, while, on violation, goal, …"
-            )
-            if subject.names[0].kind == STRING:
-                note = "a requirement has one title, after its name; reasons are written `because …`"
-            elif self.kind == NAME and self.raw in MEANT:
-                note = MEANT[self.raw]
-            elif self.kind == STRING:
-                note = 'a quality goes after `:` and a title in quotes: QualityReq ID : quality "title"'
-            self.expected(f"a verb after `{shown(name)}` (takes, succeeds, needs, keeps, …)", (note,))
-
-    def in_other_words(self, subject: Path) -> bool:
-        """Report `must take at most 30 s`, `Go should be reached within 30 s` and `speed must stay below 1 m/s`."""
-        word = subject.names[0]
-        is_word = len(subject.names) == 1 and word.kind == NAME
-        if is_word and self.verb_in_other_words(self.index - 1, ""):
-            return True
-        if self.verb_in_other_words(self.index, self.before_verb(subject)):
-            return True
-        state = state_meant(self.raws, self.index) if is_word else None
-        if state is not None:
-            self.written_as(self.index - 1, state[0], "", f"keeps {word.raw} {state[1]}")
-        return state is not None
-
-    def before_verb(self, subject: Subject | None) -> str:
-        """The text of a subject that is a path."""
-        if not isinstance(subject, Path):
-            return ""
-        return self.text[subject.span.start + self.base : subject.span.end + self.base]
-
-    def verb_in_other_words(self, begin: int, subject: str) -> bool:
-        """Report `must take`, which begins at a token after the subject."""
-        times = [is_time(raw) for kind, raw in zip(self.kinds, self.raws, strict=True) if kind == QUANTITY]
-        meant = clause_meant(self.raws, begin, is_time=bool(times) and all(times))
-        if meant is not None:
-            end, verb = meant
-            is_verb = not verb  # after a word like `must`
-            self.written_as(begin, end + is_verb, subject, verb or self.raws[end])
-        return meant is not None
-
-    def written_as(self, begin: int, end: int, subject: str, words: str) -> None:
-        """Report that the words between two tokens, after a subject, are others here."""
-        span = Span(self.starts[begin], self.starts[end - 1] + len(self.raws[end - 1]))
-        tail = self.text[span.end : self.starts[-1]].strip()
-        whole = " ".join(part for part in (subject, words, tail) if part)
-        self.complain(span, f"this clause is written `{shown(whole)}`", write_fix(words, span))
-
-    def next_head(self) -> int:
-        """The next token that begins another clause, or ends the line or the brackets."""
-        end = self.index
-        depth = 0
-        while self.kinds[end] != NEWLINE and not (self.kinds[end] == NAME and self.raws[end] in HEADS):
-            depth += (self.kinds[end] == OPEN) - (self.kinds[end] == CLOSE)
-            if depth < 0:
-                break
-            end += 1
-        return end
-
-    def situation(self, first: Word | None) -> bool:
-        """Report `unless humans_near`, with the condition that is written there."""
-        if first is None or first.kind != NAME or first.raw not in ("unless", "if") or self.kind == NEWLINE:
-            return False
-        end = self.next_head()
-        if end == self.index:
-            return False
-        condition = self.text[self.here().start : self.starts[end - 1] + len(self.raws[end - 1])]
-        span = Span(first.start + self.base, self.here().start + len(condition))
-        if first.raw == "if":
-            note = f"to limit a clause to a situation, write `while {condition}` or `when {condition}`"
-            self.complain(span, "a clause has no `if`", notes=(note,))
-            return True
-        joined = any(word in ("and", "or") for word in self.raws[self.index : end])
-        written = f"while not ({condition})" if joined else f"while not {condition}"
-        self.complain(span, f"this clause is written `{shown(written)}`", write_fix(written, span))
-        return True
-
-    def blank_in_path(self, path: Subject | None, follow: frozenset[str]) -> bool:
-        """Report `Inspect Dock succeeds`, where a path is written `Inspect/Dock`, and skip the rest."""
-        index = self.index
-        while self.kinds[index] in (NAME, STRING) and not (self.kinds[index] == NAME and self.raws[index] in follow):
-            index += 1
-        names = self.raws[self.index : index]
-        is_path = isinstance(path, Path) and path.names[0].raw not in MEANT and NO_VERBS.keys().isdisjoint(names)
-        if not names or not is_path or _NO_NAMES.intersection(names) or self.raws[index] not in follow:
-            return False
-        if self.whole_clause_slip():
-            return False
-        start = path.span.start + self.base if isinstance(path, Path) else 0
-        end = self.starts[index - 1] + len(self.raws[index - 1])
-        written = "/".join((self.text[start : self.last_end() + self.base], *names))
-        message = f"a path is written with `/`: `{shown(written)}`"
-        note = f"a name of several words goes in quotes: {quote(self.text[start:end])}"
-        self.complain(Span(start, end), message, write_fix(written, Span(start, end)), notes=(note,))
-        self.go_to(index)
-        return True
-
-    def no_within(self) -> None:
-        """Report `succeeds 30 s` and `succeeds 98 %`."""
-        is_deadline = is_time(self.raw)
-        note = "a deadline is written `within 30 s`, a probability `in at least 98 % of runs`"
-        self.expected("`within`, or the end of the line", (note,), (self.put_before("within"),) if is_deadline else ())
-
-    def signal_last(self, verb: str) -> bool:
-        """Report `leaves at least 3 % battery`, whose signal goes first."""
-        bound = self.bound_ahead() if self.kind == NAME else None
-        length, relation = bound or (0, ("at", "least"))
-        value = self.index + length
-        if self.kinds[value] not in (QUANTITY, NUMBER):
-            return False
-        signal = value + (2 if self.raws[value + 1] == "of" else 1)
-        if self.kinds[signal] != NAME or self.raws[signal] in _NO_NAMES:
-            return False
-        meant = f"{self.raws[signal]} {RELATIONS[relation]} {self.raws[value]}"
-        span = Span(self.here().start, self.starts[signal] + len(self.raws[signal]))
-        fixes = (write_fix(meant, span),) if bound else ()
-        self.expected("a condition, which begins with its signal", (f"write `{verb} {meant}`",), fixes)
-        return True
-
-    def takes_before(self, first: Word) -> tuple[Fix, ...]:
-        """The fix for `at most 30 s`, which lacks its verb."""
-        value = self.index + 1
-        is_bound = ("at", self.raw) in RELATIONS and self.kinds[value] == QUANTITY and is_time(self.raws[value])
-        start = first.start + self.base
-        return (replace_fix("Put `takes` before it", Span(start, start), "takes "),) if is_bound else ()
-
-    def subject(self) -> Subject | None:
-        """Subject = Path | "mission" | "every" Name | "from" Event "to" Event | "sum" "of" Path { "," Path }"""
-        start = self.start()
-        if self.accept_word("mission"):
-            return Mission(start, self.last_end())
-        if self.accept_word("every") or self.every_meant():
-            name = self.name("a node's ID or kind")
-            return Every(start, self.last_end(), name) if name else None
-        if self.accept_word("from"):
-            first = self.event()
-            last = self.event() if self.expect_word("to") else None
-            return Between(start, self.last_end(), first, last)
-        if self.accept_word("sum"):
-            if not self.expect_word("of"):
-                return None
-            paths = self.listed(lambda: self.path("a node"), lambda: self.accept_and() or self.accept(","))
-            return Sum(start, self.last_end(), paths)
-        return self.path("a node")
-
-    def event(self) -> Event | None:
-        """Event = ( Path | "mission" ) ( "starts" | "succeeds" | … ) | "when" Cond"""
-        start = self.start()
-        if self.accept_word("when"):
-            condition = self.cond()
-            return Event(start, self.last_end(), None, "when", condition)
-        path = None if self.accept_word("mission") else self.path("an event: a node and what happens to it")
-        if not (self.kind == NAME and self.raw in HAPPENINGS) and not self.blank_in_path(path, HAPPENINGS):
-            note = "an event is a node and what happens to it: `Pick starts`, `Place succeeds`"
-            self.expected("starts, succeeds, fails, finishes or halts", (note,), self.replaced_by(HAPPENINGS))
-            return None
-        happening = self.take().raw
-        return Event(start, self.last_end(), path, happening)
-
-    # ---- bounds ----
-
-    def bound(self) -> Bound | None:
-        """ "at" "most" Bounded | "at" "least" Bounded | "less" … | "more" … | "between" Simple "and" Simple"""
-        self.skip_sign(":")
-        start = self.start()
-        if self.accept_word("between"):
-            lower = self.simple()
-            upper = self.simple() if self.expect_word("and") else None
-            return Bound(start, self.last_end(), "between", lower, upper)
-        relation = self.relation()
-        if relation is None:
-            self.no_relation()
-            return None
-        value = self.bounded()
-        return Bound(start, self.last_end(), relation, value)
-
-    def relation(self) -> str | None:
-        """ "at" "most" | "at" "least" | "less" "than" | "more" "than"; other words for it are reported"""
-        bound = self.bound_ahead() if self.kind == NAME or self.kind == OPERATOR else None
-        if bound is None:
-            return None
-        length, meant = bound
-        if tuple(self.raws[self.index : self.index + length]) != meant:
-            self.written_otherwise("this bound", length, " ".join(meant))
-        self.go_to(self.index + length)
-        return RELATIONS[meant]
-
-    def no_relation(self) -> None:
-        """Report a bound without its first words."""
-        is_value = self.kind in (QUANTITY, NUMBER)
-        note = f"write the kind of bound before the value: `at most {self.raw if is_value else '30 s'}`"
-        fixes: tuple[Fix, ...] = ()
-        if is_value and self.raws[self.index + 1] in ("-", "to"):
-            note = "a range is written `between 10 s and 20 s`"
-        elif self.kind == QUANTITY and self.raws[self.index - 1] in _OF_DURATIONS:
-            fixes = (self.put_before("at most"),)
-        self.expected("a bound: at most, at least, less than, more than or between", (note,), fixes)
-
-    def within(self) -> Bound:
-        """Bounded, as the upper bound after `within` and `every`"""
-        start = self.start()
-        value = self.bounded()
-        end = self.last_end()
-        return Bound(min(start, end), end, "<=", value)
-
-    def bounded(self) -> Bounded | None:
-        """Bounded = Simple | Simple "if" Cond { "," Simple "if" Cond } "else" Simple"""
-        if self.at_word("if") or (
-            "?" in self.raws[self.index :] and self.raws.index("?", self.index) < self.next_head()
-        ):
-            return self.choice_in_other_words()
-        value = self.simple()
-        if value is None or not self.at_word("if"):
-            return value
-        cases: list[Case] = []
-        while self.accept_word("if"):
-            cases.append(Case(value, self.cond()))
-            if not self.accept(","):
-                break
-            if len(cases) == MAX_CASES:
-                note = "compute the value in a node, and declare a signal for its output"
-                self.complain(
-                    self.here(), f"more than {MAX_CASES} cases in one value", notes=(note,), rule="nested-too-deep"
-                )
-                self.recover()
-                return Table(tuple(cases))
-            value = self.simple()
-            if value is None:
-                return Table(tuple(cases))
-            if not self.at_word("if"):
-                self.expected("`if` and a condition, or `else` instead of the comma")
-                return Table(tuple(cases))
-        otherwise = self.simple() if self.expect_word("else") else None
-        return Table(tuple(cases), otherwise)
-
-    def choice_in_other_words(self) -> Amount | None:
-        """Report `low ? 60 s : 30 s`, as in C++, and `if low then 60 s else 30 s`; the first of the values."""
-        begin, raws = self.index, self.raws
-        has_if = self.at_word("if")
-        middle, last = ("then", "else") if has_if else ("?", ":")
-        first = raws.index(middle, begin) if middle in raws[begin:] else begin
-        second = self.end_of_simple(first + 1)
-        third = self.end_of_simple(second + 1) if raws[second] == last else second
-        condition, note = self.between(begin + has_if, first), f"a choice is written `{_A_CHOICE}`"
-        if not condition or third <= second + 1:
-            self.expected("a value", (note,))
-            return None
-        span = Span(self.here().start, self.starts[third - 1] + len(raws[third - 1]))
-        written = f"{self.between(first + 1, second)} if {condition} else {self.between(second + 1, third)}"
-        self.complain(span, f"a choice is written `{shown(written)}`", write_fix(written, span))
-        self.go_to(first + 1)
-        value = self.simple()
-        self.go_to(third)
-        return value
-
-    def end_of_simple(self, index: int) -> int:
-        """The token after the value that begins at a token; the same token if none does."""
-        begin = index + (self.raws[index : index + 1] == ["-"])
-        is_value = begin < len(self.kinds) and self.kinds[begin] in (QUANTITY, NUMBER, NAME)
-        return begin + 1 if is_value else min(index, len(self.kinds) - 1)
-
-    def between(self, begin: int, end: int) -> str:
-        """The text of some tokens."""
-        return self.text[self.starts[begin] : self.starts[end - 1] + len(self.raws[end - 1])] if begin < end else ""
-
-    def simple(self, strings: bool = False) -> Amount | None:
-        """Simple = [ "-" ] ( QUANTITY | NUMBER ) | NAME;  with `strings` a STRING too"""
-        self.skip_sign(":")
-        negative = self.accept("-")
-        if self.kind == QUANTITY or self.kind == NUMBER:
-            return Amount(self.take(), negative)
-        if not negative and (self.kind == NAME or (strings and self.kind == STRING)):
-            return Amount(self.take())
-        self.expected("a value with its unit: 30 s")
+def parse_claim(cursor: Cursor) -> Claim | None:
+    """Claim = [ Subject ] Verb"""
+    start = cursor.start()
+    subject: Subject | None = None
+    if not (cursor.kind == NAME and cursor.raw in VERB_WORDS):
+        subject = parse_subject(cursor)
+    if not (cursor.kind == NAME and cursor.raw in VERB_WORDS) and not blank_in_path(cursor, subject, VERB_WORDS):
+        if subject is not None:
+            no_verb(cursor, subject)
         return None
+    if isinstance(subject, Path) and subject.names[0].raw in MODALS and len(subject.names) == 1:
+        verb_in_other_words(cursor, cursor.index - 1, "")
+        subject = None
+    return parse_verb(cursor, start, subject)
+
+
+def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
+    """Verb = "takes" Bound | "succeeds" [ "within" Bounded ] | "needs" Cond | …; the verb of a subject"""
+    verb = cursor.take()
+    bound: Bound | None = None
+    condition: Condition | None = None
+    resource: Word | None = None
+    per: Path | Word | None = None
+    event: Event | None = None
+    every = False
+    operand = VERBS[verb.raw].operand
+    if operand == "duration":
+        bound = parse_bound(cursor)
+    elif operand == "deadline":
+        if cursor.accept_word("within"):
+            bound = parse_within(cursor)
+        elif cursor.kind == QUANTITY:
+            no_within(cursor)
+    elif operand == "condition":
+        if verb.raw == "never" and cursor.raw in HAPPENINGS and cursor.kinds[cursor.index + 1] == NEWLINE:
+            cursor.expected("a condition", (_NEVER_FAILS,))
+        elif cursor.at_word("to") and verb_in_other_words(cursor, cursor.index - 1, before_verb(cursor, subject)):
+            cursor.recover()
+        elif not signal_last(cursor, verb.raw):
+            condition = parse_cond(cursor)
+    elif operand == "use":
+        bound = parse_bound(cursor)
+        resource = cursor.plain_name("a signal") if cursor.expect_word("of", forgotten=cursor.kind == NAME) else None
+    elif operand == "count":
+        bound = parse_bound(cursor)
+        per = parse_path(cursor, "a node") if cursor.accept_word("per") else None
+    elif operand == "rate":
+        if cursor.accept_word("every"):
+            every = True
+            bound = parse_within(cursor)
+            if cursor.raws[cursor.index - 1].endswith("Hz") and report_slip(cursor):
+                bound = None
+        else:
+            bound = parse_bound(cursor)
+            if cursor.kind == NEWLINE:
+                cursor.expected("`per` and a time", ("a rate is written `runs at least 10 per 1 s`",))
+            else:
+                per = cursor.quantity("a duration: 1 s") if cursor.expect_word("per") else None
+    elif operand == "event":
+        event = parse_event(cursor)
+    else:
+        bound = parse_within(cursor) if cursor.expect_word("within") else None
+        event = parse_event(cursor) if cursor.expect_word("after", ("of", "from", "since")) else None
+    return Claim(start, cursor.last_end(), subject, verb, bound, condition, resource, per, event, every)
+
+
+def parse_subject(cursor: Cursor) -> Subject | None:
+    """Subject = Path | "mission" | "every" Name | "from" Event "to" Event | "sum" "of" Path { "," Path }"""
+    start = cursor.start()
+    if cursor.accept_word("mission"):
+        return Mission(start, cursor.last_end())
+    if cursor.accept_word("every") or every_meant(cursor):
+        name = cursor.name("a node's ID or kind")
+        return Every(start, cursor.last_end(), name) if name else None
+    if cursor.accept_word("from"):
+        first = parse_event(cursor)
+        last = parse_event(cursor) if cursor.expect_word("to") else None
+        return Between(start, cursor.last_end(), first, last)
+    if cursor.accept_word("sum"):
+        if not cursor.expect_word("of"):
+            return None
+        paths = cursor.listed(
+            lambda cursor: parse_path(cursor, "a node"), lambda cursor: cursor.accept_and() or cursor.accept(",")
+        )
+        return Sum(start, cursor.last_end(), paths)
+    return parse_path(cursor, "a node")
+
+
+def parse_event(cursor: Cursor) -> Event | None:
+    """Event = ( Path | "mission" ) ( "starts" | "succeeds" | … ) | "when" Cond"""
+    start = cursor.start()
+    if cursor.accept_word("when"):
+        condition = parse_cond(cursor)
+        return Event(start, cursor.last_end(), None, "when", condition)
+    path = None if cursor.accept_word("mission") else parse_path(cursor, "an event: a node and what happens to it")
+    if not (cursor.kind == NAME and cursor.raw in HAPPENINGS) and not blank_in_path(cursor, path, HAPPENINGS):
+        note = "an event is a node and what happens to it: `Pick starts`, `Place succeeds`"
+        cursor.expected("starts, succeeds, fails, finishes or halts", (note,), cursor.replaced_by(HAPPENINGS))
+        return None
+    happening = cursor.take().raw
+    return Event(start, cursor.last_end(), path, happening)
+
+
+def parse_bound(cursor: Cursor) -> Bound | None:
+    """ "at" "most" Bounded | "at" "least" Bounded | "less" … | "more" … | "between" Simple "and" Simple"""
+    cursor.skip_sign(":")
+    start = cursor.start()
+    if cursor.accept_word("between"):
+        lower = parse_simple(cursor)
+        upper = parse_simple(cursor) if cursor.expect_word("and") else None
+        return Bound(start, cursor.last_end(), "between", lower, upper)
+    relation = parse_relation(cursor)
+    if relation is None:
+        no_relation(cursor)
+        return None
+    value = parse_bounded(cursor)
+    return Bound(start, cursor.last_end(), relation, value)
+
+
+def parse_relation(cursor: Cursor) -> str | None:
+    """ "at" "most" | "at" "least" | "less" "than" | "more" "than"; other words for it are reported"""
+    bound = bound_ahead(cursor) if cursor.kind == NAME or cursor.kind == OPERATOR else None
+    if bound is None:
+        return None
+    length, meant = bound
+    if tuple(cursor.raws[cursor.index : cursor.index + length]) != meant:
+        written_otherwise(cursor, "this bound", length, " ".join(meant))
+    cursor.go_to(cursor.index + length)
+    return RELATIONS[meant]
+
+
+def parse_within(cursor: Cursor) -> Bound:
+    """Bounded, as the upper bound after `within` and `every`"""
+    start = cursor.start()
+    value = parse_bounded(cursor)
+    end = cursor.last_end()
+    return Bound(min(start, end), end, "<=", value)
+
+
+def parse_bounded(cursor: Cursor) -> Bounded | None:
+    """Bounded = Simple | Simple "if" Cond { "," Simple "if" Cond } "else" Simple"""
+    if cursor.at_word("if") or (
+        "?" in cursor.raws[cursor.index :] and cursor.raws.index("?", cursor.index) < next_head(cursor)
+    ):
+        return choice_in_other_words(cursor)
+    value = parse_simple(cursor)
+    if value is None or not cursor.at_word("if"):
+        return value
+    cases: list[Case] = []
+    while cursor.accept_word("if"):
+        cases.append(Case(value, parse_cond(cursor)))
+        if not cursor.accept(","):
+            break
+        if len(cases) == MAX_CASES:
+            note = "compute the value in a node, and declare a signal for its output"
+            cursor.complain(
+                cursor.here(), f"more than {MAX_CASES} cases in one value", notes=(note,), rule="nested-too-deep"
+            )
+            cursor.recover()
+            return Table(tuple(cases))
+        value = parse_simple(cursor)
+        if value is None:
+            return Table(tuple(cases))
+        if not cursor.at_word("if"):
+            cursor.expected("`if` and a condition, or `else` instead of the comma")
+            return Table(tuple(cases))
+    otherwise = parse_simple(cursor) if cursor.expect_word("else") else None
+    return Table(tuple(cases), otherwise)
+
+
+def parse_simple(cursor: Cursor, strings: bool = False) -> Amount | None:
+    """Simple = [ "-" ] ( QUANTITY | NUMBER ) | NAME;  with `strings` a STRING too"""
+    cursor.skip_sign(":")
+    negative = cursor.accept("-")
+    if cursor.kind == QUANTITY or cursor.kind == NUMBER:
+        return Amount(cursor.take(), negative)
+    if not negative and (cursor.kind == NAME or (strings and cursor.kind == STRING)):
+        return Amount(cursor.take())
+    cursor.expected("a value with its unit: 30 s")
+    return None
+
+
+# ---- what productions ask and report ----
+
+
+def report_slip(cursor: Cursor) -> bool:
+    """Report that the clause is written otherwise, if it is known how."""
+    last = len(cursor.kinds) - 2
+    for start in cursor.clause_starts:  # `succeeds` may be read as a clause before `in 30 s`
+        if start < cursor.starts[0] or last < 0:
+            continue  # of another line
+        meant = clause_slip(cursor.text[start : cursor.starts[last] + len(cursor.raws[last])])
+        if meant is not None and start + meant.length > cursor.clause_starts[1]:
+            written_instead(cursor, Span(start, start + meant.length), meant.clauses, meant.note)
+            return True
+    return False
+
+
+def written_instead(cursor: Cursor, span: Span, clauses: tuple[str, ...], note: str) -> None:
+    """Report what is written instead of a clause, if it is known; otherwise only the note."""
+    if not clauses:
+        cursor.complain(span, note)
+        return
+    fixes = [write_fix(clause, span) for clause in clauses if not _OPEN.search(clause)]
+    message = " or ".join(f"`{shown(clause)}`" for clause in clauses)
+    cursor.complain(span, f"this clause is written {message}", *fixes, notes=(note,) if note else ())
+
+
+def every_meant(cursor: Cursor) -> bool:
+    """Report `all MoveBase`, and read it as `every`."""
+    if cursor.kind != NAME or cursor.raw not in ("all", "each", "any"):
+        return False
+    if cursor.kinds[cursor.index + 1] != NAME or cursor.raws[cursor.index + 1] in VERB_WORDS:
+        return False
+    fix = replace_fix(f"Replace `{cursor.raw}` with `every`", cursor.here(), "every", safe=True)
+    cursor.complain(cursor.here(), "all nodes of a kind are written `every …`", fix)
+    cursor.advance()
+    return True
+
+
+def is_verb_ahead(cursor: Cursor, further: int) -> bool:
+    """Whether the word `further` tokens ahead is a verb."""
+    index = cursor.index + further
+    return index < len(cursor.kinds) and cursor.kinds[index] == NAME and cursor.raws[index] in VERB_WORDS
+
+
+def no_verb(cursor: Cursor, subject: Subject) -> None:
+    """Report a subject without a verb, or of a misspelt verb that was read as a subject."""
+    first = subject.names[0] if isinstance(subject, Path) and len(subject.names) == 1 else None
+    if isinstance(subject, Path) and (in_other_words(cursor, subject) or situation(cursor, first)):
+        cursor.recover()
+    elif isinstance(subject, Path) and cursor.kind == NAME and cursor.raw in NO_VERBS:
+        cursor.expected(_A_VERB, (NO_VERBS[cursor.raw],))
+    elif isinstance(subject, Path) and (cursor.at_word("and") or cursor.at(",")):
+        note = "a clause applies to one node; write it for each, or `sum of A, B` for the time of both"
+        cursor.expected(_A_VERB, (note,))
+    elif first is not None and first.raw == "at" and (fixes := takes_before(cursor, first)):
+        cursor.expected(f"a verb before `at {cursor.raw}`", (MEANT["at"],), fixes)
+    elif first is not None and first.kind == NAME and (noted := MEANT.get(first.raw) or NO_VERBS.get(first.raw)):
+        cursor.expected(f"a verb after `{first.raw}` (takes, succeeds, needs, keeps, …)", (noted,))
+    elif first is not None and cursor.kind == OPERATOR and cursor.raw in COMPARISONS and report_slip(cursor):
+        cursor.recover()
+    elif first is not None and cursor.kind == OPERATOR and cursor.raw in COMPARISONS:
+        start = first.start + cursor.base
+        fix = replace_fix("Put `keeps` before it", Span(start, start), "keeps ")
+        message = "expected a verb before the condition: `keeps`, `never`, `needs` or `leaves`"
+        notes = ("`keeps` holds while the node runs, `needs` when it starts, `leaves` when it has succeeded",)
+        cursor.complain(Span(start, cursor.here().end), message, fix, notes=notes)
+        cursor.recover()
+    elif cursor.kind == NAME and (likely := near(cursor.raw, VERB_WORDS, limit=1)):
+        cursor.misspelt(cursor.here(), cursor.raw, likely[0])
+        cursor.recover()
+    elif not isinstance(subject, Path):
+        cursor.expected(_A_VERB)
+    elif len(subject.names) == 1 and (likely := near(subject.names[0].raw, VERB_WORDS | HEADS, limit=1)):
+        cursor.misspelt(subject.span.shifted(cursor.base), subject.names[0].raw, likely[0])
+        cursor.recover()
+    else:
+        name = "/".join(word.raw for word in subject.names)
+        note = (
+            f"btq reads `{shown(name)}` as the subject of a clause; write a verb after it, or begin with a "
+            "clause word: in at least, while, on violation, goal, …"
+        )
+        if subject.names[0].kind == STRING:
+            note = "a requirement has one title, after its name; reasons are written `because …`"
+        elif cursor.kind == NAME and cursor.raw in MEANT:
+            note = MEANT[cursor.raw]
+        elif cursor.kind == STRING:
+            note = 'a quality goes after `:` and a title in quotes: QualityReq ID : quality "title"'
+        cursor.expected(f"a verb after `{shown(name)}` (takes, succeeds, needs, keeps, …)", (note,))
+
+
+def in_other_words(cursor: Cursor, subject: Path) -> bool:
+    """Report `must take at most 30 s`, `Go should be reached within 30 s` and `speed must stay below 1 m/s`."""
+    word = subject.names[0]
+    is_word = len(subject.names) == 1 and word.kind == NAME
+    if is_word and verb_in_other_words(cursor, cursor.index - 1, ""):
+        return True
+    if verb_in_other_words(cursor, cursor.index, before_verb(cursor, subject)):
+        return True
+    state = state_meant(cursor.raws, cursor.index) if is_word else None
+    if state is not None:
+        written_as(cursor, cursor.index - 1, state[0], "", f"keeps {word.raw} {state[1]}")
+    return state is not None
+
+
+def before_verb(cursor: Cursor, subject: Subject | None) -> str:
+    """The text of a subject that is a path."""
+    if not isinstance(subject, Path):
+        return ""
+    return cursor.text[subject.span.start + cursor.base : subject.span.end + cursor.base]
+
+
+def verb_in_other_words(cursor: Cursor, begin: int, subject: str) -> bool:
+    """Report `must take`, which begins at a token after the subject."""
+    times = [is_time(raw) for kind, raw in zip(cursor.kinds, cursor.raws, strict=True) if kind == QUANTITY]
+    meant = clause_meant(cursor.raws, begin, is_time=bool(times) and all(times))
+    if meant is not None:
+        end, verb = meant
+        is_verb = not verb  # after a word like `must`
+        written_as(cursor, begin, end + is_verb, subject, verb or cursor.raws[end])
+    return meant is not None
+
+
+def written_as(cursor: Cursor, begin: int, end: int, subject: str, words: str) -> None:
+    """Report that the words between two tokens, after a subject, are others here."""
+    span = Span(cursor.starts[begin], cursor.starts[end - 1] + len(cursor.raws[end - 1]))
+    tail = cursor.text[span.end : cursor.starts[-1]].strip()
+    whole = " ".join(part for part in (subject, words, tail) if part)
+    cursor.complain(span, f"this clause is written `{shown(whole)}`", write_fix(words, span))
+
+
+def next_head(cursor: Cursor) -> int:
+    """The next token that begins another clause, or ends the line or the brackets."""
+    end = cursor.index
+    depth = 0
+    while cursor.kinds[end] != NEWLINE and not (cursor.kinds[end] == NAME and cursor.raws[end] in HEADS):
+        depth += (cursor.kinds[end] == OPEN) - (cursor.kinds[end] == CLOSE)
+        if depth < 0:
+            break
+        end += 1
+    return end
+
+
+def situation(cursor: Cursor, first: Word | None) -> bool:
+    """Report `unless humans_near`, with the condition that is written there."""
+    if first is None or first.kind != NAME or first.raw not in ("unless", "if") or cursor.kind == NEWLINE:
+        return False
+    end = next_head(cursor)
+    if end == cursor.index:
+        return False
+    condition = cursor.text[cursor.here().start : cursor.starts[end - 1] + len(cursor.raws[end - 1])]
+    span = Span(first.start + cursor.base, cursor.here().start + len(condition))
+    if first.raw == "if":
+        note = f"to limit a clause to a situation, write `while {condition}` or `when {condition}`"
+        cursor.complain(span, "a clause has no `if`", notes=(note,))
+        return True
+    joined = any(word in ("and", "or") for word in cursor.raws[cursor.index : end])
+    written = f"while not ({condition})" if joined else f"while not {condition}"
+    cursor.complain(span, f"this clause is written `{shown(written)}`", write_fix(written, span))
+    return True
+
+
+def blank_in_path(cursor: Cursor, path: Subject | None, follow: frozenset[str]) -> bool:
+    """Report `Inspect Dock succeeds`, where a path is written `Inspect/Dock`, and skip the rest."""
+    index = cursor.index
+    while cursor.kinds[index] in (NAME, STRING) and not (cursor.kinds[index] == NAME and cursor.raws[index] in follow):
+        index += 1
+    names = cursor.raws[cursor.index : index]
+    is_path = isinstance(path, Path) and path.names[0].raw not in MEANT and NO_VERBS.keys().isdisjoint(names)
+    if not names or not is_path or _NO_NAMES.intersection(names) or cursor.raws[index] not in follow:
+        return False
+    if report_slip(cursor):
+        return False
+    start = path.span.start + cursor.base if isinstance(path, Path) else 0
+    end = cursor.starts[index - 1] + len(cursor.raws[index - 1])
+    written = "/".join((cursor.text[start : cursor.last_end() + cursor.base], *names))
+    message = f"a path is written with `/`: `{shown(written)}`"
+    note = f"a name of several words goes in quotes: {quote(cursor.text[start:end])}"
+    cursor.complain(Span(start, end), message, write_fix(written, Span(start, end)), notes=(note,))
+    cursor.go_to(index)
+    return True
+
+
+def no_within(cursor: Cursor) -> None:
+    """Report `succeeds 30 s` and `succeeds 98 %`."""
+    is_deadline = is_time(cursor.raw)
+    note = "a deadline is written `within 30 s`, a probability `in at least 98 % of runs`"
+    cursor.expected("`within`, or the end of the line", (note,), (cursor.put_before("within"),) if is_deadline else ())
+
+
+def signal_last(cursor: Cursor, verb: str) -> bool:
+    """Report `leaves at least 3 % battery`, whose signal goes first."""
+    bound = bound_ahead(cursor) if cursor.kind == NAME else None
+    length, relation = bound or (0, ("at", "least"))
+    value = cursor.index + length
+    if cursor.kinds[value] not in (QUANTITY, NUMBER):
+        return False
+    signal = value + (2 if cursor.raws[value + 1] == "of" else 1)
+    if cursor.kinds[signal] != NAME or cursor.raws[signal] in _NO_NAMES:
+        return False
+    meant = f"{cursor.raws[signal]} {RELATIONS[relation]} {cursor.raws[value]}"
+    span = Span(cursor.here().start, cursor.starts[signal] + len(cursor.raws[signal]))
+    fixes = (write_fix(meant, span),) if bound else ()
+    cursor.expected("a condition, which begins with its signal", (f"write `{verb} {meant}`",), fixes)
+    return True
+
+
+def takes_before(cursor: Cursor, first: Word) -> tuple[Fix, ...]:
+    """The fix for `at most 30 s`, which lacks its verb."""
+    value = cursor.index + 1
+    is_bound = ("at", cursor.raw) in RELATIONS and cursor.kinds[value] == QUANTITY and is_time(cursor.raws[value])
+    start = first.start + cursor.base
+    return (replace_fix("Put `takes` before it", Span(start, start), "takes "),) if is_bound else ()
+
+
+def no_relation(cursor: Cursor) -> None:
+    """Report a bound without its first words."""
+    is_value = cursor.kind in (QUANTITY, NUMBER)
+    note = f"write the kind of bound before the value: `at most {cursor.raw if is_value else '30 s'}`"
+    fixes: tuple[Fix, ...] = ()
+    if is_value and cursor.raws[cursor.index + 1] in ("-", "to"):
+        note = "a range is written `between 10 s and 20 s`"
+    elif cursor.kind == QUANTITY and cursor.raws[cursor.index - 1] in _OF_DURATIONS:
+        fixes = (cursor.put_before("at most"),)
+    cursor.expected("a bound: at most, at least, less than, more than or between", (note,), fixes)
+
+
+def choice_in_other_words(cursor: Cursor) -> Amount | None:
+    """Report `low ? 60 s : 30 s`, as in C++, and `if low then 60 s else 30 s`; the first of the values."""
+    begin, raws = cursor.index, cursor.raws
+    has_if = cursor.at_word("if")
+    middle, last = ("then", "else") if has_if else ("?", ":")
+    first = raws.index(middle, begin) if middle in raws[begin:] else begin
+    second = end_of_simple(cursor, first + 1)
+    third = end_of_simple(cursor, second + 1) if raws[second] == last else second
+    condition, note = text_between(cursor, begin + has_if, first), f"a choice is written `{_A_CHOICE}`"
+    if not condition or third <= second + 1:
+        cursor.expected("a value", (note,))
+        return None
+    span = Span(cursor.here().start, cursor.starts[third - 1] + len(raws[third - 1]))
+    written = f"{text_between(cursor, first + 1, second)} if {condition} else {text_between(cursor, second + 1, third)}"
+    cursor.complain(span, f"a choice is written `{shown(written)}`", write_fix(written, span))
+    cursor.go_to(first + 1)
+    value = parse_simple(cursor)
+    cursor.go_to(third)
+    return value
+
+
+def end_of_simple(cursor: Cursor, index: int) -> int:
+    """The token after the value that begins at a token; the same token if none does."""
+    begin = index + (cursor.raws[index : index + 1] == ["-"])
+    is_value = begin < len(cursor.kinds) and cursor.kinds[begin] in (QUANTITY, NUMBER, NAME)
+    return begin + 1 if is_value else min(index, len(cursor.kinds) - 1)
+
+
+def text_between(cursor: Cursor, begin: int, end: int) -> str:
+    """The text of some tokens."""
+    return cursor.text[cursor.starts[begin] : cursor.starts[end - 1] + len(cursor.raws[end - 1])] if begin < end else ""
 
 
 def is_time(raw: str) -> bool:

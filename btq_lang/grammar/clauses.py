@@ -1,6 +1,6 @@
 """The part of the parser that reads clauses: a claim, or what limits, weighs or explains the claims of a requirement.
 
-Each function is a production of docs/grammar.md and named after it; its docstring shows the production.
+Each `parse_…` is a production of docs/grammar.md and named after it; its docstring shows the production.
 """
 
 from __future__ import annotations
@@ -9,8 +9,17 @@ from typing import Final
 
 from btq_lang.catalog.verbs import measured
 from btq_lang.diagnostics.model import Fix, FixEdit, Place, replace_fix, write_fix
-from btq_lang.grammar.claims import QUALITY_IN_HEAD, VERB_WORDS, ClaimParser, is_time
-from btq_lang.grammar.conditions import HEADS, SUBJECT_HEADS
+from btq_lang.grammar.claims import (
+    QUALITY_IN_HEAD,
+    VERB_WORDS,
+    is_time,
+    is_verb_ahead,
+    parse_bounded,
+    parse_claim,
+    report_slip,
+)
+from btq_lang.grammar.conditions import HEADS, SUBJECT_HEADS, parse_cond
+from btq_lang.grammar.cursor import Cursor
 from btq_lang.syntax.scan import line_end, line_start
 from btq_lang.syntax.suggestions import unknown_unit
 from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPERATOR, QUANTITY, STRING
@@ -36,272 +45,294 @@ METHODS: Final = ("monitor", "analysis", "test", "review")
 ENDS_CLAUSES: Final = frozenset(("satisfices", "satisfies", "tags", "parameters", "QualityReq", "Quality"))
 
 
-class ClauseParser(ClaimParser):
-    """A cursor that can read clauses."""
+def parse_clauses(cursor: Cursor, at_least_one: bool = False) -> tuple[Clause, ...]:
+    """{ Clause }, to the end of the line or of the brackets"""
+    clauses: list[Clause] = []
+    while cursor.kind == NAME or cursor.kind == STRING:
+        following = cursor.index + 1
+        if cursor.kind == NAME and cursor.raw in ENDS_CLAUSES and cursor.raw not in HEADS:
+            break
+        if cursor.group and cursor.is_operator(following, "="):
+            break
+        cursor.clause_starts = cursor.clause_starts[1], cursor.starts[cursor.index]
+        clause = parse_clause(cursor)
+        if clause is None:
+            return tuple(clauses)
+        clauses.append(clause)
+    if at_least_one and not clauses and cursor.kind == OPERATOR and cursor.raw in ("<=", "<", ">=", ">"):
+        bare_bound(cursor)
+    elif at_least_one and not clauses:
+        cursor.expected(_A_CLAUSE, (QUALITY_IN_HEAD,) if cursor.at_word("satisfices") else ())
+    return tuple(clauses)
 
-    def clauses(self, at_least_one: bool = False) -> tuple[Clause, ...]:
-        """{ Clause }, to the end of the line or of the brackets"""
-        clauses: list[Clause] = []
-        while self.kind == NAME or self.kind == STRING:
-            following = self.index + 1
-            if self.kind == NAME and self.raw in ENDS_CLAUSES and self.raw not in HEADS:
-                break
-            if self.group and self.is_operator(following, "="):
-                break
-            self.clause_starts = self.clause_starts[1], self.starts[self.index]
-            clause = self.clause()
-            if clause is None:
-                return tuple(clauses)
-            clauses.append(clause)
-        if at_least_one and not clauses and self.kind == OPERATOR and self.raw in ("<=", "<", ">=", ">"):
-            self.bare_bound()
-        elif at_least_one and not clauses:
-            self.expected(_A_CLAUSE, (QUALITY_IN_HEAD,) if self.at_word("satisfices") else ())
-        return tuple(clauses)
 
-    def clause(self) -> Clause | None:
-        """Clause = Claim | Scope | Odds | Confidence | Window | OnViolation | Goal | Because | How"""
-        word = self.raw if self.kind == NAME else ""
-        if word in VERB_WORDS or word in SUBJECT_HEADS:
-            return self.claim()
-        if word == "while" or word == "when":
-            return self.scope()
-        if word == "in" or word == "with":
-            return self.odds()
-        if word == "confidence":
-            return self.confidence()
-        if word == "over":
-            return self.window()
-        if word == "on" or word == "on_violation":
-            return self.on_violation()
-        if word == "goal":
-            return self.goal()
-        if word == "because":
-            return self.because()
-        if word == "verified":
-            return self.how()
-        if word.lower() in _NOT_IN_BTQ and self.is_other_clause():
-            self.other_clause(_NOT_IN_BTQ[word.lower()])
-            return None
-        if (self.lost_quote() or self.wrong_unit()) and not self.is_verb(1):
-            self.expected(_A_CLAUSE)
-            return None
-        if self.is_no_time():
-            start = self.starts[self.index]
-            self.report(unknown_unit(self.text, start, start + len(self.raw)))
-            self.advance()
-            return self.clause() if self.kind == NAME else None
-        return self.claim()
-
-    def is_other_clause(self) -> bool:
-        """Whether the current word, of other notations, begins a clause of them and is not the subject of one."""
-        following = self.index + 1
-        if self.kinds[following] == NAME and self.raws[following] in VERB_WORDS:
-            return False
-        return self.kinds[following] in (NAME, STRING, NUMBER, QUANTITY) or self.raws[following] in (":", "=")
-
-    def other_clause(self, nearest: str) -> None:
-        """Report a clause of another notation, with the nearest of this one."""
-        word, value = self.here(), self.index + 1 + (self.raws[self.index + 1] in (":", "="))
-        fixes: tuple[Fix, ...] = ()
-        if nearest == _BECAUSE and self.kinds[value] == STRING:
-            fixes = (replace_fix("Write `because`", Span(word.start, self.starts[value]), "because "),)
-        elif nearest == _TITLE and self.title_at >= 0 and self.index == 0 and self.kinds[value : value + 2] == _STRING:
-            moved = FixEdit(Place(Span(self.title_at, self.title_at)), f" {self.raws[value]}")
-            line = Span(line_start(self.text, 0, word.start), self.lexer.position)
-            fixes = (Fix("Move it after the name", (moved, FixEdit(Place(line), ""))),)
-        elif nearest == _COMMENT and self.index == 0:
-            fixes = (replace_fix("Write it as a comment", Span(word.start, word.start), "# "),)
-        self.complain(word, f"`{self.raw}` is not in btq; nearest is {nearest}", *fixes)
-        self.recover()
-
-    def scope(self) -> ScopeClause:
-        """Scope = ( "while" | "when" ) Cond"""
-        word = self.take()
-        self.skip_sign(":")
-        condition = self.cond()
-        return ScopeClause(word.start, self.last_end(), word, condition)
-
-    def odds(self) -> Odds:
-        """ "in" "at" "least" QUANTITY "of" Experiments | "with" "probability" ( ">=" | ">" ) QUANTITY [ "of" … ]"""
-        start = self.start()
-        return self.share(start) if self.accept_word("in") else self.probability(start)
-
-    def share(self, start: int) -> Odds:
-        """ "at" "least" QUANTITY "of" Experiments"""
-        value: Word | None = None
-        experiments = None
-        if self.kind == QUANTITY:
-            if not self.whole_clause_slip():
-                message = f"a probability is written `in at least {self.raw}`"
-                self.complain(self.here(), message, self.put_before("at least"))
-            value = self.take()
-        elif self.kind == NUMBER:
-            value = self.percentage("at least 98 %", "at least ")
-        elif self.expect_word("at") and self.expect_word("least"):
-            value = self.percentage("98 %")
-        if value is not None and self.expect_word("of", forgotten=self.raw in EXPERIMENTS):
-            experiments = self.experiments()
-        return Odds(start, self.last_end(), ">=", value, experiments)
-
-    def probability(self, start: int) -> Odds:
-        """ "with" "probability" ( ">=" | ">" ) QUANTITY [ "of" Experiments ]"""
-        relation = ">="
-        value: Word | None = None
-        experiments = None
-        self.advance()
-        if self.kind == QUANTITY:
-            value = self.after_missing("probability >=")
-        elif self.expect_word("probability"):
-            if self.at(">=") or self.at(">"):
-                relation = self.raw
-                self.advance()
-                value = self.percentage("98 %")
-            elif self.kind == QUANTITY:
-                value = self.after_missing(">=")
-            else:
-                fixes: tuple[Fix, ...] = ()
-                if self.kind == NUMBER and 0 < float(self.raw) <= 1:
-                    written = f">= {float(self.raw) * 100:.10g} %"
-                    fixes = (write_fix(written, self.here()),)
-                self.expected("`>=` or `>` and a percentage", (), fixes)
-        if value is not None and self.accept_word("of"):
-            experiments = self.experiments()
-        return Odds(start, self.last_end(), relation, value, experiments)
-
-    def confidence(self) -> Confidence:
-        """ "confidence" QUANTITY"""
-        start = self.take().start
-        value = self.percentage("95 %")
-        return Confidence(start, self.last_end(), value)
-
-    def window(self) -> Window:
-        """ "over" "last" ( NUMBER Experiments | QUANTITY )"""
-        start = self.take().start
-        self.expect_word("last")
-        size = experiments = None
-        if self.kind == QUANTITY:
-            size = self.take()
-        elif self.kind == NUMBER:
-            size = self.take()
-            experiments = self.experiments()
-        else:
-            self.expected("a number of runs or activations, or a duration")
-        return Window(start, self.last_end(), size, experiments)
-
-    def on_violation(self) -> OnViolation:
-        """ "on" "violation" ( "fail" | "halt" | "warn" | "log" )"""
-        start = self.start()
-        if self.at_word("on_violation"):
-            fix = write_fix("on violation", self.here(), safe=True)
-            self.complain(self.here(), "expected `on violation`, found `on_violation`", fix)
-            self.advance()
-        else:
-            self.advance()
-            if not self.accept_word("violation"):
-                self.no_violation()
-        self.skip_sign("=")
-        action = self.one_of(ACTIONS)
-        return OnViolation(start, self.last_end(), action)
-
-    def goal(self) -> Goal:
-        """ "goal" Bounded"""
-        start = self.take().start
-        value = self.bounded()
-        return Goal(start, self.last_end(), value)
-
-    def because(self) -> Because:
-        """ "because" STRING"""
-        start = self.take().start
-        self.skip_sign(":", "=")
-        text = self.take() if self.kind == STRING else None
-        if text is None:
-            begin = self.here().start
-            reason = self.text[begin : line_end(self.text, begin)].partition(" #")[0].rstrip()
-            fix = replace_fix("Put quotes around it", Span(begin, begin + len(reason)), quote(reason))
-            self.expected("the reason in quotes", (), (fix,) if reason and not self.group else ())
-        return Because(start, self.last_end(), text)
-
-    def how(self) -> How:
-        """ "verified" "by" ( "monitor" | "analysis" | "test" | "review" )"""
-        start = self.take().start
-        self.expect_word("by")
-        method = self.one_of(METHODS)
-        return How(start, self.last_end(), method)
-
-    def experiments(self) -> Word | None:
-        """ "activations" | "runs" """
-        return self.one_of(("activations", "runs"))
-
-    def percentage(self, example: str, before: str = "") -> Word | None:
-        """QUANTITY; `before`: the words that a fix puts before it"""
-        fixes: tuple[Fix, ...] = ()
-        if self.kind == NUMBER:
-            share, span = float(self.raw), self.here()
-            percent = f"{share * 100:.10g} %" if 0 < share <= 1 else f"{self.raw} %"
-            whole = self.index + 2
-            if self.raws[self.index + 1] == "of" and self.kinds[whole] == NUMBER and float(self.raws[whole]) > 0:
-                percent = f"{share * 100 / float(self.raws[whole]):.10g} % of"
-                span = Span(span.start, self.starts[whole] + len(self.raws[whole]))
-            fixes = (write_fix(before + percent, span),)
-        if self.kind == QUANTITY:
-            return self.take()
-        self.expected(f"a percentage: {example}", (), fixes)
+def parse_clause(cursor: Cursor) -> Clause | None:
+    """Clause = Claim | Scope | Odds | Confidence | Window | OnViolation | Goal | Because | How"""
+    word = cursor.raw if cursor.kind == NAME else ""
+    if word in VERB_WORDS or word in SUBJECT_HEADS:
+        return parse_claim(cursor)
+    if word == "while" or word == "when":
+        return parse_scope(cursor)
+    if word == "in" or word == "with":
+        return parse_odds(cursor)
+    if word == "confidence":
+        return parse_confidence(cursor)
+    if word == "over":
+        return parse_window(cursor)
+    if word == "on" or word == "on_violation":
+        return parse_on_violation(cursor)
+    if word == "goal":
+        return parse_goal(cursor)
+    if word == "because":
+        return parse_because(cursor)
+    if word == "verified":
+        return parse_how(cursor)
+    if word.lower() in _NOT_IN_BTQ and is_other_clause(cursor):
+        other_clause(cursor, _NOT_IN_BTQ[word.lower()])
         return None
-
-    def one_of(self, words: tuple[str, ...]) -> Word | None:
-        self.skip_sign(":")
-        if self.kind == NAME and self.raw in words:
-            return self.take()
-        what = f"{', '.join(words[:-1])} or {words[-1]}"
-        meant = near(self.raw, words, limit=1) or tuple(word for word in words if self.raw.startswith(word))
-        meant = meant or tuple(word for word in _OTHER_WORDS.get(self.raw, ()) if word in words)
-        if self.kind != NAME or not meant:
-            return self.missing_word(what)
-        fixes = tuple(replace_fix(f"Replace `{self.raw}` with `{word}`", self.here(), word) for word in meant)
-        self.complain(self.here(), f"expected {what}, found {self.found()}", *fixes)
-        self.advance()
+    if (cursor.lost_quote() or cursor.wrong_unit()) and not is_verb_ahead(cursor, 1):
+        cursor.expected(_A_CLAUSE)
         return None
+    if is_no_time(cursor):
+        start = cursor.starts[cursor.index]
+        cursor.report(unknown_unit(cursor.text, start, start + len(cursor.raw)))
+        cursor.advance()
+        return parse_clause(cursor) if cursor.kind == NAME else None
+    return parse_claim(cursor)
 
-    def no_violation(self) -> None:
-        """Report that `violation` is missing, and skip the word in its place: `on failure fail`."""
-        following = self.index + 1
-        if self.kind == NAME and self.kinds[following] == NAME and self.raws[following] in ACTIONS:
-            fix = replace_fix(f"Replace `{self.raw}` with `violation`", self.here(), "violation")
-            self.complain(self.here(), f"expected `violation`, found `{self.raw}`", fix)
-            self.advance()
-        elif self.kind == NAME and self.raw in ACTIONS:
-            self.expect_word("violation", forgotten=True)
+
+def parse_scope(cursor: Cursor) -> ScopeClause:
+    """Scope = ( "while" | "when" ) Cond"""
+    word = cursor.take()
+    cursor.skip_sign(":")
+    condition = parse_cond(cursor)
+    return ScopeClause(word.start, cursor.last_end(), word, condition)
+
+
+def parse_odds(cursor: Cursor) -> Odds:
+    """ "in" "at" "least" QUANTITY "of" Experiments | "with" "probability" ( ">=" | ">" ) QUANTITY [ "of" … ]"""
+    start = cursor.start()
+    return parse_share(cursor, start) if cursor.accept_word("in") else parse_probability(cursor, start)
+
+
+def parse_share(cursor: Cursor, start: int) -> Odds:
+    """ "at" "least" QUANTITY "of" Experiments"""
+    value: Word | None = None
+    experiments = None
+    if cursor.kind == QUANTITY:
+        if not report_slip(cursor):
+            message = f"a probability is written `in at least {cursor.raw}`"
+            cursor.complain(cursor.here(), message, cursor.put_before("at least"))
+        value = cursor.take()
+    elif cursor.kind == NUMBER:
+        value = parse_percentage(cursor, "at least 98 %", "at least ")
+    elif cursor.expect_word("at") and cursor.expect_word("least"):
+        value = parse_percentage(cursor, "98 %")
+    if value is not None and cursor.expect_word("of", forgotten=cursor.raw in EXPERIMENTS):
+        experiments = parse_experiments(cursor)
+    return Odds(start, cursor.last_end(), ">=", value, experiments)
+
+
+def parse_probability(cursor: Cursor, start: int) -> Odds:
+    """ "with" "probability" ( ">=" | ">" ) QUANTITY [ "of" Experiments ]"""
+    relation = ">="
+    value: Word | None = None
+    experiments = None
+    cursor.advance()
+    if cursor.kind == QUANTITY:
+        value = after_missing(cursor, "probability >=")
+    elif cursor.expect_word("probability"):
+        if cursor.at(">=") or cursor.at(">"):
+            relation = cursor.raw
+            cursor.advance()
+            value = parse_percentage(cursor, "98 %")
+        elif cursor.kind == QUANTITY:
+            value = after_missing(cursor, ">=")
         else:
-            self.expected("`violation`", (_ON_VIOLATION,))
+            fixes: tuple[Fix, ...] = ()
+            if cursor.kind == NUMBER and 0 < float(cursor.raw) <= 1:
+                written = f">= {float(cursor.raw) * 100:.10g} %"
+                fixes = (write_fix(written, cursor.here()),)
+            cursor.expected("`>=` or `>` and a percentage", (), fixes)
+    if value is not None and cursor.accept_word("of"):
+        experiments = parse_experiments(cursor)
+    return Odds(start, cursor.last_end(), relation, value, experiments)
 
-    def after_missing(self, words: str) -> Word:
-        """Read the current percentage; report that `words` are missing before it."""
-        message = f"a probability is written `with probability >= {self.raw}`"
-        self.complain(self.here(), message, self.put_before(words))
-        return self.take()
 
-    def bare_bound(self) -> None:
-        """Report `<= 30 s` without a verb."""
-        sign, value = self.raw, self.index + 1
-        bound = {"<=": "at most", "<": "less than", ">=": "at least", ">": "more than"}.get(sign)
-        fixes: tuple[Fix, ...] = ()
-        if bound is not None and self.kinds[value] == QUANTITY and is_time(self.raws[value]):
-            written = f"takes {bound} {self.raws[value]}"
-            span = Span(self.here().start, self.starts[value] + len(self.raws[value]))
-            fixes = (write_fix(written, span),)
-        self.expected(_A_CLAUSE, ("a bound goes after its verb: `takes at most 30 s`",), fixes)
+def parse_confidence(cursor: Cursor) -> Confidence:
+    """ "confidence" QUANTITY"""
+    start = cursor.take().start
+    value = parse_percentage(cursor, "95 %")
+    return Confidence(start, cursor.last_end(), value)
 
-    def is_no_time(self) -> bool:
-        """Whether a number is followed by a word that can only be a wrong unit of time."""
-        if self.kind != NAME or self.index == 0 or self.kinds[self.index - 1] != NUMBER:
-            return False
-        following = self.index + 1
-        ends = self.kinds[following] in (NEWLINE, CLOSE) or (
-            self.kinds[following] == NAME and self.raws[following] in HEADS
-        )
-        is_misspelt = near(self.raw, VERB_WORDS | HEADS, limit=1)
-        return ends and not is_misspelt and measured(self.raws[: self.index]) == "s"
+
+def parse_window(cursor: Cursor) -> Window:
+    """ "over" "last" ( NUMBER Experiments | QUANTITY )"""
+    start = cursor.take().start
+    cursor.expect_word("last")
+    size = experiments = None
+    if cursor.kind == QUANTITY:
+        size = cursor.take()
+    elif cursor.kind == NUMBER:
+        size = cursor.take()
+        experiments = parse_experiments(cursor)
+    else:
+        cursor.expected("a number of runs or activations, or a duration")
+    return Window(start, cursor.last_end(), size, experiments)
+
+
+def parse_on_violation(cursor: Cursor) -> OnViolation:
+    """ "on" "violation" ( "fail" | "halt" | "warn" | "log" )"""
+    start = cursor.start()
+    if cursor.at_word("on_violation"):
+        fix = write_fix("on violation", cursor.here(), safe=True)
+        cursor.complain(cursor.here(), "expected `on violation`, found `on_violation`", fix)
+        cursor.advance()
+    else:
+        cursor.advance()
+        if not cursor.accept_word("violation"):
+            no_violation(cursor)
+    cursor.skip_sign("=")
+    action = parse_one_of(cursor, ACTIONS)
+    return OnViolation(start, cursor.last_end(), action)
+
+
+def parse_goal(cursor: Cursor) -> Goal:
+    """ "goal" Bounded"""
+    start = cursor.take().start
+    value = parse_bounded(cursor)
+    return Goal(start, cursor.last_end(), value)
+
+
+def parse_because(cursor: Cursor) -> Because:
+    """ "because" STRING"""
+    start = cursor.take().start
+    cursor.skip_sign(":", "=")
+    text = cursor.take() if cursor.kind == STRING else None
+    if text is None:
+        begin = cursor.here().start
+        reason = cursor.text[begin : line_end(cursor.text, begin)].partition(" #")[0].rstrip()
+        fix = replace_fix("Put quotes around it", Span(begin, begin + len(reason)), quote(reason))
+        cursor.expected("the reason in quotes", (), (fix,) if reason and not cursor.group else ())
+    return Because(start, cursor.last_end(), text)
+
+
+def parse_how(cursor: Cursor) -> How:
+    """ "verified" "by" ( "monitor" | "analysis" | "test" | "review" )"""
+    start = cursor.take().start
+    cursor.expect_word("by")
+    method = parse_one_of(cursor, METHODS)
+    return How(start, cursor.last_end(), method)
+
+
+def parse_experiments(cursor: Cursor) -> Word | None:
+    """ "activations" | "runs" """
+    return parse_one_of(cursor, ("activations", "runs"))
+
+
+def parse_percentage(cursor: Cursor, example: str, before: str = "") -> Word | None:
+    """QUANTITY; `before`: the words that a fix puts before it"""
+    fixes: tuple[Fix, ...] = ()
+    if cursor.kind == NUMBER:
+        share, span = float(cursor.raw), cursor.here()
+        percent = f"{share * 100:.10g} %" if 0 < share <= 1 else f"{cursor.raw} %"
+        whole = cursor.index + 2
+        if cursor.raws[cursor.index + 1] == "of" and cursor.kinds[whole] == NUMBER and float(cursor.raws[whole]) > 0:
+            percent = f"{share * 100 / float(cursor.raws[whole]):.10g} % of"
+            span = Span(span.start, cursor.starts[whole] + len(cursor.raws[whole]))
+        fixes = (write_fix(before + percent, span),)
+    if cursor.kind == QUANTITY:
+        return cursor.take()
+    cursor.expected(f"a percentage: {example}", (), fixes)
+    return None
+
+
+def parse_one_of(cursor: Cursor, words: tuple[str, ...]) -> Word | None:
+    cursor.skip_sign(":")
+    if cursor.kind == NAME and cursor.raw in words:
+        return cursor.take()
+    what = f"{', '.join(words[:-1])} or {words[-1]}"
+    meant = near(cursor.raw, words, limit=1) or tuple(word for word in words if cursor.raw.startswith(word))
+    meant = meant or tuple(word for word in _OTHER_WORDS.get(cursor.raw, ()) if word in words)
+    if cursor.kind != NAME or not meant:
+        return cursor.missing_word(what)
+    fixes = tuple(replace_fix(f"Replace `{cursor.raw}` with `{word}`", cursor.here(), word) for word in meant)
+    cursor.complain(cursor.here(), f"expected {what}, found {cursor.found()}", *fixes)
+    cursor.advance()
+    return None
+
+
+# ---- what productions ask and report ----
+
+
+def is_other_clause(cursor: Cursor) -> bool:
+    """Whether the current word, of other notations, begins a clause of them and is not the subject of one."""
+    following = cursor.index + 1
+    if cursor.kinds[following] == NAME and cursor.raws[following] in VERB_WORDS:
+        return False
+    return cursor.kinds[following] in (NAME, STRING, NUMBER, QUANTITY) or cursor.raws[following] in (":", "=")
+
+
+def other_clause(cursor: Cursor, nearest: str) -> None:
+    """Report a clause of another notation, with the nearest of this one."""
+    word, value = cursor.here(), cursor.index + 1 + (cursor.raws[cursor.index + 1] in (":", "="))
+    fixes: tuple[Fix, ...] = ()
+    if nearest == _BECAUSE and cursor.kinds[value] == STRING:
+        fixes = (replace_fix("Write `because`", Span(word.start, cursor.starts[value]), "because "),)
+    elif (
+        nearest == _TITLE and cursor.title_at >= 0 and cursor.index == 0 and cursor.kinds[value : value + 2] == _STRING
+    ):
+        moved = FixEdit(Place(Span(cursor.title_at, cursor.title_at)), f" {cursor.raws[value]}")
+        line = Span(line_start(cursor.text, 0, word.start), cursor.lexer.position)
+        fixes = (Fix("Move it after the name", (moved, FixEdit(Place(line), ""))),)
+    elif nearest == _COMMENT and cursor.index == 0:
+        fixes = (replace_fix("Write it as a comment", Span(word.start, word.start), "# "),)
+    cursor.complain(word, f"`{cursor.raw}` is not in btq; nearest is {nearest}", *fixes)
+    cursor.recover()
+
+
+def no_violation(cursor: Cursor) -> None:
+    """Report that `violation` is missing, and skip the word in its place: `on failure fail`."""
+    following = cursor.index + 1
+    if cursor.kind == NAME and cursor.kinds[following] == NAME and cursor.raws[following] in ACTIONS:
+        fix = replace_fix(f"Replace `{cursor.raw}` with `violation`", cursor.here(), "violation")
+        cursor.complain(cursor.here(), f"expected `violation`, found `{cursor.raw}`", fix)
+        cursor.advance()
+    elif cursor.kind == NAME and cursor.raw in ACTIONS:
+        cursor.expect_word("violation", forgotten=True)
+    else:
+        cursor.expected("`violation`", (_ON_VIOLATION,))
+
+
+def after_missing(cursor: Cursor, words: str) -> Word:
+    """Read the current percentage; report that `words` are missing before it."""
+    message = f"a probability is written `with probability >= {cursor.raw}`"
+    cursor.complain(cursor.here(), message, cursor.put_before(words))
+    return cursor.take()
+
+
+def bare_bound(cursor: Cursor) -> None:
+    """Report `<= 30 s` without a verb."""
+    sign, value = cursor.raw, cursor.index + 1
+    bound = {"<=": "at most", "<": "less than", ">=": "at least", ">": "more than"}.get(sign)
+    fixes: tuple[Fix, ...] = ()
+    if bound is not None and cursor.kinds[value] == QUANTITY and is_time(cursor.raws[value]):
+        written = f"takes {bound} {cursor.raws[value]}"
+        span = Span(cursor.here().start, cursor.starts[value] + len(cursor.raws[value]))
+        fixes = (write_fix(written, span),)
+    cursor.expected(_A_CLAUSE, ("a bound goes after its verb: `takes at most 30 s`",), fixes)
+
+
+def is_no_time(cursor: Cursor) -> bool:
+    """Whether a number is followed by a word that can only be a wrong unit of time."""
+    if cursor.kind != NAME or cursor.index == 0 or cursor.kinds[cursor.index - 1] != NUMBER:
+        return False
+    following = cursor.index + 1
+    ends = cursor.kinds[following] in (NEWLINE, CLOSE) or (
+        cursor.kinds[following] == NAME and cursor.raws[following] in HEADS
+    )
+    is_misspelt = near(cursor.raw, VERB_WORDS | HEADS, limit=1)
+    return ends and not is_misspelt and measured(cursor.raws[: cursor.index]) == "s"
 
 
 _STRING: Final = [STRING, NEWLINE]

@@ -1,6 +1,6 @@
 """The part of the parser that reads conditions, in contexts and clauses.
 
-Each function is a production of docs/grammar.md and named after it; its docstring shows the production.
+Each `parse_…` is a production of docs/grammar.md and named after it; its docstring shows the production.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from typing import Final
 
 from btq_lang.diagnostics.model import replace_fix, write_fix
 from btq_lang.grammar.cursor import Cursor
-from btq_lang.lexer import Lexer
 from btq_lang.syntax.tokens import CLOSE, ERROR, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING, SYMBOL
 from btq_lang.syntax.tree import Binary, Call, Comparison, Condition, Negative, NodeRuns, Not, Operand, Path
 from btq_lang.util.text import Span
@@ -32,249 +31,262 @@ MAX_NESTING: Final = 50  # of brackets in one condition
 MAX_OPERATORS: Final = 100  # in one condition
 
 
-class ConditionParser(Cursor):
-    """A cursor that can read conditions."""
+def parse_cond(cursor: Cursor) -> Condition | None:
+    """Cond = Conj { "or" Conj }"""
+    if cursor.nesting == 0:
+        cursor.operators = 0
+    if cursor.nesting > MAX_NESTING:
+        too_deep(cursor, f"more than {MAX_NESTING} nested brackets")
+        return None
+    cursor.nesting += 1
+    condition = joined(cursor, parse_conj, "or")
+    cursor.nesting -= 1
+    return condition
 
-    def __init__(self, lexer: Lexer) -> None:
-        super().__init__(lexer)
-        self._nesting = 0  # how many conditions are open, nested in brackets
-        self._operators = 0  # how many operators the outermost has so far
 
-    def cond(self) -> Condition | None:
-        """Cond = Conj { "or" Conj }"""
-        if self._nesting == 0:
-            self._operators = 0
-        if self._nesting > MAX_NESTING:
-            self.too_deep(f"more than {MAX_NESTING} nested brackets")
-            return None
-        self._nesting += 1
-        condition = self.joined(self.conj, "or")
-        self._nesting -= 1
-        return condition
+def parse_conj(cursor: Cursor) -> Condition | None:
+    """Conj = Neg { "and" Neg }"""
+    return joined(cursor, parse_neg, "and")
 
-    def joined(self, operand: Callable[[], Condition | None], *operators: str) -> Condition | None:
-        """Operand { Operator Operand }"""
-        left = operand()
-        while left is not None and (operator := self.accept_one(operators)):
-            right = operand()
-            if right is None:
-                break
-            left = self.binary(operator, left, right)
-        return left
 
-    def accept_one(self, operators: tuple[str, ...]) -> str:
-        """The operator that is here, if it is one of these; else empty"""
-        operator = self.raw
-        if operator in operators and (self.kind == OPERATOR or self.kind == NAME):
-            self.advance()
-            return operator
-        for word in operators if self.kind == SYMBOL or self.kind == ERROR else ():
-            if self.accept_instead(_INSTEAD.get(word, ""), word):
-                return word
-        return ""
+def parse_neg(cursor: Cursor) -> Condition | None:
+    """Neg = [ "not" ] Atom"""
+    start = cursor.start()
+    if cursor.accept_word("not") or accept_instead(cursor, "!", "not"):
+        operand = parse_atom(cursor)
+        return Not(start, operand.end, operand) if operand else None
+    return parse_atom(cursor)
 
-    def accept_instead(self, sign: str, word: str) -> bool:
-        """Report an operator of another language, and read it as the word that is meant"""
-        if self.kind not in (SYMBOL, ERROR) or self.raw != sign:
-            return False
-        written = word if word != "not" else "not "
-        fix = replace_fix(f"Write `{word}`", self.here(), written, safe=True)
-        self.complain(self.here(), f"in conditions `{sign}` is written `{word}`", fix)
-        self.advance()
-        return True
 
-    def binary(self, operator: str, left: Condition, right: Condition) -> Condition:
-        """Join two operands; report too many in one condition, because a chain is a deep tree."""
-        self._operators += 1
-        if self._operators > MAX_OPERATORS:
-            self.too_deep(f"more than {MAX_OPERATORS} operators in one condition")
-            return left
-        return Binary(left.start, right.end, operator, left, right)
-
-    def too_deep(self, message: str) -> None:
-        note = "write a part of it as a context of its own: `context part : …`"
-        self.complain(self.here(), message, notes=(note,), rule="nested-too-deep")
-        self.recover()
-
-    def conj(self) -> Condition | None:
-        """Conj = Neg { "and" Neg }"""
-        return self.joined(self.neg, "and")
-
-    def neg(self) -> Condition | None:
-        """Neg = [ "not" ] Atom"""
-        start = self.start()
-        if self.accept_word("not") or self.accept_instead("!", "not"):
-            operand = self.atom()
-            return Not(start, operand.end, operand) if operand else None
-        return self.atom()
-
-    def atom(self) -> Condition | None:
-        """Atom = Expr [ Cmp Expr [ Cmp Expr ] ] | "node" Path | "(" Cond ")\""""
-        if self.at_word("node") and self.kinds[self.index + 1] in (NAME, STRING) and not self.ends_condition():
-            start = self.start()
-            self.advance()
-            path = self.path("a node")
-            return NodeRuns(start, self.last_end(), path) if path else None
-        first = self.expr()
-        if first is None:
-            return None
-        operators: list[str] = []
-        operands = [first]
-        if isinstance(first, Operand) and (meant := self.in_words()):
-            operators.append(meant)
-            operand = self.expr()
-            if operand is None:
-                return first
-            operands.append(operand)
-        while self.kind == OPERATOR and (self.raw in COMPARISONS or self.raw == "="):
-            if self.raw == "=":
-                if self.group and self._nesting < 2:  # of the next attribute
-                    break
-                self.single_equals()
-            if len(operators) == 2:
-                self.expected("at most two comparisons in a row")
-                break
-            operators.append("==" if self.raw == "=" else self.raw)
-            self.advance()
-            if operators[-1] == "==" and (self.at("<") or self.at(">")) and self.adjacent(self.index):
-                self.advance()  # `=<` is reported as a whole
-            operand = self.expr()
-            if operand is None:
-                return first
-            operands.append(operand)
-        if not operators:
+def parse_atom(cursor: Cursor) -> Condition | None:
+    """Atom = Expr [ Cmp Expr [ Cmp Expr ] ] | "node" Path | "(" Cond ")\""""
+    if cursor.at_word("node") and cursor.kinds[cursor.index + 1] in (NAME, STRING) and not ends_condition(cursor):
+        start = cursor.start()
+        cursor.advance()
+        path = parse_path(cursor, "a node")
+        return NodeRuns(start, cursor.last_end(), path) if path else None
+    first = parse_expr(cursor)
+    if first is None:
+        return None
+    operators: list[str] = []
+    operands = [first]
+    if isinstance(first, Operand) and (meant := in_words(cursor)):
+        operators.append(meant)
+        operand = parse_expr(cursor)
+        if operand is None:
             return first
-        return Comparison(first.start, operands[-1].end, tuple(operators), tuple(operands))
-
-    def in_words(self) -> str:
-        """Report `wind below 10 m/s`, and go to the value; the comparison that is meant, or empty."""
-        bound = self.bound_ahead() if self.kind == NAME and self.raw not in _ENDS_OPERAND else None
-        if bound is None or self.kinds[self.index + bound[0]] not in (NUMBER, QUANTITY):
-            return ""
-        length, meant = bound
-        self.written_otherwise("this comparison", length, RELATIONS[meant])
-        self.go_to(self.index + length)
-        return RELATIONS[meant]
-
-    def bound_ahead(self) -> tuple[int, tuple[str, str]] | None:
-        """The number of words here that begin a bound, and the words of this language for them."""
-        for length in (5, 4, 3, 2, 1):
-            if (meant := BOUNDS.get(tuple(self.raws[self.index : self.index + length]))) is not None:
-                return length, meant
-        return None
-
-    def written_otherwise(self, what: str, length: int, written: str) -> None:
-        """Report that the next words, so many, are written otherwise."""
-        last = self.index + length - 1
-        span = Span(self.here().start, self.starts[last] + len(self.raws[last]))
-        self.complain(span, f"{what} is written `{written}`", write_fix(written, span, safe=True))
-
-    def single_equals(self) -> None:
-        """Report `=` in a comparison, where `==` is meant, and `=<` and `=>`."""
-        span = self.here()
-        following = self.index + 1
-        if self.raws[following] in ("<", ">") and self.adjacent(following):
-            meant = f"{self.raws[following]}="
-            span = Span(span.start, span.end + 1)
-            message = f"this comparison is written `{meant}`"
-        else:
-            meant, message = "==", "values are compared with `==`"
-        self.complain(span, message, write_fix(meant, span, safe=True))
-
-    def ends_condition(self) -> bool:
-        """Whether the next word ends the current operand, so that a lone `node` is an ordinary name."""
-        return self.raws[self.index + 1] in _ENDS_OPERAND
-
-    def at_keyword(self) -> bool:
-        """Whether the current word begins a clause or joins conditions; without what must follow it, it is a name."""
-        if self.raw not in _ENDS_OPERAND:
-            return False
-        following = self.index + 1
-        if self.raw in _FOLLOWED_BY:
-            return self.is_word(following, _FOLLOWED_BY[self.raw])
-        return self.kinds[following] in (NAME, STRING, NUMBER, QUANTITY) and not self.ends_condition()
-
-    def expr(self) -> Condition | None:
-        """Expr = Term { ( "+" | "-" ) Term }"""
-        return self.joined(self.term, "+", "-")
-
-    def term(self) -> Condition | None:
-        """Term = Factor { ( "*" | "/" ) Factor }"""
-        return self.joined(self.factor, "*", "/")
-
-    def factor(self) -> Condition | None:
-        """[ "-" ] ( QUANTITY | NUMBER ) | NAME | STRING | Func "(" NAME ")" | "(" Expr ")\""""
-        start = self.start()
-        if self.at("-"):
-            self.advance()
-            if self.kind == QUANTITY or self.kind == NUMBER:
-                word = self.take()
-                return Negative(start, word.end, Operand(word))
-            self.expected("a number or a quantity after `-`")
-            return None
-        if self.kind == QUANTITY or self.kind == NUMBER or self.kind == STRING:
-            return Operand(self.take())
-        if self.kind == NAME:
-            if self.raw in FUNCTIONS and self.kinds[self.index + 1] == OPEN:
-                function = self.take()
-                self.advance()
-                self.group += 1
-                signal = self.plain_name("a signal")
-                self.close_group("`)`")
-                return Call(start, self.last_end(), function, signal)
-            if not self.at_keyword():
-                if self.kinds[self.index + 1] == OPEN and self.adjacent(self.index + 1):
-                    functions = ", ".join(sorted(FUNCTIONS))
-                    meant = _OTHER_FUNCTIONS.get(self.raw)
-                    fixes = self.replaced_by(FUNCTIONS)
-                    if meant is not None:
-                        fixes = (replace_fix(f"Replace `{self.raw}` with `{meant}`", self.here(), meant),)
-                    self.expected(f"a function ({functions})", (), fixes)
-                    return None
-                return Operand(self.take())
-        if self.kind == OPEN:
-            self.advance()
-            self.group += 1
-            inner = self.cond()
-            self.close_group("`)`")
-            return inner
-        self.expected("a condition: a signal, a context, a value, …")
-        return None
-
-    # ---- what clauses share ----
-
-    def path(self, what: str) -> Path | None:
-        """Path = Name { "/" Name }"""
-        first = self.name(what)
-        if first is None:
-            return None
-        names = [first]
-        while self.accept("/") or (self.kind != NAME and self.other_separator()):
-            name = self.name(what)
-            if name is None:
+        operands.append(operand)
+    while cursor.kind == OPERATOR and (cursor.raw in COMPARISONS or cursor.raw == "="):
+        if cursor.raw == "=":
+            if cursor.group and cursor.nesting < 2:  # of the next attribute
                 break
-            names.append(name)
-        return Path(tuple(names))
+            single_equals(cursor)
+        if len(operators) == 2:
+            cursor.expected("at most two comparisons in a row")
+            break
+        operators.append("==" if cursor.raw == "=" else cursor.raw)
+        cursor.advance()
+        if operators[-1] == "==" and (cursor.at("<") or cursor.at(">")) and cursor.adjacent(cursor.index):
+            cursor.advance()  # `=<` is reported as a whole
+        operand = parse_expr(cursor)
+        if operand is None:
+            return first
+        operands.append(operand)
+    if not operators:
+        return first
+    return Comparison(first.start, operands[-1].end, tuple(operators), tuple(operands))
 
-    def other_separator(self) -> bool:
-        """Report `Guide.Home`, `Guide::Home` and `Guide->Home`, and read the sign as `/`."""
-        following = self.index + 1
-        if self.raw not in _SEPARATORS or self.kinds[following] not in (NAME, STRING):
-            return False
-        if not (self.adjacent(self.index) and self.adjacent(following)):
-            return False
-        self.complain(self.here(), "the names of a path are separated by `/`", write_fix("/", self.here()))
-        self.advance()
-        return True
 
-    def close_group(self, what: str) -> None:
-        """Close a group, whatever precedes its `)`."""
-        while self.kind != CLOSE and self.kind != NEWLINE:
-            self.expected(what)
-            if self.kind != CLOSE:
-                self.advance()
-        self.group -= 1
-        self.advance()
+def parse_expr(cursor: Cursor) -> Condition | None:
+    """Expr = Term { ( "+" | "-" ) Term }"""
+    return joined(cursor, parse_term, "+", "-")
+
+
+def parse_term(cursor: Cursor) -> Condition | None:
+    """Term = Factor { ( "*" | "/" ) Factor }"""
+    return joined(cursor, parse_factor, "*", "/")
+
+
+def parse_factor(cursor: Cursor) -> Condition | None:
+    """[ "-" ] ( QUANTITY | NUMBER ) | NAME | STRING | Func "(" NAME ")" | "(" Expr ")\""""
+    start = cursor.start()
+    if cursor.at("-"):
+        cursor.advance()
+        if cursor.kind == QUANTITY or cursor.kind == NUMBER:
+            word = cursor.take()
+            return Negative(start, word.end, Operand(word))
+        cursor.expected("a number or a quantity after `-`")
+        return None
+    if cursor.kind == QUANTITY or cursor.kind == NUMBER or cursor.kind == STRING:
+        return Operand(cursor.take())
+    if cursor.kind == NAME:
+        if cursor.raw in FUNCTIONS and cursor.kinds[cursor.index + 1] == OPEN:
+            function = cursor.take()
+            cursor.advance()
+            cursor.group += 1
+            signal = cursor.plain_name("a signal")
+            close_group(cursor, "`)`")
+            return Call(start, cursor.last_end(), function, signal)
+        if not at_keyword(cursor):
+            if cursor.kinds[cursor.index + 1] == OPEN and cursor.adjacent(cursor.index + 1):
+                functions = ", ".join(sorted(FUNCTIONS))
+                meant = _OTHER_FUNCTIONS.get(cursor.raw)
+                fixes = cursor.replaced_by(FUNCTIONS)
+                if meant is not None:
+                    fixes = (replace_fix(f"Replace `{cursor.raw}` with `{meant}`", cursor.here(), meant),)
+                cursor.expected(f"a function ({functions})", (), fixes)
+                return None
+            return Operand(cursor.take())
+    if cursor.kind == OPEN:
+        cursor.advance()
+        cursor.group += 1
+        inner = parse_cond(cursor)
+        close_group(cursor, "`)`")
+        return inner
+    cursor.expected("a condition: a signal, a context, a value, …")
+    return None
+
+
+def parse_path(cursor: Cursor, what: str) -> Path | None:
+    """Path = Name { "/" Name }"""
+    first = cursor.name(what)
+    if first is None:
+        return None
+    names = [first]
+    while cursor.accept("/") or (cursor.kind != NAME and other_separator(cursor)):
+        name = cursor.name(what)
+        if name is None:
+            break
+        names.append(name)
+    return Path(tuple(names))
+
+
+# ---- what productions ask and report ----
+
+
+def joined(cursor: Cursor, operand: Callable[[Cursor], Condition | None], *operators: str) -> Condition | None:
+    """Operand { Operator Operand }"""
+    left = operand(cursor)
+    while left is not None and (operator := accept_one(cursor, operators)):
+        right = operand(cursor)
+        if right is None:
+            break
+        left = binary(cursor, operator, left, right)
+    return left
+
+
+def accept_one(cursor: Cursor, operators: tuple[str, ...]) -> str:
+    """The operator that is here, if it is one of these; else empty"""
+    operator = cursor.raw
+    if operator in operators and (cursor.kind == OPERATOR or cursor.kind == NAME):
+        cursor.advance()
+        return operator
+    for word in operators if cursor.kind == SYMBOL or cursor.kind == ERROR else ():
+        if accept_instead(cursor, _INSTEAD.get(word, ""), word):
+            return word
+    return ""
+
+
+def accept_instead(cursor: Cursor, sign: str, word: str) -> bool:
+    """Report an operator of another language, and read it as the word that is meant"""
+    if cursor.kind not in (SYMBOL, ERROR) or cursor.raw != sign:
+        return False
+    written = word if word != "not" else "not "
+    fix = replace_fix(f"Write `{word}`", cursor.here(), written, safe=True)
+    cursor.complain(cursor.here(), f"in conditions `{sign}` is written `{word}`", fix)
+    cursor.advance()
+    return True
+
+
+def binary(cursor: Cursor, operator: str, left: Condition, right: Condition) -> Condition:
+    """Join two operands; report too many in one condition, because a chain is a deep tree."""
+    cursor.operators += 1
+    if cursor.operators > MAX_OPERATORS:
+        too_deep(cursor, f"more than {MAX_OPERATORS} operators in one condition")
+        return left
+    return Binary(left.start, right.end, operator, left, right)
+
+
+def too_deep(cursor: Cursor, message: str) -> None:
+    note = "write a part of it as a context of its own: `context part : …`"
+    cursor.complain(cursor.here(), message, notes=(note,), rule="nested-too-deep")
+    cursor.recover()
+
+
+def in_words(cursor: Cursor) -> str:
+    """Report `wind below 10 m/s`, and go to the value; the comparison that is meant, or empty."""
+    bound = bound_ahead(cursor) if cursor.kind == NAME and cursor.raw not in _ENDS_OPERAND else None
+    if bound is None or cursor.kinds[cursor.index + bound[0]] not in (NUMBER, QUANTITY):
+        return ""
+    length, meant = bound
+    written_otherwise(cursor, "this comparison", length, RELATIONS[meant])
+    cursor.go_to(cursor.index + length)
+    return RELATIONS[meant]
+
+
+def bound_ahead(cursor: Cursor) -> tuple[int, tuple[str, str]] | None:
+    """The number of words here that begin a bound, and the words of this language for them."""
+    for length in (5, 4, 3, 2, 1):
+        if (meant := BOUNDS.get(tuple(cursor.raws[cursor.index : cursor.index + length]))) is not None:
+            return length, meant
+    return None
+
+
+def written_otherwise(cursor: Cursor, what: str, length: int, written: str) -> None:
+    """Report that the next words, so many, are written otherwise."""
+    last = cursor.index + length - 1
+    span = Span(cursor.here().start, cursor.starts[last] + len(cursor.raws[last]))
+    cursor.complain(span, f"{what} is written `{written}`", write_fix(written, span, safe=True))
+
+
+def single_equals(cursor: Cursor) -> None:
+    """Report `=` in a comparison, where `==` is meant, and `=<` and `=>`."""
+    span = cursor.here()
+    following = cursor.index + 1
+    if cursor.raws[following] in ("<", ">") and cursor.adjacent(following):
+        meant = f"{cursor.raws[following]}="
+        span = Span(span.start, span.end + 1)
+        message = f"this comparison is written `{meant}`"
+    else:
+        meant, message = "==", "values are compared with `==`"
+    cursor.complain(span, message, write_fix(meant, span, safe=True))
+
+
+def ends_condition(cursor: Cursor) -> bool:
+    """Whether the next word ends the current operand, so that a lone `node` is an ordinary name."""
+    return cursor.raws[cursor.index + 1] in _ENDS_OPERAND
+
+
+def at_keyword(cursor: Cursor) -> bool:
+    """Whether the current word begins a clause or joins conditions; without what must follow it, it is a name."""
+    if cursor.raw not in _ENDS_OPERAND:
+        return False
+    following = cursor.index + 1
+    if cursor.raw in _FOLLOWED_BY:
+        return cursor.is_word(following, _FOLLOWED_BY[cursor.raw])
+    return cursor.kinds[following] in (NAME, STRING, NUMBER, QUANTITY) and not ends_condition(cursor)
+
+
+def other_separator(cursor: Cursor) -> bool:
+    """Report `Guide.Home`, `Guide::Home` and `Guide->Home`, and read the sign as `/`."""
+    following = cursor.index + 1
+    if cursor.raw not in _SEPARATORS or cursor.kinds[following] not in (NAME, STRING):
+        return False
+    if not (cursor.adjacent(cursor.index) and cursor.adjacent(following)):
+        return False
+    cursor.complain(cursor.here(), "the names of a path are separated by `/`", write_fix("/", cursor.here()))
+    cursor.advance()
+    return True
+
+
+def close_group(cursor: Cursor, what: str) -> None:
+    """Close a group, whatever precedes its `)`."""
+    while cursor.kind != CLOSE and cursor.kind != NEWLINE:
+        cursor.expected(what)
+        if cursor.kind != CLOSE:
+            cursor.advance()
+    cursor.group -= 1
+    cursor.advance()
 
 
 _SEPARATORS: Final = frozenset((".", "::", "->", ":", "\\"))

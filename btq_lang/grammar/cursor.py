@@ -36,9 +36,15 @@ class Cursor:
         known: how many problems the lexer had before this logical line.
         group: how many brackets are open around the current token.
         more: another line is open (the lexer is at its first character) but not yet scanned.
+        report_slip: reports that a clause is in the words of other notations, if it is; returns whether it is.
+        nesting: how many conditions are open, nested in brackets.
+        operators: how many operators the outermost condition has so far.
+        clause_starts: where the last two clauses begin, in the file.
+        title_at: where the title of the last requirement goes, in the file; -1 if it has one.
+        bare_until: the end of the last line `key = value` without brackets.
     """
 
-    def __init__(self, lexer: Lexer) -> None:
+    def __init__(self, lexer: Lexer, report_slip: Callable[[Cursor], bool]) -> None:
         text = lexer.text
         self.text: Final = text
         self.lexer: Final = lexer
@@ -60,6 +66,12 @@ class Cursor:
         self._in_wake = self._would_complain = False  # the line follows brackets that ended early; it has a mistake
         self._ends_early = False  # it ends brackets early itself
         self._unclosed = len(text)  # the first of its brackets that is not closed
+        self.report_slip: Final = report_slip
+        self.nesting = 0
+        self.operators = 0
+        self.clause_starts = -1, -1
+        self.title_at = -1
+        self.bare_until = -1
 
     # ---- lines ----
 
@@ -244,12 +256,14 @@ class Cursor:
         self.expected(what)
         return None
 
-    def listed(self, element: Callable[[], T | None], goes_on: Callable[[], bool] | None = None) -> tuple[T, ...]:
+    def listed(
+        self, element: Callable[[Cursor], T | None], goes_on: Callable[[Cursor], bool] | None = None
+    ) -> tuple[T, ...]:
         """Element { "," Element }; `goes_on`: skips what separates them, if another follows"""
         elements: list[T] = []
-        while (value := element()) is not None:
+        while (value := element(self)) is not None:
             elements.append(value)
-            if not (goes_on() if goes_on is not None else self.accept(",")):
+            if not (goes_on(self) if goes_on is not None else self.accept(",")):
                 break
         return tuple(elements)
 
@@ -288,7 +302,12 @@ class Cursor:
         return f"`{shown(self.raw)}`"
 
     def expected(self, what: str, notes: tuple[str, ...] = (), fixes: tuple[Fix, ...] = ()) -> None:
-        """Report that something else was expected, and skip to the end of the attribute in brackets, or of the line."""
+        """Report that something else was expected, or a clause in the words of other notations; skip to the end of the
+        attribute in brackets, or of the line.
+        """
+        if self.report_slip(self):
+            self.recover()
+            return
         cause = (
             self.lost_quote()
             or self.time_of_parts()
@@ -379,7 +398,9 @@ class Cursor:
         return replace_fix(f"Put `{words}` before it", Span(start, start), f"{words} ")
 
     def misspelt(self, span: Span, word: str, likely: str) -> None:
-        """Report a misspelt word."""
+        """Report a misspelt word, or a clause in the words of other notations."""
+        if self.report_slip(self):
+            return
         fix = replace_fix(f"Replace `{word}` with `{likely}`", span, likely)
         self.complain(span, f"unknown word `{word}`; did you mean `{likely}`?", fix)
 

@@ -1,6 +1,6 @@
 """The part of the parser that reads requirements, except their clauses, and the units of declarations.
 
-Each function is a production of docs/grammar.md and named after it; its docstring shows the production.
+Each `parse_…` is a production of docs/grammar.md and named after it; its docstring shows the production.
 """
 
 from __future__ import annotations
@@ -9,9 +9,10 @@ import re
 from typing import Final
 
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, replace_fix, write_fix
-from btq_lang.grammar.claims import MEANT, VERB_WORDS
-from btq_lang.grammar.clauses import ENDS_CLAUSES, ClauseParser
-from btq_lang.grammar.conditions import HEADS, RELATIONS
+from btq_lang.grammar.claims import MEANT, VERB_WORDS, parse_bounded
+from btq_lang.grammar.clauses import ENDS_CLAUSES, parse_clauses
+from btq_lang.grammar.conditions import HEADS, RELATIONS, close_group
+from btq_lang.grammar.cursor import Cursor
 from btq_lang.grammar.prose import MODALS
 from btq_lang.syntax.scan import is_unit, path_end, unit_run
 from btq_lang.syntax.suggestions import unknown_unit
@@ -23,298 +24,320 @@ from btq_lang.util.text import Span
 UNITLESS: Final = frozenset(("bool", "text", "1"))  # allowed instead of a unit after the `:` of a signal
 
 
-class RequirementParser(ClauseParser):
-    """A cursor that can read requirements."""
+def parse_requirement(cursor: Cursor) -> Requirement:
+    """Requirement = ReqHead { Clause }; the current word is QualityReq"""
+    start = cursor.start()
+    cursor.advance()
+    cursor.skip_glued_colon()
+    if cursor.kind == OPEN and cursor.is_word(cursor.index + 1, "ID"):
+        skip_brackets(cursor, "a requirement's ID goes after `QualityReq`, without brackets")
+    if cursor.at_word("ID") and (cursor.is_operator(cursor.index + 1, "=") or lacks_equals(cursor)):
+        return parse_classic_requirement(cursor, start)
+    name = parse_requirement_id(cursor, "the requirement's ID")
+    parameters = parse_params(cursor) if cursor.kind == OPEN and name is not None else ()
+    if cursor.at(":") and cursor.adjacent(cursor.index):
+        cursor.skip_last_sign()
+    quality = parse_quality_path(cursor) if cursor.accept(":") or skip_key(cursor, ("quality",), ":") else None
+    if quality is not None:
+        spaced_quality(cursor, quality)
+    skip_key(cursor, _TITLES, "")
+    title = cursor.take() if cursor.kind == STRING else bare_title(cursor, quality is not None)
+    if quality is None and title is not None and cursor.at(":"):
+        cursor.complain(cursor.here(), "a requirement's quality goes before its title")
+        cursor.advance()
+        quality = parse_quality_path(cursor)
+    cursor.title_at = cursor.last_end() + cursor.base if title is None else -1
+    clauses = parse_clauses(cursor)
+    return Requirement(start, cursor.last_end(), name, False, parameters, quality, title, clauses)
 
-    # ---- requirements ----
 
-    def requirement(self) -> Requirement:
-        """Requirement = ReqHead { Clause }; the current word is QualityReq"""
-        start = self.start()
-        self.advance()
-        self.skip_glued_colon()
-        if self.kind == OPEN and self.is_word(self.index + 1, "ID"):
-            self.skip_brackets("a requirement's ID goes after `QualityReq`, without brackets")
-        if self.at_word("ID") and (self.is_operator(self.index + 1, "=") or self.lacks_equals()):
-            return self.classic_requirement(start)
-        name = self.requirement_id("the requirement's ID")
-        parameters = self.params() if self.kind == OPEN and name is not None else ()
-        if self.at(":") and self.adjacent(self.index):
-            self.skip_last_sign()
-        quality = self.quality_path() if self.accept(":") or self.skip_key(("quality",), ":") else None
-        if quality is not None:
-            self.spaced_quality(quality)
-        self.skip_key(_TITLES, "")
-        title = self.take() if self.kind == STRING else self.bare_title(quality is not None)
-        if quality is None and title is not None and self.at(":"):
-            self.complain(self.here(), "a requirement's quality goes before its title")
-            self.advance()
-            quality = self.quality_path()
-        self.title_at = self.last_end() + self.base if title is None else -1
-        clauses = self.clauses()
-        return Requirement(start, self.last_end(), name, False, parameters, quality, title, clauses)
+def parse_requirement_id(cursor: Cursor, what: str) -> Word | None:
+    """Name; `REQ.001`, `1.2` and `4711` are accepted, and reported to need quotes"""
+    start = cursor.start()
+    first = cursor.starts[cursor.index]
+    if cursor.kind in (NUMBER, QUANTITY):
+        end = max(path_end(cursor.text, first), first + len(cursor.raw))
+    elif cursor.kind == NAME and cursor.is_operator(cursor.index + 1, ".") and cursor.adjacent(cursor.index + 1):
+        end = path_end(cursor.text, first)
+    else:
+        return cursor.name(what)
+    text = cursor.text[first:end].rstrip(",:")
+    fix = replace_fix("Put quotes around it", Span(first, first + len(text)), quote(text), safe=True)
+    cursor.complain(Span(first, first + len(text)), "this ID needs quotes", fix)
+    while cursor.kind != NEWLINE and cursor.starts[cursor.index] < first + len(text):
+        cursor.advance()
+    return Word(NAME, start, text)
 
-    def skip_brackets(self, message: str) -> None:
-        """Report the current brackets, which do not belong there, and continue as if there were none."""
-        if self.kind != OPEN or CLOSE not in self.kinds[self.index :]:
-            return
-        closing = self.kinds.index(CLOSE, self.index)
-        if self.raws[closing] != ")" or OPEN in self.kinds[self.index + 1 : closing]:
-            return
-        ends = self.here(), Span(self.starts[closing], self.starts[closing] + 1)
-        fix = Fix("Remove the brackets", tuple([FixEdit(Place(end), "") for end in ends]), safe=True)
-        self.complain(self.here(), message, fix)
-        for index in (closing, self.index):
-            del self.kinds[index], self.starts[index], self.raws[index]
-        self.go_to(self.index)
 
-    def skip_key(self, words: tuple[str, ...], instead: str) -> bool:
-        """Report and skip an attribute's key where only the value belongs, as in `description = "in time"`."""
-        value = self.index + 2
-        if self.kind != NAME or self.raw not in words or self.kinds[value] not in (NAME, STRING):
-            return False
-        if not (self.is_operator(self.index + 1, "=") or self.is_operator(self.index + 1, ":")):
-            return False
-        key = Span(self.here().start, self.starts[self.index + 1] + 1)
-        written = self.text[key.start : key.end]
-        if instead:
-            fix = write_fix(instead, key, safe=True)
-            message = f"expected `{instead}` before the quality, found `{written}`"
-        else:
-            fix = replace_fix(f"Remove `{written}`", Span(key.start, self.starts[value]), "", safe=True)
-            message = f"a title goes after the ID without `{written}`"
-        self.complain(key, message, fix)
-        self.go_to(value)
-        return True
+def parse_classic_requirement(cursor: Cursor, start: int) -> Requirement:
+    """ "QualityReq" "ID" "=" Name [ [ "," ] "description" "=" Name ] { Clause }"""
+    lacking = [] if cursor.is_operator(cursor.index + 1, "=") else [cursor.index]
+    cursor.go_to(cursor.index + (1 if lacking else 2))
+    name = cursor.name("the requirement's ID")
+    key = cursor.index + (1 if cursor.at(",") else 0)
+    text = None
+    if cursor.is_word(key, "description") and (cursor.is_operator(key + 1, ":") or cursor.kinds[key + 1] == STRING):
+        lacking.append(key)
+    if lacking:
+        no_equals(cursor, lacking)
+    if cursor.is_word(key, "description") and (lacking[-1:] == [key] or cursor.is_operator(key + 1, "=")):
+        cursor.go_to(key + (1 if cursor.kinds[key + 1] == STRING else 2))
+        text = cursor.name("the description")
+    clauses = parse_clauses(cursor)
+    return Requirement(start, cursor.last_end(), name, True, (), None, text, clauses)
 
-    def lacks_equals(self) -> bool:
-        """Whether the `=` after `ID` is missing: `QualityReq ID rq1 description "x"`."""
-        name = self.index + 1
-        return self.kinds[name] == NAME and self.raws[name + 1] in ("description", ",", "\n", "\r\n", "\r", "")
 
-    def requirement_id(self, what: str) -> Word | None:
-        """Name; `REQ.001`, `1.2` and `4711` are accepted, and reported to need quotes"""
-        start = self.start()
-        first = self.starts[self.index]
-        if self.kind in (NUMBER, QUANTITY):
-            end = max(path_end(self.text, first), first + len(self.raw))
-        elif self.kind == NAME and self.is_operator(self.index + 1, ".") and self.adjacent(self.index + 1):
-            end = path_end(self.text, first)
-        else:
-            return self.name(what)
-        text = self.text[first:end].rstrip(",:")
-        fix = replace_fix("Put quotes around it", Span(first, first + len(text)), quote(text), safe=True)
-        self.complain(Span(first, first + len(text)), "this ID needs quotes", fix)
-        while self.kind != NEWLINE and self.starts[self.index] < first + len(text):
-            self.advance()
-        return Word(NAME, start, text)
+def parse_params(cursor: Cursor) -> tuple[Parameter, ...]:
+    """Params = "(" Param { "," Param } ")\""""
+    cursor.advance()
+    cursor.group += 1
+    parameters = cursor.listed(parse_param)
+    close_group(cursor, "`,` or `)`")
+    return parameters
 
-    def spaced_quality(self, quality: QualityPath) -> None:
-        """Report `time behaviour`: a quality's name has no spaces."""
-        last = quality.names[-1]
-        if self.kind != NAME or last.kind != NAME or self.kinds[self.index + 1] not in (STRING, NEWLINE):
-            return
-        if self.raw not in VERB_WORDS and self.raw not in HEADS:
-            fix = write_fix("-", Span(last.end + self.base, self.here().start))
-            span = Span(last.start + self.base, self.here().end)
-            self.complain(span, "a quality's name has no spaces", fix)
-            self.advance()
 
-    def second_quality(self, requirement: Requirement) -> None:
-        """Report a list of qualities at a requirement that is not an element of a list itself: `QualityReq r : safety,
-        usability`.
-        """
-        is_open = requirement.quality is not None and not (requirement.clauses or requirement.text)
-        if is_open and self.kind == OPERATOR and self.raw in (",", "&", "+"):
-            self.one_quality()
+def parse_param(cursor: Cursor) -> Parameter | None:
+    """Param = NAME ":" UNIT [ "=" Bounded ]"""
+    name = cursor.plain_name("a parameter's name")
+    if name is None:
+        return None
+    unit = None
+    if cursor.at("="):
+        note = "write its unit after `:`, and its default after that: `limit : m = 3 m`"
+        cursor.expected("`:` and the parameter's unit", (note,))
+    elif cursor.expect(":"):
+        unit = parse_unit(cursor)
+    default = parse_bounded(cursor) if cursor.accept("=") else None
+    return Parameter(name, unit, default)
 
-    def one_quality(self) -> None:
-        """Report another quality of a requirement: the current sign or `and`, and what follows."""
-        following = self.index + 1
-        end = self.starts[following] + len(self.raws[following])
-        note = "write a second requirement for the other one, or choose the one that matters most"
-        self.complain(Span(self.here().start, end), "a requirement has one quality", notes=(note,))
-        self.recover()
 
-    def bare_title(self, has_quality: bool) -> Word | None:
-        """Report and accept a title without quotes; or report a quality without its `:`."""
-        following = self.index + 1
-        if has_quality and self.at_word("and") and self.kinds[following + 1] == NEWLINE:
-            self.one_quality()
-            return None
-        if self.kind != NAME or self.group or self.raw in VERB_WORDS or self.raw in HEADS or self.raw in ENDS_CLAUSES:
-            return None
-        is_word = self.kinds[following] == NEWLINE
-        if self.kinds[following] == STRING and not has_quality:
-            self.complain(self.here(), _A_QUALITY, self.put_before(":"))
-            self.advance()
-            return self.take()
-        if not (is_word or self.is_prose(following)):
-            return None
-        if self.raw in MEANT or self.raw in MODALS:
-            return None
-        if near(self.raw, VERB_WORDS | HEADS, limit=1) and not self.is_long_prose():
-            return None
-        end = following
-        while self.kinds[end] != NEWLINE and not self.is_clause(end):
-            end += 1
-        start = self.starts[self.index]
-        span = Span(start, self.starts[end - 1] + len(self.raws[end - 1]))
-        text = self.text[start : span.end]
-        fixes = [replace_fix("Put quotes around it", span, quote(text))]
-        if is_word and not has_quality:
-            fixes.append(self.put_before(":"))
-        self.complain(span, f"{_A_TITLE}, and {_A_QUALITY}" if len(fixes) > 1 else _A_TITLE, *(tuple(fixes)))
-        self.go_to(end)
-        return Word(NAME, start - self.base, text)
+def parse_req_ref(cursor: Cursor, name: Word) -> ReqRef:
+    """ReqRef = Name [ "(" NAME "=" Bounded { "," NAME "=" Bounded } ")" ]; the name is already read"""
+    if cursor.kind != OPEN:
+        return ReqRef(name)
+    cursor.advance()
+    cursor.group += 1
+    arguments = cursor.listed(parse_argument)
+    close_group(cursor, "`,` or `)`")
+    return ReqRef(name, arguments)
 
-    def is_prose(self, index: int) -> bool:
-        """Whether the word at `index`, after another, does not make a claim of both, as a verb, or `must` and a verb,
-        would.
-        """
-        if self.kinds[index] != NAME or self.raws[index] in VERB_WORDS or self.raws[index] in ENDS_CLAUSES:
-            return False
-        if self.raws[index] in MODALS:
-            return not (self.kinds[index + 1] == NAME and near(self.raws[index + 1], VERB_WORDS, limit=1))
-        return not (self.is_clause(index) or near(self.raws[index], VERB_WORDS, limit=1))
 
-    def is_long_prose(self) -> bool:
-        """Whether the rest of the line is more than two words: `keep the arm still`."""
-        return len(self.kinds) - 1 - self.index > 2 and all(kind == NAME for kind in self.kinds[self.index : -1])
+def parse_argument(cursor: Cursor) -> Argument | None:
+    """NAME "=" Bounded"""
+    if cursor.kind in (NUMBER, QUANTITY):
+        cursor.expected("a parameter's name", (f"a value goes after the name of its parameter: `x = {cursor.raw}`",))
+        return None
+    name = cursor.plain_name("a parameter's name")
+    if name is None:
+        return None
+    return Argument(name, parse_bounded(cursor) if cursor.expect("=") else None)
 
-    def is_clause(self, index: int) -> bool:
-        """Whether the token at `index` can only begin a clause, even after prose."""
-        if self.kinds[index] != NAME:
-            return False
-        raw, second = self.raws[index], self.raws[index + 1] if self.kinds[index + 1] == NAME else ""
-        if raw in VERB_WORDS and second:
-            return second == "between" or (second, self.raws[index + 2]) in RELATIONS
-        is_reason = raw == "because" and self.kinds[index + 1] == STRING
-        return is_reason or raw in ENDS_CLAUSES or (raw, second) in _BEGIN_CLAUSES
 
-    def classic_requirement(self, start: int) -> Requirement:
-        """ "QualityReq" "ID" "=" Name [ [ "," ] "description" "=" Name ] { Clause }"""
-        lacking = [] if self.is_operator(self.index + 1, "=") else [self.index]
-        self.go_to(self.index + (1 if lacking else 2))
-        name = self.name("the requirement's ID")
-        key = self.index + (1 if self.at(",") else 0)
-        text = None
-        if self.is_word(key, "description") and (self.is_operator(key + 1, ":") or self.kinds[key + 1] == STRING):
-            lacking.append(key)
-        if lacking:
-            self.no_equals(lacking)
-        if self.is_word(key, "description") and (lacking[-1:] == [key] or self.is_operator(key + 1, "=")):
-            self.go_to(key + (1 if self.kinds[key + 1] == STRING else 2))
-            text = self.name("the description")
-        clauses = self.clauses()
-        return Requirement(start, self.last_end(), name, True, (), None, text, clauses)
-
-    def no_equals(self, keys: list[int]) -> None:
-        """Report that the `=` after some words of the classic form is missing."""
-        changes: list[FixEdit] = []
-        for key in keys:
-            end = self.starts[key] + len(self.raws[key])
-            sign = self.starts[key + 1] + 1 if self.is_operator(key + 1, ":") else end
-            changes.append(FixEdit(Place(Span(end, sign)), " ="))
-        span = Span(self.starts[keys[0]], self.starts[keys[0]] + len(self.raws[keys[0]]))
-        self.complain(span, f"expected `=` after `{self.raws[keys[0]]}`", Fix("Write `=`", tuple(changes), safe=True))
-
-    def params(self) -> tuple[Parameter, ...]:
-        """Params = "(" Param { "," Param } ")\""""
-        self.advance()
-        self.group += 1
-        parameters = self.listed(self.param)
-        self.close_group("`,` or `)`")
-        return parameters
-
-    def param(self) -> Parameter | None:
-        """Param = NAME ":" UNIT [ "=" Bounded ]"""
-        name = self.plain_name("a parameter's name")
-        if name is None:
-            return None
-        unit = None
-        if self.at("="):
-            note = "write its unit after `:`, and its default after that: `limit : m = 3 m`"
-            self.expected("`:` and the parameter's unit", (note,))
-        elif self.expect(":"):
-            unit = self.unit()
-        default = self.bounded() if self.accept("=") else None
-        return Parameter(name, unit, default)
-
-    def req_ref(self, name: Word) -> ReqRef:
-        """ReqRef = Name [ "(" NAME "=" Bounded { "," NAME "=" Bounded } ")" ]; the name is already read"""
-        if self.kind != OPEN:
-            return ReqRef(name)
-        self.advance()
-        self.group += 1
-        arguments = self.listed(self.argument)
-        self.close_group("`,` or `)`")
-        return ReqRef(name, arguments)
-
-    def argument(self) -> Argument | None:
-        """NAME "=" Bounded"""
-        if self.kind in (NUMBER, QUANTITY):
-            self.expected("a parameter's name", (f"a value goes after the name of its parameter: `x = {self.raw}`",))
-            return None
-        name = self.plain_name("a parameter's name")
-        if name is None:
-            return None
-        return Argument(name, self.bounded() if self.expect("=") else None)
-
-    def quality_path(self) -> QualityPath | None:
-        """QualityPath = Name [ "<" Name ">" ] { "." Name }"""
-        first = self.name("a quality")
-        if first is None:
-            return None
-        names = [first]
-        if self.at("<"):
-            self.advance()
-            if name := self.name("a sub-characteristic"):
-                names.append(name)
-                self.expect(">")
-        while self.at("."):
-            self.advance()
-            name = self.name("a sub-characteristic")
-            if name is None:
-                break
+def parse_quality_path(cursor: Cursor) -> QualityPath | None:
+    """QualityPath = Name [ "<" Name ">" ] { "." Name }"""
+    first = cursor.name("a quality")
+    if first is None:
+        return None
+    names = [first]
+    if cursor.at("<"):
+        cursor.advance()
+        if name := cursor.name("a sub-characteristic"):
             names.append(name)
-        return QualityPath(tuple(names))
+            cursor.expect(">")
+    while cursor.at("."):
+        cursor.advance()
+        name = cursor.name("a sub-characteristic")
+        if name is None:
+            break
+        names.append(name)
+    return QualityPath(tuple(names))
 
-    # ---- units ----
 
-    def unit(self) -> Word | None:
-        """UNIT, after the `:` of a signal or a parameter, where it is not part of a QUANTITY"""
-        first = self.starts[self.index]
-        start = self.start()
-        if self.kind not in (NAME, NUMBER, QUANTITY, STRING) and not self.at("%"):
-            self.expected("a unit: s, m/s, %, 1, bool, text, …")
-            return None
-        end = max(unit_run(self.text, first), first + len(self.raw))  # valid or not
-        word = self.text[first:end]
-        if self.kind == NAME and (type_ := _TYPE.match(self.text, first)) and (sort := sort_of(type_[0])):
-            end = max(end, type_.end())
-            self.no_unit(type_[0], Span(first, type_.end()), sort)
-        elif self.kind == STRING and is_unit(inner := unquote(word)):
-            self.complain(self.here(), "a unit takes no quotes", write_fix(inner, self.here(), safe=True))
-        elif self.kind == STRING:
-            self.expected("a unit: s, m/s, %, 1, bool, text, …")
-            return None
-        elif word not in UNITLESS and not is_unit(word):
-            self.report(unknown_unit(self.text, first, end))
-        while self.starts[self.index] < end and self.kind != NEWLINE:
-            self.advance()
-        return Word(NAME, start, self.text[first:end])
+def parse_unit(cursor: Cursor) -> Word | None:
+    """UNIT, after the `:` of a signal or a parameter, where it is not part of a QUANTITY"""
+    first = cursor.starts[cursor.index]
+    start = cursor.start()
+    if cursor.kind not in (NAME, NUMBER, QUANTITY, STRING) and not cursor.at("%"):
+        cursor.expected("a unit: s, m/s, %, 1, bool, text, …")
+        return None
+    end = max(unit_run(cursor.text, first), first + len(cursor.raw))  # valid or not
+    word = cursor.text[first:end]
+    if cursor.kind == NAME and (type_ := _TYPE.match(cursor.text, first)) and (sort := sort_of(type_[0])):
+        end = max(end, type_.end())
+        no_unit(cursor, type_[0], Span(first, type_.end()), sort)
+    elif cursor.kind == STRING and is_unit(inner := unquote(word)):
+        cursor.complain(cursor.here(), "a unit takes no quotes", write_fix(inner, cursor.here(), safe=True))
+    elif cursor.kind == STRING:
+        cursor.expected("a unit: s, m/s, %, 1, bool, text, …")
+        return None
+    elif word not in UNITLESS and not is_unit(word):
+        cursor.report(unknown_unit(cursor.text, first, end))
+    while cursor.starts[cursor.index] < end and cursor.kind != NEWLINE:
+        cursor.advance()
+    return Word(NAME, start, cursor.text[first:end])
 
-    def no_unit(self, word: str, span: Span, sort: str) -> None:
-        """Report a type of C++ or ROS in place of a unit."""
-        if sort == TYPE:
-            owner = "signal" if self.is_word(0, "signal") else "parameter"
-            note = "write the unit of its values: `m/s`, `s`, `%`, …; or `1` if they have none"
-            message = f"unknown unit `{word}`: a {owner} has a unit, not a type"
-            self.report(Diagnostic("unknown-unit", span, message, notes=(note,)))
-        else:
-            message = f"unknown unit `{word}`; did you mean `{sort}`?"
-            self.report(Diagnostic("unknown-unit", span, message, fixes=(write_fix(sort, span),)))
+
+# ---- what productions ask and report ----
+
+
+def skip_brackets(cursor: Cursor, message: str) -> None:
+    """Report the current brackets, which do not belong there, and continue as if there were none."""
+    if cursor.kind != OPEN or CLOSE not in cursor.kinds[cursor.index :]:
+        return
+    closing = cursor.kinds.index(CLOSE, cursor.index)
+    if cursor.raws[closing] != ")" or OPEN in cursor.kinds[cursor.index + 1 : closing]:
+        return
+    ends = cursor.here(), Span(cursor.starts[closing], cursor.starts[closing] + 1)
+    fix = Fix("Remove the brackets", tuple([FixEdit(Place(end), "") for end in ends]), safe=True)
+    cursor.complain(cursor.here(), message, fix)
+    for index in (closing, cursor.index):
+        del cursor.kinds[index], cursor.starts[index], cursor.raws[index]
+    cursor.go_to(cursor.index)
+
+
+def skip_key(cursor: Cursor, words: tuple[str, ...], instead: str) -> bool:
+    """Report and skip an attribute's key where only the value belongs, as in `description = "in time"`."""
+    value = cursor.index + 2
+    if cursor.kind != NAME or cursor.raw not in words or cursor.kinds[value] not in (NAME, STRING):
+        return False
+    if not (cursor.is_operator(cursor.index + 1, "=") or cursor.is_operator(cursor.index + 1, ":")):
+        return False
+    key = Span(cursor.here().start, cursor.starts[cursor.index + 1] + 1)
+    written = cursor.text[key.start : key.end]
+    if instead:
+        fix = write_fix(instead, key, safe=True)
+        message = f"expected `{instead}` before the quality, found `{written}`"
+    else:
+        fix = replace_fix(f"Remove `{written}`", Span(key.start, cursor.starts[value]), "", safe=True)
+        message = f"a title goes after the ID without `{written}`"
+    cursor.complain(key, message, fix)
+    cursor.go_to(value)
+    return True
+
+
+def lacks_equals(cursor: Cursor) -> bool:
+    """Whether the `=` after `ID` is missing: `QualityReq ID rq1 description "x"`."""
+    name = cursor.index + 1
+    return cursor.kinds[name] == NAME and cursor.raws[name + 1] in ("description", ",", "\n", "\r\n", "\r", "")
+
+
+def spaced_quality(cursor: Cursor, quality: QualityPath) -> None:
+    """Report `time behaviour`: a quality's name has no spaces."""
+    last = quality.names[-1]
+    if cursor.kind != NAME or last.kind != NAME or cursor.kinds[cursor.index + 1] not in (STRING, NEWLINE):
+        return
+    if cursor.raw not in VERB_WORDS and cursor.raw not in HEADS:
+        fix = write_fix("-", Span(last.end + cursor.base, cursor.here().start))
+        span = Span(last.start + cursor.base, cursor.here().end)
+        cursor.complain(span, "a quality's name has no spaces", fix)
+        cursor.advance()
+
+
+def second_quality(cursor: Cursor, requirement: Requirement) -> None:
+    """Report a list of qualities at a requirement that is not an element of a list itself: `QualityReq r : safety,
+    usability`.
+    """
+    is_open = requirement.quality is not None and not (requirement.clauses or requirement.text)
+    if is_open and cursor.kind == OPERATOR and cursor.raw in (",", "&", "+"):
+        one_quality(cursor)
+
+
+def one_quality(cursor: Cursor) -> None:
+    """Report another quality of a requirement: the current sign or `and`, and what follows."""
+    following = cursor.index + 1
+    end = cursor.starts[following] + len(cursor.raws[following])
+    note = "write a second requirement for the other one, or choose the one that matters most"
+    cursor.complain(Span(cursor.here().start, end), "a requirement has one quality", notes=(note,))
+    cursor.recover()
+
+
+def bare_title(cursor: Cursor, has_quality: bool) -> Word | None:
+    """Report and accept a title without quotes; or report a quality without its `:`."""
+    following = cursor.index + 1
+    if has_quality and cursor.at_word("and") and cursor.kinds[following + 1] == NEWLINE:
+        one_quality(cursor)
+        return None
+    if (
+        cursor.kind != NAME
+        or cursor.group
+        or cursor.raw in VERB_WORDS
+        or cursor.raw in HEADS
+        or cursor.raw in ENDS_CLAUSES
+    ):
+        return None
+    is_word = cursor.kinds[following] == NEWLINE
+    if cursor.kinds[following] == STRING and not has_quality:
+        cursor.complain(cursor.here(), _A_QUALITY, cursor.put_before(":"))
+        cursor.advance()
+        return cursor.take()
+    if not (is_word or is_prose(cursor, following)):
+        return None
+    if cursor.raw in MEANT or cursor.raw in MODALS:
+        return None
+    if near(cursor.raw, VERB_WORDS | HEADS, limit=1) and not is_long_prose(cursor):
+        return None
+    end = following
+    while cursor.kinds[end] != NEWLINE and not is_clause(cursor, end):
+        end += 1
+    start = cursor.starts[cursor.index]
+    span = Span(start, cursor.starts[end - 1] + len(cursor.raws[end - 1]))
+    text = cursor.text[start : span.end]
+    fixes = [replace_fix("Put quotes around it", span, quote(text))]
+    if is_word and not has_quality:
+        fixes.append(cursor.put_before(":"))
+    cursor.complain(span, f"{_A_TITLE}, and {_A_QUALITY}" if len(fixes) > 1 else _A_TITLE, *(tuple(fixes)))
+    cursor.go_to(end)
+    return Word(NAME, start - cursor.base, text)
+
+
+def is_prose(cursor: Cursor, index: int) -> bool:
+    """Whether the word at `index`, after another, does not make a claim of both, as a verb, or `must` and a verb,
+    would.
+    """
+    if cursor.kinds[index] != NAME or cursor.raws[index] in VERB_WORDS or cursor.raws[index] in ENDS_CLAUSES:
+        return False
+    if cursor.raws[index] in MODALS:
+        return not (cursor.kinds[index + 1] == NAME and near(cursor.raws[index + 1], VERB_WORDS, limit=1))
+    return not (is_clause(cursor, index) or near(cursor.raws[index], VERB_WORDS, limit=1))
+
+
+def is_long_prose(cursor: Cursor) -> bool:
+    """Whether the rest of the line is more than two words: `keep the arm still`."""
+    return len(cursor.kinds) - 1 - cursor.index > 2 and all(kind == NAME for kind in cursor.kinds[cursor.index : -1])
+
+
+def is_clause(cursor: Cursor, index: int) -> bool:
+    """Whether the token at `index` can only begin a clause, even after prose."""
+    if cursor.kinds[index] != NAME:
+        return False
+    raw, second = cursor.raws[index], cursor.raws[index + 1] if cursor.kinds[index + 1] == NAME else ""
+    if raw in VERB_WORDS and second:
+        return second == "between" or (second, cursor.raws[index + 2]) in RELATIONS
+    is_reason = raw == "because" and cursor.kinds[index + 1] == STRING
+    return is_reason or raw in ENDS_CLAUSES or (raw, second) in _BEGIN_CLAUSES
+
+
+def no_equals(cursor: Cursor, keys: list[int]) -> None:
+    """Report that the `=` after some words of the classic form is missing."""
+    changes: list[FixEdit] = []
+    for key in keys:
+        end = cursor.starts[key] + len(cursor.raws[key])
+        sign = cursor.starts[key + 1] + 1 if cursor.is_operator(key + 1, ":") else end
+        changes.append(FixEdit(Place(Span(end, sign)), " ="))
+    span = Span(cursor.starts[keys[0]], cursor.starts[keys[0]] + len(cursor.raws[keys[0]]))
+    cursor.complain(span, f"expected `=` after `{cursor.raws[keys[0]]}`", Fix("Write `=`", tuple(changes), safe=True))
+
+
+def no_unit(cursor: Cursor, word: str, span: Span, sort: str) -> None:
+    """Report a type of C++ or ROS in place of a unit."""
+    if sort == TYPE:
+        owner = "signal" if cursor.is_word(0, "signal") else "parameter"
+        note = "write the unit of its values: `m/s`, `s`, `%`, …; or `1` if they have none"
+        message = f"unknown unit `{word}`: a {owner} has a unit, not a type"
+        cursor.report(Diagnostic("unknown-unit", span, message, notes=(note,)))
+    else:
+        message = f"unknown unit `{word}`; did you mean `{sort}`?"
+        cursor.report(Diagnostic("unknown-unit", span, message, fixes=(write_fix(sort, span),)))
 
 
 def sort_of(type_: str) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib
+import pkgutil
 import random
 import re
 from pathlib import Path
@@ -10,11 +12,12 @@ from typing import TypeAlias
 import pytest
 from seeds import seeds
 
+from btq_lang import grammar as productions
 from btq_lang.grammar.claims import HAPPENINGS, VERB_WORDS
 from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS, HEADS
 from btq_lang.grammar.item_words import ITEM_WORDS
-from btq_lang.parser import Parser, parse
+from btq_lang.parser import parse
 from btq_lang.syntax.tokens import DIRECTIONS, NODE_CLAUSES, SYMBOLS
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "grammar.md").read_text(encoding="utf-8")
@@ -31,10 +34,11 @@ LAYOUT = ("NL", "INDENT", "DEDENT")
 WITHOUT_A_FUNCTION = {  # productions, and why
     "Edition": "a name to the parser; the checks know the editions",
     "Category": "a set of words",
-    "Kind": "`node` decides between it and a label by what follows",
+    "Kind": "`parse_node` decides between it and a label by what follows",
     "Label": "as Kind",
-    "Attribute": "the branches of the loop in `attributes`, of which a file has thousands",
-    "ReqHead": "of two forms, which `requirement` and `classic_requirement` read with the clauses behind them",
+    "Attribute": "the branches of the loop in `parse_attributes`, of which a file has thousands",
+    "ReqHead": "of two forms, which `parse_requirement` and `parse_classic_requirement` read with their clauses",
+    "Name": "a word of two kinds, which `Cursor.name` takes",
     "Cmp": "a set of words",
     "Func": "a set of words",
 }
@@ -130,9 +134,10 @@ def test_every_production_is_used_and_defined() -> None:
 
 
 def test_every_production_is_a_function_of_the_same_name() -> None:
+    modules = [module.name for module in pkgutil.iter_modules(productions.__path__, "btq_lang.grammar.")]
+    functions = set().union(*(vars(importlib.import_module(name)) for name in [*modules, "btq_lang.parser"]))
     named = {production: re.sub(r"(?<!^)(?=[A-Z])", "_", production).lower() for production in RULES}
-    named["Type"] = "type_"  # `type` is Python's own
-    without = {production for production, function in named.items() if not hasattr(Parser, function)}
+    without = {production for production, name in named.items() if f"parse_{name}" not in functions}
     assert without == set(WITHOUT_A_FUNCTION)
 
 
