@@ -44,8 +44,8 @@ def code(text: str) -> str:
 def _change(comparison: MissionComparison, change: Change) -> Iterator[str]:
     thing, name, happened = headline(change, code)
     what, _, more = happened.partition(" ")
-    said = [thing, code(name) if name else "", f"**{what}**", more, f"({code(comparison.line(change))})"]
-    yield f"- {' '.join(word for word in said if word)}"
+    parts = [thing, code(name) if name else "", f"**{what}**", more, f"({code(comparison.line(change))})"]
+    yield f"- {' '.join(word for word in parts if word)}"
     for sign, text in lines(change):
         yield f"  - {_WORDS[sign]}{code(text)}"
 

@@ -39,7 +39,7 @@ def render(comparisons: Iterable[MissionComparison], paint: Paint) -> Iterator[s
 def _change(comparison: MissionComparison, change: Change, paint: Paint) -> Iterator[str]:
     thing, name, happened = headline(change)
     sign = SIGNS[change.what]
-    said = " ".join(word for word in (sign, thing, name, happened) if word)
-    yield f"{paint(sign, said)}  {paint('gutter', comparison.line(change))}"
+    line = " ".join(word for word in (sign, thing, name, happened) if word)
+    yield f"{paint(sign, line)}  {paint('gutter', comparison.line(change))}"
     for sign, text in lines(change):
         yield "    " + paint(sign, f"{sign} {text}")

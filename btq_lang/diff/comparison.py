@@ -102,7 +102,7 @@ def compared(old: Side, new: Side) -> MissionComparison:
 
 def without_made_models(comparison: MissionComparison) -> MissionComparison:
     """Leave out the models that a build has added to XML for undeclared nodes."""
-    made = {
+    generated = {
         (what, path, name)
         for what, side in (("removed", comparison.old), ("added", comparison.new))
         for path in side.paths
@@ -112,19 +112,21 @@ def without_made_models(comparison: MissionComparison) -> MissionComparison:
 
     def is_made(change: Change) -> bool:
         place = change.new or change.old
-        return change.thing == "node model" and place is not None and (change.what, place.path, change.name) in made
+        if place is None or change.thing != "node model":
+            return False
+        return (change.what, place.path, change.name) in generated
 
     return replace(comparison, changes=tuple(each for each in comparison.changes if not is_made(each)))
 
 
 def _manual_edits(old: Side, new: Side) -> Iterator[Change]:
-    before, after = ({(each.name, each.contents): each for each in side.manual_edits} for side in (old, new))
-    for each in old.manual_edits:
-        if (each.name, each.contents) not in after:
-            yield Change("changed", GUARD, each.name, each.place, None, (Detail("by hand", each.message, None),))
-    for each in new.manual_edits:
-        if (each.name, each.contents) not in before:
-            yield Change("changed", GUARD, each.name, None, each.place, (Detail("by hand", None, each.message),))
+    before, after = ({(edit.name, edit.contents): edit for edit in side.manual_edits} for side in (old, new))
+    for edit in old.manual_edits:
+        if (edit.name, edit.contents) not in after:
+            yield Change("changed", GUARD, edit.name, edit.place, None, (Detail("by hand", edit.message, None),))
+    for edit in new.manual_edits:
+        if (edit.name, edit.contents) not in before:
+            yield Change("changed", GUARD, edit.name, None, edit.place, (Detail("by hand", None, edit.message),))
 
 
 def all_changes(comparisons: Iterable[MissionComparison]) -> tuple[Change, ...]:

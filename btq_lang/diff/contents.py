@@ -339,9 +339,9 @@ class _Reader:
 
 
 def _places(part: object) -> Iterator[tuple[int, int]]:
-    for each in syntax.walk(part):
-        if isinstance(each, syntax.Word):
-            yield each.start, each.end
+    for word in syntax.walk(part):
+        if isinstance(word, syntax.Word):
+            yield word.start, word.end
 
 
 def _meaning(part: object) -> object:

@@ -21,12 +21,12 @@ _RENAMED: Final = ("requirement", "signal", "context", "quality", "node model")
 def renamed_items(old: Iterable[Item], new: Iterable[Item]) -> dict[tuple[str, str], str]:
     """The new names of things whose contents are equal, by thing and old name."""
     before, after = _by_name(old), _by_name(new)
-    gone = _by_content(item for key, item in before.items() if key not in after)
-    came = _by_content(item for key, item in after.items() if key not in before)
+    removed = _by_content(item for key, item in before.items() if key not in after)
+    added = _by_content(item for key, item in after.items() if key not in before)
     return {
-        (items[0].thing, items[0].name): came[content][0].name
-        for content, items in gone.items()
-        if len(items) == 1 == len(came.get(content, ()))
+        (items[0].thing, items[0].name): added[content][0].name
+        for content, items in removed.items()
+        if len(items) == 1 == len(added.get(content, ()))
     }
 
 
@@ -45,23 +45,23 @@ def item_changes(
     for key, item in after.items():
         thing, name = item.thing, item.name
         earlier = names.get((thing, name))
-        was = before.get((thing, earlier) if earlier is not None else key)
-        if was is None:
+        previous = before.get((thing, earlier) if earlier is not None else key)
+        if previous is None:
             yield Change("added", thing, name, None, item.place, tuple(_contents(item, added=True)))
             continue
         if earlier is not None:
-            yield Change("renamed", thing, name, was.place, item.place, earlier=earlier)
-        values = was.values
+            yield Change("renamed", thing, name, previous.place, item.place, earlier=earlier)
+        values = previous.values
         if thing == MISSION and MAIN in values:
             main = renamed.get(("tree", str(values[MAIN].key)), values[MAIN].key)
             values = {**values, MAIN: AspectValue(main, values[MAIN].text)}
         differences = [*details(values, item.values)]
         if thing == "requirement":
-            counts = attached[0][was.name], attached[1][name]
+            counts = attached[0][previous.name], attached[1][name]
             if (counts[0] == 0) != (counts[1] == 0):
                 differences.append(Detail("attached to", _nodes(counts[0]), _nodes(counts[1])))
         if differences:
-            yield Change("changed", thing, name, was.place, item.place, tuple(differences))
+            yield Change("changed", thing, name, previous.place, item.place, tuple(differences))
     for key, item in before.items():
         if key not in after and (item.thing, item.name) not in renamed:
             yield Change("removed", item.thing, item.name, item.place, None, tuple(_contents(item, added=False)))
@@ -70,13 +70,13 @@ def item_changes(
 def _leave_out_built(before: dict[tuple[str, object], Item], after: dict[tuple[str, object], Item]) -> None:
     """Leave out an include of a mission and that of its XML: a build writes one for the other."""
     for stem in (_path, _name):  # in the same folder first: several folders may have files of one name
-        came: dict[tuple[str, bool], list[tuple[str, object]]] = {}
+        added: dict[tuple[str, bool], list[tuple[str, object]]] = {}
         for key, item in after.items():
             if item.thing == "include" and key not in before:
-                came.setdefault((stem(item), item.name.endswith(".xml")), []).append(key)
-        gone = [key for key, item in before.items() if item.thing == "include" and key not in after]
-        for key in gone:
-            others = came.get((stem(before[key]), not before[key].name.endswith(".xml")))
+                added.setdefault((stem(item), item.name.endswith(".xml")), []).append(key)
+        removed = [key for key, item in before.items() if item.thing == "include" and key not in after]
+        for key in removed:
+            others = added.get((stem(before[key]), not before[key].name.endswith(".xml")))
             if others:
                 del before[key], after[others.pop(0)]
 
@@ -97,12 +97,12 @@ def _contents(item: Item, added: bool) -> Iterator[Detail]:
 
 
 def _by_name(items: Iterable[Item]) -> dict[tuple[str, object], Item]:
-    found: dict[tuple[str, object], Item] = {}
+    by_name: dict[tuple[str, object], Item] = {}
     for item in items:
         # The name of an `apply` is its text, however it is spelt.
         name = item.values[""].key if item.thing == "apply" else item.name
-        found.setdefault((item.thing, name), item)
-    return found
+        by_name.setdefault((item.thing, name), item)
+    return by_name
 
 
 def _by_content(items: Iterable[Item]) -> dict[Hashable, list[Item]]:

@@ -144,8 +144,8 @@ def _same_trees(old: Forest, new: Forest) -> Iterator[tuple[int, int]]:
     for key in steps:
         waiting = grouped((key(new, top), top) for top in reversed(right))
         for top in list(left):
-            if found := waiting.get(key(old, top)):
-                other = found.pop()
+            if candidates := waiting.get(key(old, top)):
+                other = candidates.pop()
                 del left[top], right[other]
                 yield top, other
     # The trees of the new mission with a node of these values.
@@ -247,8 +247,8 @@ def _line_up_children(old: Forest, new: Forest, left: list[int], right: list[int
         # Children that are matched already keep the others on their side of them.
         mine = [("pair", old.match[one]) if old.match[one] >= 0 else ("key", key(old, one)) for one in left]
         yours = [("pair", other) if new.match[other] >= 0 else ("key", key(new, other)) for other in right]
-        for at, to in common(mine, yours):
-            _pair_if_free(old, new, left[at], right[to])
+        for index, other_index in common(mine, yours):
+            _pair_if_free(old, new, left[index], right[other_index])
         if anywhere:
             _pair_equal(old, new, left, right, key)
     _replaced(old, new, left, right)
@@ -258,11 +258,11 @@ def _pair_equal(old: Forest, new: Forest, left: Iterable[int], right: Sequence[i
     """Pair unmatched parts of equal keys, in order."""
     waiting = grouped((key(new, other), other) for other in reversed(right) if new.match[other] < 0)
     for one in left:
-        found = waiting.get(key(old, one), []) if old.match[one] < 0 else []
-        while found and new.match[found[-1]] >= 0:  # in an identical subtree that was paired before
-            found.pop()
-        if found:
-            _pair_if_free(old, new, one, found.pop())
+        candidates = waiting.get(key(old, one), []) if old.match[one] < 0 else []
+        while candidates and new.match[candidates[-1]] >= 0:  # in an identical subtree that was paired before
+            candidates.pop()
+        if candidates:
+            _pair_if_free(old, new, one, candidates.pop())
 
 
 def _pair_if_free(old: Forest, new: Forest, one: int, other: int) -> None:
@@ -277,12 +277,12 @@ def _replaced(old: Forest, new: Forest, left: list[int], right: list[int]) -> No
     """A node in the place of another, with its children or ports, is that node with a new kind."""
     gaps: dict[int, tuple[list[int], list[int]]] = {}
     for forest, children, side in ((old, left, 0), (new, right, 1)):
-        behind = -1
+        previous = -1
         for child in children:
             if forest.match[child] >= 0:
-                behind = child if side else forest.match[child]
+                previous = child if side else forest.match[child]
             else:
-                gaps.setdefault(behind, ([], []))[side].append(child)
+                gaps.setdefault(previous, ([], []))[side].append(child)
     for mine, yours in gaps.values():
         if len(mine) == len(yours) == 1 and _takes_its_place(old, new, mine[0], yours[0]):
             _pair(old, new, mine[0], yours[0])
@@ -312,45 +312,45 @@ def common(left: Sequence[Hashable], right: Sequence[Hashable]) -> list[tuple[in
         start += 1
     while end > start and other_end > start and left[end - 1] == right[other_end - 1]:
         end, other_end = end - 1, other_end - 1
-    ends = [(at, at) for at in range(start)]
+    ends = [(index, index) for index in range(start)]
     ends += [(end + step, other_end + step) for step in range(len(left) - end)]
     mine, yours = left[start:end], right[start:other_end]
     between = _table(mine, yours) if len(mine) * len(yours) <= _TABLE else _rough(mine, yours)
-    return sorted(ends + [(at + start, to + start) for at, to in between])
+    return sorted(ends + [(index + start, other + start) for index, other in between])
 
 
 def _table(left: Sequence[Hashable], right: Sequence[Hashable]) -> list[tuple[int, int]]:
     rows = [[0] * (len(right) + 1) for _ in range(len(left) + 1)]
-    for at in range(len(left) - 1, -1, -1):
-        row, below, mine = rows[at], rows[at + 1], left[at]
-        for to in range(len(right) - 1, -1, -1):
-            row[to] = below[to + 1] + 1 if mine == right[to] else max(below[to], row[to + 1])
-    found = []
-    at = to = 0
-    while at < len(left) and to < len(right):
-        if left[at] == right[to]:
-            found.append((at, to))
-            at, to = at + 1, to + 1
-        elif rows[at + 1][to] >= rows[at][to + 1]:
-            at += 1
+    for index in range(len(left) - 1, -1, -1):
+        row, below, mine = rows[index], rows[index + 1], left[index]
+        for other in range(len(right) - 1, -1, -1):
+            row[other] = below[other + 1] + 1 if mine == right[other] else max(below[other], row[other + 1])
+    pairs = []
+    index = other = 0
+    while index < len(left) and other < len(right):
+        if left[index] == right[other]:
+            pairs.append((index, other))
+            index, other = index + 1, other + 1
+        elif rows[index + 1][other] >= rows[index][other + 1]:
+            index += 1
         else:
-            to += 1
-    return found
+            other += 1
+    return pairs
 
 
 def _rough(left: Sequence[Hashable], right: Sequence[Hashable]) -> list[tuple[int, int]]:
     """Each one on the left with the next equal one on the right."""
-    places = grouped((right[to], to) for to in range(len(right) - 1, -1, -1))
-    found = []
+    places = grouped((right[other], other) for other in range(len(right) - 1, -1, -1))
+    pairs = []
     last = -1
-    for at, key in enumerate(left):
+    for index, key in enumerate(left):
         waiting = places.get(key, [])
         while waiting and waiting[-1] <= last:
             waiting.pop()
         if waiting:
             last = waiting.pop()
-            found.append((at, last))
-    return found
+            pairs.append((index, last))
+    return pairs
 
 
 # How children are aligned, the surest way first; whether also those that changed places.
@@ -372,13 +372,13 @@ def _leftovers(old: Forest, new: Forest, left: range, right: range, elsewhere: b
     Args:
         elsewhere: whether in other trees; there, only those that a reader would recognize.
     """
-    known = [one for one in left if _is_known_again(old, one)] if elsewhere else left
-    _pair_equal(old, new, known, right, lambda forest, index: forest.whole[index])
+    candidates = [one for one in left if _is_recognizable(old, one)] if elsewhere else left
+    _pair_equal(old, new, candidates, right, lambda forest, index: forest.whole[index])
     mine, yours = _by_name(old, left), _by_name(new, right)
-    for key, found in mine.items():
+    for key, indices in mine.items():
         others = yours.get(key, [])
-        if len(found) == len(others) == 1:
-            _pair(old, new, found[0], others[0])
+        if len(indices) == len(others) == 1:
+            _pair(old, new, indices[0], others[0])
 
 
 def _by_name(forest: Forest, places: range) -> dict[Hashable, list[int]]:
@@ -388,6 +388,6 @@ def _by_name(forest: Forest, places: range) -> dict[Hashable, list[int]]:
     return grouped(((forest.kinds[index], part.name), index) for index, part in named)
 
 
-def _is_known_again(forest: Forest, index: int) -> bool:
+def _is_recognizable(forest: Forest, index: int) -> bool:
     part = forest.parts[index]
     return forest.sizes[index] > 1 or part.kind not in BUILTINS or part.name is not None or bool(part.values)

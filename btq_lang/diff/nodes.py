@@ -47,17 +47,17 @@ def _is_part_of_one(forest: Forest, index: int) -> bool:
 
 def _one_sided(what: Literal["added", "removed"], forest: Forest, index: int) -> Change:
     part = forest.parts[index]
-    alone, kept = 0, []
+    alone, surviving = 0, []
     requirements: dict[str, None] = {}
     waiting = [index]
     while waiting:
-        each = waiting.pop()
-        if forest.match[each] >= 0:
-            kept.append(each)
+        current = waiting.pop()
+        if forest.match[current] >= 0:
+            surviving.append(current)
             continue
         alone += 1
-        requirements.update(dict.fromkeys(forest.parts[each].requirements))
-        waiting += reversed(forest.children[each])
+        requirements.update(dict.fromkeys(forest.parts[current].requirements))
+        waiting += reversed(forest.children[current])
     attached = tuple(
         Detail(f"requirement {name}", *((None, "attached") if what == "added" else ("attached", None)))
         for name in requirements
@@ -70,7 +70,7 @@ def _one_sided(what: Literal["added", "removed"], forest: Forest, index: int) ->
         part.place if what == "added" else None,
         attached,
         below=alone - 1,
-        around=tuple(shown(forest.parts[each]) for each in kept),
+        around=tuple(shown(forest.parts[current]) for current in surviving),
     )
 
 
@@ -92,8 +92,9 @@ def _moved(old: Forest, new: Forest) -> frozenset[int]:
         else:
             groups.setdefault(after, []).append(other)
     for group in groups.values():
-        kept = {group[at] for at, _ in common(group, sorted(group))}  # as many as possible have not changed sides
-        moved.update(set(group) - kept)
+        # As many as possible have not changed sides.
+        in_order = {group[position] for position, _ in common(group, sorted(group))}
+        moved.update(set(group) - in_order)
     return frozenset(moved)
 
 

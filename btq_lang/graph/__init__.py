@@ -8,7 +8,7 @@ needed.
     layout.py    positions of the boxes: a tidy tree in linear time
     widths.py    widths of texts
     placing.py   a figure with the positions of its parts
-    svg.py, dot.py, mermaid.py   the writers
+    svg.py, dot.py, mermaid.py   the writers; SVG has sparklines too
     picture.py   all of it, for the page beside a text, where parts are folded
 """
 

@@ -45,8 +45,8 @@ def layout(sizes: Sequence[Size], parents: Sequence[int | None], gap: int, level
     for node in reversed(order):  # children before their parents, the first child's subtree complete before the next
         _place_children(node)
     _add_up(order)
-    least = min(node.at for node in nodes)
-    return [(round(node.at - least), node.start) for node in nodes]
+    least = min(node.position for node in nodes)
+    return [(round(node.position - least), node.start) for node in nodes]
 
 
 class _Contour:
@@ -100,7 +100,7 @@ class _Node:
         self.end = depth
         self.anchor = anchor
         self.children: list[_Node] = []
-        self.at = self.preliminary = self.modifier = self.shift = self.change = 0.0
+        self.position = self.preliminary = self.modifier = self.shift = self.change = 0.0
         self.left, self.right = _Contour(), _Contour()
 
 
@@ -144,9 +144,9 @@ def _place_children(node: _Node) -> None:
 def _separate(children: list[_Node], index: int, before: _Contour, lows: Sequence[tuple[int, int]]) -> None:
     """Move a child's subtree away from those before it, along the contours between them."""
     child = children[index]
-    at, to, low = len(before.boxes) - 1, len(child.left.boxes) - 1, len(lows) - 1
-    while at >= 0 and to >= 0:
-        (end, side), (own_end, own_side) = before.boxes[at], child.left.boxes[to]
+    before_index, child_index, low = len(before.boxes) - 1, len(child.left.boxes) - 1, len(lows) - 1
+    while before_index >= 0 and child_index >= 0:
+        (end, side), (own_end, own_side) = before.boxes[before_index], child.left.boxes[child_index]
         while end > lows[low][0]:
             low -= 1
         distance = (side + before.moved) - (own_side + child.left.moved)
@@ -154,14 +154,14 @@ def _separate(children: list[_Node], index: int, before: _Contour, lows: Sequenc
             child.modifier += distance
             child.left.moved += distance
             child.right.moved += distance
-            met = lows[low][1]
-            if met != index - 1:  # the siblings between share the distance
-                share = distance / (index - met)
-                children[met + 1].shift += share
+            sibling = lows[low][1]
+            if sibling != index - 1:  # the siblings between share the distance
+                share = distance / (index - sibling)
+                children[sibling + 1].shift += share
                 child.shift -= share
                 child.change -= distance - share
-        at -= end <= own_end
-        to -= end >= own_end
+        before_index -= end <= own_end
+        child_index -= end >= own_end
 
 
 def _add_up(order: Sequence[_Node]) -> None:
@@ -169,7 +169,7 @@ def _add_up(order: Sequence[_Node]) -> None:
     sums = {id(order[0]): 0.0}
     for node in order:
         total = sums.pop(id(node)) + node.modifier
-        node.at = node.preliminary + total
+        node.position = node.preliminary + total
         shift = change = 0.0
         for child in node.children:
             shift += child.shift

@@ -33,8 +33,8 @@ def _lines(figure: Figure, prefix: str) -> Iterator[str]:
         yield f"{name}{opening}{_text((box.title, *box.lines))}{closing}"
         if box.parent is not None:
             yield f"{prefix}n{box.parent} --- {name}"
-        for at, note in enumerate(box.notes):
-            key = f"{name}q{at}"
+        for note_number, note in enumerate(box.notes):
+            key = f"{name}q{note_number}"
             opening, closing = ("([", "])") if note.kind == "quality" else ("[", "]")
             yield f"{key}{opening}{_text(note_lines(note))}{closing}:::{note.kind}"
             yield f"{name} -.- {key}"

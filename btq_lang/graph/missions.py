@@ -41,10 +41,10 @@ def draw_tree(
         KeyError: there is no such file.
         ValueError: the file has no trees, or there is no such form or direction.
     """
-    found = figures(workspace, path, qualities)
-    if not found:
+    drawn = figures(workspace, path, qualities)
+    if not drawn:
         raise ValueError(f"{path} has no trees to draw")
-    return draw(found, form, direction)
+    return draw(drawn, form, direction)
 
 
 def figures(
@@ -58,11 +58,11 @@ def figures(
     Raises:
         KeyError: there is no such file.
     """
-    found = requirements(workspace, path)
-    notes = _notes(found, measured_by) if with_qualities else {}
-    mine = keyed(workspace, path)
-    keys = {id(node): key for key, node in mine}
-    return tuple(figure(nodes, keys, notes) for nodes in by_tree(node for _, node in mine))
+    resolved = requirements(workspace, path)
+    notes = _notes(resolved, measured_by) if with_qualities else {}
+    keyed_nodes = keyed(workspace, path)
+    keys = {id(node): key for key, node in keyed_nodes}
+    return tuple(figure(nodes, keys, notes) for nodes in by_tree(node for _, node in keyed_nodes))
 
 
 def keyed(workspace: Workspace, path: str) -> tuple[tuple[str, ResolvedNode], ...]:
@@ -71,8 +71,8 @@ def keyed(workspace: Workspace, path: str) -> tuple[tuple[str, ResolvedNode], ..
     Raises:
         KeyError: there is no such file.
     """
-    mine = (node for node in requirements(workspace, path).nodes.all if node.path == path)
-    return tuple((f"n{number}", node) for number, node in enumerate(mine))
+    nodes = (node for node in requirements(workspace, path).nodes.all if node.path == path)
+    return tuple((f"n{number}", node) for number, node in enumerate(nodes))
 
 
 def by_tree(nodes: Iterable[ResolvedNode]) -> Iterator[tuple[ResolvedNode, ...]]:
@@ -94,11 +94,11 @@ def figure(
         notes: of nodes that have some, by `id(node)`.
         links: targets of SubTree nodes, by the name of the tree.
     """
-    at = {id(node): number for number, node in enumerate(nodes)}
+    indices = {id(node): number for number, node in enumerate(nodes)}
     boxes = [
         Box(
             keys[id(node)],
-            at[id(node.parent)] if node.parent is not None else None,
+            indices[id(node.parent)] if node.parent is not None else None,
             _OUTLINES.get(node.category or "", "unknown"),
             _title(node),
             _lines(node),
@@ -162,16 +162,16 @@ def requirement_note(key: str, applied: Applied, measured: tuple[MeasuredClause,
     return Note("requirement", key, name, lines, text, state, measured=measured)
 
 
-def _notes(found: Requirements, measured_by: MeasuredBy) -> dict[int, tuple[Note, ...]]:
+def _notes(resolved: Requirements, measured_by: MeasuredBy) -> dict[int, tuple[Note, ...]]:
     notes: dict[int, list[Note]] = {}
-    for node in found.nodes.all:
+    for node in resolved.nodes.all:
         for name, _ in concerns(node):
             notes.setdefault(id(node), []).append(Note("quality", name, name, text=f"satisfices {name}"))
-    for applied in found.applied:
+    for applied in resolved.applied:
         note = requirement_note(applied.requirement.name, applied, measured_by(applied))
         for node in applied.nodes:
             notes.setdefault(id(node), []).append(note)
-    for trace in found.traces:
+    for trace in resolved.traces:
         notes.setdefault(id(trace.node), []).append(Note("requirement", trace.requirement, trace.requirement))
     return {key: tuple(dict.fromkeys(each)) for key, each in notes.items()}
 

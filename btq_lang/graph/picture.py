@@ -79,9 +79,10 @@ def foldable(figure: Figure, folded: Container[str] = ()) -> Figure:
         if hiding is not None:
             below[hiding].append(box)
         top.append(hiding)
-    kept = [number for number, hiding in enumerate(top) if hiding is None]
-    now = {number: place for place, number in enumerate(kept)}
-    return replace(figure, boxes=tuple(_kept(figure.boxes[each], names[each], below[each], now) for each in kept))
+    visible = [number for number, hiding in enumerate(top) if hiding is None]
+    new_numbers = {number: place for place, number in enumerate(visible)}
+    boxes = (_visible(figure.boxes[index], names[index], below[index], new_numbers) for index in visible)
+    return replace(figure, boxes=tuple(boxes))
 
 
 def _folded(notes: tuple[Note, ...]) -> tuple[Note, ...]:
@@ -95,8 +96,8 @@ def _folded(notes: tuple[Note, ...]) -> tuple[Note, ...]:
     return (replace(first, title=title, lines=(), text=text, state="folded", measured=()),)
 
 
-def _kept(box: Box, name: str, below: list[Box], now: dict[int, int]) -> Box:
-    parent = None if box.parent is None else now[box.parent]
+def _visible(box: Box, name: str, below: list[Box], new_numbers: dict[int, int]) -> Box:
+    parent = None if box.parent is None else new_numbers[box.parent]
     if not below:
         return replace(box, name=name, parent=parent)
     # A search for a folded node finds the box that hides it.
@@ -107,14 +108,14 @@ def _kept(box: Box, name: str, below: list[Box], now: dict[int, int]) -> Box:
 
 def _names(figure: Figure) -> list[str]:
     """For each box, the titles and instance names from the top of its tree; equal siblings are numbered."""
-    found: list[str] = []
-    seen: dict[str, int] = {}
+    names: list[str] = []
+    counts: dict[str, int] = {}
     for box in figure.boxes:
-        above = figure.title if box.parent is None else found[box.parent]
+        above = figure.title if box.parent is None else names[box.parent]
         name = f"{above}/{' '.join((box.title, *box.lines[:1]))}"
-        seen[name] = seen.get(name, 0) + 1
-        found.append(name if seen[name] == 1 else f"{name}#{seen[name]}")
-    return found
+        counts[name] = counts.get(name, 0) + 1
+        names.append(name if counts[name] == 1 else f"{name}#{counts[name]}")
+    return names
 
 
 _MOST_WITH_NOTES: Final = 60  # nodes: with the notes of more, a tree that fits a window has no readable names

@@ -43,7 +43,7 @@ class PlacedNote(Record):
     """
 
     note: Note
-    at: Rectangle
+    area: Rectangle
     lines: tuple[tuple[int, str], ...]
     sparklines: tuple[tuple[Rectangle, MeasuredClause], ...]
 
@@ -57,7 +57,7 @@ class PlacedBox(Record):
     """
 
     box: Box
-    at: Rectangle
+    area: Rectangle
     lines: tuple[str, ...]
     notes: tuple[PlacedNote, ...]
     edge: Line
@@ -140,44 +140,44 @@ class _Part:
         self.across = self._box_x + self._w // 2 if down else self._box_y + self._h // 2
 
     def placed(self, x: int, y: int, parent: PlacedBox | None) -> PlacedBox:
-        at = Rectangle(x + self._box_x, y + self._box_y, self._w, self._h)
+        area = Rectangle(x + self._box_x, y + self._box_y, self._w, self._h)
         notes: list[PlacedNote] = []
         if self._beside:
-            left, top = at.x + at.w + _TIE, y
+            left, top = area.x + area.w + _TIE, y
         elif self._down:
-            left, top = x + (self.w - self._note_w) // 2, at.y + at.h + _TIE
+            left, top = x + (self.w - self._note_w) // 2, area.y + area.h + _TIE
         else:
-            left, top = x + _INDENT, at.y + at.h + _TIE
+            left, top = x + _INDENT, area.y + area.h + _TIE
         for note, height in zip(self._box.notes, self._heights, strict=True):
             notes.append(_placed_note(note, Rectangle(left, top, self._note_w, height)))
             top += height + _NOTE_GAP
-        return PlacedBox(self._box, at, self._lines, tuple(notes), self._edge(at, parent), self._ties(at, notes))
+        return PlacedBox(self._box, area, self._lines, tuple(notes), self._edge(area, parent), self._ties(area, notes))
 
-    def _edge(self, at: Rectangle, parent: PlacedBox | None) -> Line:
+    def _edge(self, area: Rectangle, parent: PlacedBox | None) -> Line:
         """The line from the parent: along, across in the gap before this layer, along."""
         if parent is None:
             return ()
         if self._down:
-            (own, _), (above, _) = at.middle, parent.at.middle
-            start, end, turn = parent.at.y + parent.at.h, at.y, at.y - self._box_y
+            (own, _), (above, _) = area.middle, parent.area.middle
+            start, end, turn = parent.area.y + parent.area.h, area.y, area.y - self._box_y
         else:
-            (_, own), (_, above) = at.middle, parent.at.middle
-            start, end, turn = parent.at.x + parent.at.w, at.x, at.x - self._box_x
+            (_, own), (_, above) = area.middle, parent.area.middle
+            start, end, turn = parent.area.x + parent.area.w, area.x, area.x - self._box_x
         turn -= _LEVEL_GAP // 2
         line: Line = ((own, start), (own, end))
         if abs(own - above) > 1:  # positions are rounded
             line = ((above, start), (above, turn), (own, turn), (own, end))
         return line if self._down else tuple((y, x) for x, y in line)
 
-    def _ties(self, at: Rectangle, notes: list[PlacedNote]) -> Line:
+    def _ties(self, area: Rectangle, notes: list[PlacedNote]) -> Line:
         if not notes:
             return ()
-        first = notes[0].at
+        first = notes[0].area
         if self._beside:
-            y = max(first.y, min(at.middle[1], first.y + first.h)) if len(notes) == 1 else at.middle[1]
-            return (at.x + at.w, y), (first.x, y)
-        x = at.middle[0] if self._down else min(first.x + _INDENT, at.x + at.w - _INDENT // 2)
-        return (x, at.y + at.h), (x, first.y)
+            y = max(first.y, min(area.middle[1], first.y + first.h)) if len(notes) == 1 else area.middle[1]
+            return (area.x + area.w, y), (first.x, y)
+        x = area.middle[0] if self._down else min(first.x + _INDENT, area.x + area.w - _INDENT // 2)
+        return (x, area.y + area.h), (x, first.y)
 
 
 def _box_size(box: Box, lines: tuple[str, ...]) -> tuple[int, int]:
@@ -199,18 +199,18 @@ def _note_height(note: Note) -> int:
     return len(note_lines(note)) * LEADING + sparklines * _SPARK + _NOTE_PAD
 
 
-def _placed_note(note: Note, at: Rectangle) -> PlacedNote:
+def _placed_note(note: Note, area: Rectangle) -> PlacedNote:
     lines: list[tuple[int, str]] = []
     sparklines: list[tuple[Rectangle, MeasuredClause]] = []
-    top = at.y
+    top = area.y
     for texts, measured in _sections(note):
         lines += [(top + 15 + number * LEADING, text) for number, text in enumerate(texts)]
         top += len(texts) * LEADING
         if measured is not None and measured.has_values:
-            inner = Rectangle(at.x + _NOTE_PAD, top + 6, at.w - 2 * _NOTE_PAD, _SPARK - 6)
+            inner = Rectangle(area.x + _NOTE_PAD, top + 6, area.w - 2 * _NOTE_PAD, _SPARK - 6)
             sparklines.append((inner, measured))
             top += _SPARK
-    return PlacedNote(note, at, tuple(lines), tuple(sparklines))
+    return PlacedNote(note, area, tuple(lines), tuple(sparklines))
 
 
 _GAP: Final = 20  # between siblings

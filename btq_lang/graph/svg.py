@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from html import escape
+from itertools import groupby
 from typing import Final
 
-from btq_lang.graph.figure import Figure
+from btq_lang.graph.figure import Figure, MeasuredClause
 from btq_lang.graph.placing import LEADING, MARGIN, SMALL, TITLE, Drawing, Line, PlacedBox, PlacedNote, Rectangle, place
-from btq_lang.graph.sparkline import sparkline
 from btq_lang.graph.widths import width
 
 # Selectors, properties, and colours on light and dark background; text has a contrast of at least 4.5.
@@ -115,8 +115,8 @@ def _drawn(drawing: Drawing) -> Iterator[str]:
 
 
 def _box(placed: PlacedBox, above: str) -> Iterator[str]:
-    box, at = placed.box, placed.at
-    x = at.middle[0]
+    box, area = placed.box, placed.area
+    x = area.middle[0]
     names = " ".join(dict.fromkeys(note.note.key for note in placed.notes))
     data = f' data-notes="{escape(names)}"' if names else ""
     if box.name:  # a page folds by it
@@ -126,8 +126,8 @@ def _box(placed: PlacedBox, above: str) -> Iterator[str]:
     yield f"<title>{escape(box.text or box.title)}</title>"
     if box.link:
         yield f'<a href="{escape(box.link)}">'
-    yield _outline(box.outline, at)
-    top = at.y + (at.h - len(placed.lines) * LEADING) // 2 + 12
+    yield _outline(box.outline, area)
+    top = area.y + (area.h - len(placed.lines) * LEADING) // 2 + 12
     for number, line in enumerate(placed.lines):
         kind, size = ("title", TITLE) if number == 0 else ("small", SMALL)
         yield f'<text class="{kind}" font-size="{size}" x="{x}" y="{top + number * LEADING}">{escape(line)}</text>'
@@ -135,16 +135,16 @@ def _box(placed: PlacedBox, above: str) -> Iterator[str]:
 
 
 def _note(placed: PlacedNote) -> Iterator[str]:
-    note, at = placed.note, placed.at
+    note, area = placed.note, placed.area
     states = " ".join(filter(None, (note.kind, note.state, *dict.fromkeys(each.verdict for each in note.measured))))
     yield f'<g class="note {states}" data-note="{escape(note.key)}">'
     yield f"<title>{escape(note.text or note.title)}</title>"
     if note.link:
         yield f'<a href="{escape(note.link)}">'
-    radius, left = 3, at.x + 8
+    radius, left = 3, area.x + 8
     if note.kind == "quality" and len(placed.lines) == 1:
-        radius, left = at.h // 2, at.x + (at.w - width(placed.lines[0][1], SMALL, bold=True)) // 2
-    yield f'<rect class="outline" x="{at.x}" y="{at.y}" width="{at.w}" height="{at.h}" rx="{radius}"/>'
+        radius, left = area.h // 2, area.x + (area.w - width(placed.lines[0][1], SMALL, bold=True)) // 2
+    yield f'<rect class="outline" x="{area.x}" y="{area.y}" width="{area.w}" height="{area.h}" rx="{radius}"/>'
     for number, (y, line) in enumerate(placed.lines):
         kind = "title" if number == 0 else "small"
         yield f'<text class="{kind}" font-size="{SMALL}" x="{left}" y="{y}">{escape(line)}</text>'
@@ -153,8 +153,8 @@ def _note(placed: PlacedNote) -> Iterator[str]:
     yield from ("</a>", "</g>") if note.link else ("</g>",)
 
 
-def _outline(outline: str, at: Rectangle) -> str:
-    x, y, w, h = at.x, at.y, at.w, at.h
+def _outline(outline: str, area: Rectangle) -> str:
+    x, y, w, h = area.x, area.y, area.w, area.h
     if outline == "condition":
         return f'<ellipse class="outline" cx="{x + w // 2}" cy="{y + h // 2}" rx="{w // 2}" ry="{h // 2}"/>'
     if outline == "decorator":
@@ -171,6 +171,34 @@ def _outline(outline: str, at: Rectangle) -> str:
 
 def _path(line: Line) -> str:
     return "M" + "L".join(f"{x} {y}" for x, y in line)
+
+
+def sparkline(measured: MeasuredClause, area: Rectangle) -> Iterator[str]:
+    """The elements of a sparkline of at least one value that fills a rectangle."""
+    numbers = [value for value, _ in measured.values if value is not None]
+    low, high = min((*numbers, *measured.bounds)), max((*numbers, *measured.bounds))
+    step = area.w / max(len(measured.values) - 1, 1)
+
+    def down(value: float) -> float:
+        return round(area.y + (area.h - (value - low) / (high - low) * area.h if high > low else area.h / 2), 1)
+
+    points = [
+        (round(area.x + place * step, 1), down(value), is_broken) if value is not None else None
+        for place, (value, is_broken) in enumerate(measured.values)
+    ]
+    yield f'<g class="sparkline"><title>{escape(measured.text)}</title>'
+    yield from (f'<path class="limit" d="M{area.x} {down(bound)}h{area.w}"/>' for bound in measured.bounds)
+    for is_known, stretch in groupby(points, key=lambda point: point is not None):
+        if is_known:
+            yield f'<path class="value" d="M{"L".join(f"{x} {y}" for x, y, _ in filter(None, stretch))}"/>'
+    shown = [point for point in points if point is not None]
+    for x, y, is_broken in shown:
+        if is_broken:
+            yield f'<path class="broken" d="M{x - 3:g} {y - 3:g}l6 6m0 -6l-6 6"/>'
+    x, y, is_broken = shown[-1]
+    if not is_broken:
+        yield f'<path class="last" d="M{x} {y}h0"/>'
+    yield "</g>"
 
 
 _CAPTION: Final = 28

@@ -45,9 +45,9 @@ def shortened(text: str, size: int, room: int) -> str:
 
 @lru_cache(maxsize=1024)
 def _width(character: str) -> int:
-    known = _WIDTHS.get(character)
-    if known is not None:
-        return known
+    size = _WIDTHS.get(character)
+    if size is not None:
+        return size
     from unicodedata import category, east_asian_width
 
     if east_asian_width(character) in "WF":

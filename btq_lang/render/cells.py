@@ -83,9 +83,9 @@ def broken(text: str, room: int) -> list[str]:
             lines[-1] += f" {word}"
             continue
         while cells_of(word) > room:
-            at = _fitting(word, room)
-            lines.append(word[:at])
-            word = word[at:]
+            end = _fitting(word, room)
+            lines.append(word[:end])
+            word = word[end:]
         lines.append(word)
     return [" " * indent + line for line in lines]
 
@@ -95,8 +95,8 @@ def _fitting(word: str, room: int) -> int:
     fits = 1
     while fits < len(word) and cells_of(word[: fits + 1]) <= room:
         fits += 1
-    at = max(word.rfind(mark, 0, fits) for mark in ".-/")
-    return at + 1 if at > 0 else fits
+    mark_index = max(word.rfind(mark, 0, fits) for mark in ".-/")
+    return mark_index + 1 if mark_index > 0 else fits
 
 
 def _sign(character: str) -> str:

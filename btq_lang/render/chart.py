@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from html import escape
+from itertools import count
+from math import ceil, floor, log10
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from btq_lang.graph.widths import width
@@ -106,17 +108,17 @@ class _Frame:
 
     def bars(self, series: ChartSeries) -> Iterator[str]:
         base = self._y(max(self._low, 0.0))
-        for x, value, title in self._known(series):
+        for x, value, title in self._points(series):
             high = max(base - self._y(value), 1.0)
-            at = f'x="{x - self._step * 0.4:.1f}" y="{base - high:.1f}" width="{self._step * 0.8:.1f}"'
-            yield f'<rect {at} height="{high:.1f}"><title>{escape(title)}</title></rect>'
+            rectangle = f'x="{x - self._step * 0.4:.1f}" y="{base - high:.1f}" width="{self._step * 0.8:.1f}"'
+            yield f'<rect {rectangle} height="{high:.1f}"><title>{escape(title)}</title></rect>'
 
     def line(self, series: ChartSeries) -> Iterator[str]:
-        points = "L".join(f"{x:.1f} {self._y(value):g}" for x, value, _ in self._known(series))
+        points = "L".join(f"{x:.1f} {self._y(value):g}" for x, value, _ in self._points(series))
         yield f'<path class="line" d="M{points}"/>'
 
     def dots(self, series: ChartSeries) -> Iterator[str]:
-        for x, value, title in self._known(series):
+        for x, value, title in self._points(series):
             yield f'<circle cx="{x:.1f}" cy="{self._y(value):g}" r="2.5"><title>{escape(title)}</title></circle>'
 
     def _levels(self) -> Iterator[str]:
@@ -140,7 +142,7 @@ class _Frame:
                 yield f'<text x="{x + _NEAR:g}" y="{_SIZE - 1}">{escape(mark.text)}</text>'
                 free = x + 2 * _NEAR + width(mark.text, _SIZE)
 
-    def _known(self, series: ChartSeries) -> Iterator[tuple[float, float, str]]:
+    def _points(self, series: ChartSeries) -> Iterator[tuple[float, float, str]]:
         """The middle of each place that has a value, that value and its title."""
         for place, (value, title) in enumerate(zip(series.values, series.titles, strict=True)):
             if value is not None:
@@ -160,3 +162,42 @@ _SIZE: Final = 10  # of texts, in pixels
 _LINE: Final = 13
 _GAP: Final = 7
 _NEAR: Final = 3
+
+
+# ---- round numbers for an axis ----
+
+
+def round_values(low: float, high: float, most: int, *, is_time: bool = False) -> tuple[float, ...]:
+    """The multiples of a round step from one value to another, with the smallest step of which there are few enough.
+
+        >>> round_values(0, 35.5, 8)
+        (0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0)
+        >>> round_values(0, 200, 6, is_time=True)
+        (0.0, 60.0, 120.0, 180.0)
+
+    Args:
+        most: how many there may be, at least 2.
+        is_time: the values are seconds; then steps of more than a second are round in minutes and hours.
+    """
+    if not high > low:
+        return (float(low),)
+    for step in _steps((high - low) / most, is_time):
+        first, last = ceil(low / step - _ROUNDING), floor(high / step + _ROUNDING)
+        if last - first < most:
+            return tuple(float(f"{place * step:.12g}") for place in range(first, last + 1))
+    raise AssertionError("steps grow without end")
+
+
+def _steps(least: float, is_time: bool) -> Iterator[float]:
+    """The round steps, from the largest that is not above a value."""
+    unit = 1.0
+    if is_time and least > 1:
+        yield from (each for each in _TIMES if each >= least)
+        unit = _DAY
+    for exponent in count(floor(log10(max(least / unit, 1.0 if unit == _DAY else 0.0)))):
+        yield from (each * 10.0**exponent * unit for each in (1, 2, 5))
+
+
+_DAY: Final = 86_400.0  # s
+_TIMES: Final = (2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 10_800, 21_600, 43_200)  # s
+_ROUNDING: Final = 1e-9  # of a step: what a division may round off

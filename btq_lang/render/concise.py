@@ -1,4 +1,7 @@
-"""`concise`: one line a finding, `path:line:column: severity[rule] message`, as editors and grep read it."""
+"""`concise`: one line a finding, `path:line:column: severity[rule] message`, as editors and grep read it.
+
+It is apart from `full`, because a run imports only the renderer that it uses.
+"""
 
 from __future__ import annotations
 
@@ -14,8 +17,8 @@ def render(report: Report, *, colour: bool = False) -> Iterator[str]:
     """A line for each finding, then the summary."""
     paint = painter(colour)
     for finding in report.findings:
-        at = location(report, finding)
+        where = location(report, finding)
         severity = finding.diagnostic.effective_severity.value
         rule = paint(severity, f"{severity}[{finding.diagnostic.rule}]")
-        yield f"{printable(at.path)}:{at.line}:{at.column}: {rule} {printable(finding.diagnostic.message)}\n"
+        yield f"{printable(where.path)}:{where.line}:{where.column}: {rule} {printable(finding.diagnostic.message)}\n"
     yield last_line(report)

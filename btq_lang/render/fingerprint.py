@@ -1,4 +1,7 @@
-"""What identifies a finding when lines around it come and go, or its file gets another name."""
+"""The identity of a finding: it stays when lines around it come and go, or its file gets another name.
+
+It is apart from `report`, which every run imports: hashing is only for baselines and GitLab.
+"""
 
 from __future__ import annotations
 
@@ -14,9 +17,9 @@ def fingerprint(finding: Finding) -> str:
     """
     span = clamped(finding.diagnostic.span, finding.text)
     lines = line_index(finding.text)
-    at = lines.position(span.start)
-    line = lines.line(at.line)
-    marked = line[at.column : at.column + span.end - span.start]
+    start = lines.position(span.start)
+    line = lines.line(start.line)
+    marked = line[start.column : start.column + span.end - span.start]
     parts = (finding.diagnostic.rule, " ".join(marked.split()), " ".join(line.split()))
     return digest(*parts)
 

@@ -64,9 +64,9 @@ class _View(Record):
     def line(self, number: int) -> str:
         return cut(_line(self.lines, number), self.left, self.room)
 
-    def cell(self, at: Position) -> int:
+    def cell(self, position: Position) -> int:
         """The visible cell of a position, one to the right if there is a sign for a cut on the left."""
-        return _cell(_line(self.lines, at.line), at.column) - self.left + (1 if self.left else 0)
+        return _cell(_line(self.lines, position.line), position.column) - self.left + (1 if self.left else 0)
 
 
 def _view(lines: LineIndex, start: Position, columns: int, room: int) -> _View:

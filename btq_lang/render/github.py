@@ -31,25 +31,25 @@ def render(report: Report) -> Iterator[str]:
 
 
 def _trouble(trouble: LoadProblem) -> str:
-    at = trouble.position
-    place = f",line={at.line + 1},col={at.column + 1}" if at is not None else ""
+    position = trouble.position
+    place = f",line={position.line + 1},col={position.column + 1}" if position is not None else ""
     return f"::error file={_property(trouble.path)}{place},title=io-error::{_data([str(trouble)])}\n"
 
 
 def _command(report: Report, finding: Finding) -> str:
     diagnostic = finding.diagnostic
-    at = location(report, finding)
-    properties = {"file": printable(at.path), "line": at.line, "endLine": at.end_line}
-    if at.line == at.end_line:  # GitHub refuses columns for annotations over several lines
-        properties |= {"col": at.column, "endColumn": at.end_column}
+    where = location(report, finding)
+    properties = {"file": printable(where.path), "line": where.line, "endLine": where.end_line}
+    if where.line == where.end_line:  # GitHub refuses columns for annotations over several lines
+        properties |= {"col": where.column, "endColumn": where.end_column}
     properties["title"] = diagnostic.rule
     lines = [
-        f"{at.path}:{at.line}:{at.column}: {diagnostic.message}",
+        f"{where.path}:{where.line}:{where.column}: {diagnostic.message}",
         *(f"note: {note}" for note in diagnostic.notes),
         *(f"help: {fix.title}" for fix in diagnostic.fixes),
     ]
-    written = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items())
-    return f"::{_COMMANDS[diagnostic.effective_severity]} {written}::{_data(lines)}\n"
+    parameters = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items())
+    return f"::{_COMMANDS[diagnostic.effective_severity]} {parameters}::{_data(lines)}\n"
 
 
 def _data(lines: list[str]) -> str:

@@ -22,25 +22,25 @@ _SEVERITIES = {Severity.ERROR: "major", Severity.WARNING: "minor", Severity.INFO
 
 def render(report: Report) -> Iterator[str]:
     """The report, in one piece."""
-    known: Counter[tuple[str, str]] = Counter()
-    issues = [*map(_trouble, report.troubles), *(_issue(report, finding, known) for finding in report.findings)]
+    counts: Counter[tuple[str, str]] = Counter()
+    issues = [*map(_trouble, report.troubles), *(_issue(report, finding, counts) for finding in report.findings)]
     yield json.dumps(issues, indent=2) + "\n"
 
 
-def _issue(report: Report, finding: Finding, known: Counter[tuple[str, str]]) -> dict[str, object]:
-    diagnostic, at = finding.diagnostic, location(report, finding)
+def _issue(report: Report, finding: Finding, counts: Counter[tuple[str, str]]) -> dict[str, object]:
+    diagnostic, where = finding.diagnostic, location(report, finding)
     identity = finding.path, fingerprint(finding)
-    known[identity] += 1  # only their order distinguishes findings with equal text
+    counts[identity] += 1  # only their order distinguishes findings with equal text
     return {
         "description": f"{diagnostic.rule}: {diagnostic.message}",  # GitLab does not show check_name
         "check_name": diagnostic.rule,
-        "fingerprint": digest(*identity, str(known[identity])),
+        "fingerprint": digest(*identity, str(counts[identity])),
         "severity": _SEVERITIES[diagnostic.effective_severity],
         "location": {
             "path": finding.path,
             "positions": {
-                "begin": {"line": at.line, "column": at.column},
-                "end": {"line": at.end_line, "column": at.end_column},
+                "begin": {"line": where.line, "column": where.column},
+                "end": {"line": where.end_line, "column": where.end_column},
             },
         },
     }

@@ -63,13 +63,13 @@ def summed_up(report: Report) -> dict[str, int]:
 
 def _trouble(trouble: LoadProblem) -> dict[str, object]:
     line, column = trouble.position or (0, 0)
-    at = {"line": line + 1, "column": column + 1}
+    start = {"line": line + 1, "column": column + 1}
     return {
         "rule": "io-error",
         "severity": Severity.ERROR.value,
         "message": trouble.message,
         "path": trouble.path,
-        "range": {"start": at, "end": at},
+        "range": {"start": start, "end": start},
         "related": [],
         "notes": [],
         "tags": [],
@@ -101,11 +101,11 @@ def _diagnostic(report: Report, finding: Finding) -> dict[str, object]:
 
 
 def _range(report: Report, finding: Finding, place: Place | None = None) -> dict[str, object]:
-    at = location(report, finding, place)
+    where = location(report, finding, place)
     return {
-        "path": at.path,
+        "path": where.path,
         "range": {
-            "start": {"line": at.line, "column": at.column},
-            "end": {"line": at.end_line, "column": at.end_column},
+            "start": {"line": where.line, "column": where.column},
+            "end": {"line": where.end_line, "column": where.end_column},
         },
     }

@@ -21,9 +21,9 @@ _FAILURES = (Severity.ERROR, Severity.WARNING)
 
 def render(report: Report) -> Iterator[str]:
     """The document, line by line."""
-    found = grouped((finding.path, finding) for finding in report.findings)
+    by_path = grouped((finding.path, finding) for finding in report.findings)
     troubles = grouped((trouble.path, trouble) for trouble in report.troubles)
-    cases = {path: found.get(path, []) for path in (*report.checked, *found, *troubles)}
+    cases = {path: by_path.get(path, []) for path in (*report.checked, *by_path, *troubles)}
     failures = sum(any(map(_fails, case)) for path, case in cases.items() if path not in troubles)
     numbers = f'tests="{len(cases)}" failures="{failures}" errors="{len(troubles)}"'
     yield '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -47,8 +47,8 @@ def _case(report: Report, path: str, findings: list[Finding], troubles: list[Loa
         yield f'      <error type="io-error" message="{escaped(troubles[0].message)}">'
         yield "\n".join(escaped(str(trouble)) for trouble in troubles) + "</error>\n"
     if failures:
-        found = {finding.diagnostic.effective_severity for finding in failures}
-        worst = next(severity for severity in _FAILURES if severity in found)
+        severities = {finding.diagnostic.effective_severity for finding in failures}
+        worst = next(severity for severity in _FAILURES if severity in severities)
         yield f'      <failure type="{worst.value}" message="{counted_by_severity(failures)}">'
         yield "\n".join(_lines(report, failures)) + "</failure>\n"
     if others:
@@ -62,9 +62,9 @@ def _fails(finding: Finding) -> bool:
 
 def _lines(report: Report, findings: Iterable[Finding]) -> Iterator[str]:
     for finding in findings:
-        at, diagnostic = location(report, finding), finding.diagnostic
+        where, diagnostic = location(report, finding), finding.diagnostic
         severity = diagnostic.effective_severity.value
-        yield escaped(f"{at.path}:{at.line}:{at.column}: {severity}[{diagnostic.rule}] {diagnostic.message}")
+        yield escaped(f"{where.path}:{where.line}:{where.column}: {severity}[{diagnostic.rule}] {diagnostic.message}")
         for note in diagnostic.notes:
             yield from (escaped(f"  {line}") for line in note.split("\n"))
 

@@ -4,8 +4,8 @@
      3  [ ] unknown-node
     Found 15 warnings (12 fixable with --fix)
 
-`[*]` marks rules whose findings `btq check --fix` all fixes, `[-]` those of which it fixes some.  As JSON, with the
-head and the summary of the format `json`:
+`[*]` marks rules whose findings `btq check --fix` all fixes, `[-]` rules of which it fixes some findings.  As JSON,
+with the head and the summary of the format `json`:
 
     "statistics": [{"rule": NAME, "count": N, "fixable": N}]
 """
@@ -33,11 +33,11 @@ def render(form: str, report: Report) -> Iterator[str]:
 
         from btq_lang.render.json_format import head, summed_up
 
-        statistics = [{"rule": rule, "count": count, "fixable": fixable[rule]} for rule, count in rows]
+        statistics = [{"rule": rule, "count": number, "fixable": fixable[rule]} for rule, number in rows]
         yield json.dumps({**head(), "statistics": statistics, "summary": summed_up(report)}, indent=2) + "\n"
         return
     width = len(str(max(counts.values(), default=0)))
-    for rule, count in rows:
-        mark = "*" if fixable[rule] == count else "-" if fixable[rule] else " "
-        yield f"{count:>{width}}  {f'[{mark}] ' if fixable else ''}{rule}\n"
+    for rule, number in rows:
+        mark = "*" if fixable[rule] == number else "-" if fixable[rule] else " "
+        yield f"{number:>{width}}  {f'[{mark}] ' if fixable else ''}{rule}\n"
     yield last_line(report)

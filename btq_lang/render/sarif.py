@@ -124,8 +124,13 @@ def _physical(report: Report, finding: Finding, place: Place | None = None) -> J
 
 
 def _region(report: Report, finding: Finding, place: Place | None) -> Json:
-    at = location(report, finding, place)
-    return {"startLine": at.line, "startColumn": at.column, "endLine": at.end_line, "endColumn": at.end_column}
+    where = location(report, finding, place)
+    return {
+        "startLine": where.line,
+        "startColumn": where.column,
+        "endLine": where.end_line,
+        "endColumn": where.end_column,
+    }
 
 
 def _artifact(path: str) -> Json:

@@ -1,4 +1,7 @@
-"""CSV files, which people open in spreadsheets."""
+"""CSV files, which people open in spreadsheets.
+
+They are apart from any writer: the overview and reports of verdicts share them.
+"""
 
 from __future__ import annotations
 

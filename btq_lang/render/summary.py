@@ -30,15 +30,15 @@ def summary(report: Report) -> str:
     incomplete = f"; incomplete because of {serious[0]}" if serious else ""
     if not report.findings and report.troubles:
         return f"Found {counted(len(report.troubles), 'error')}" if not serious else f"Found nothing{incomplete}"
-    known = f", and {report.known} in the baseline" if report.known else ""
+    in_baseline = f", and {report.known} in the baseline" if report.known else ""
     if not report.findings:
-        new = "new " if known else ""
-        return f"No {new}problems found in {counted(len(report.checked), 'file')}{known}"
+        new = "new " if in_baseline else ""
+        return f"No {new}problems found in {counted(len(report.checked), 'file')}{in_baseline}"
     fixable = sum(map(is_fixable, report.findings))
     return (
         f"Found {counted_by_severity(report.findings)}"
         + (f" ({fixable} fixable with --fix)" if fixable else "")
-        + known
+        + in_baseline
         + incomplete
     )
 

@@ -8,7 +8,7 @@ One invariant: every fact is in exactly one row with a key, and the same mission
     missions.py how the built tree covers them, and all of it in one call
     meanings.py the meaning of quality names
     verdicts.py verdicts on the page
-    histogram.py, run_figure.py, violating_runs.py   what a clause measured, a run, and all runs that violate a clause
+    run_figure.py  what the nodes of a run did
     table.py, csv_rows.py, json_document.py, markdown.py, page.py   the writers
 """
 

@@ -69,9 +69,9 @@ def collect(
     """
     collector = _Collector(ways, shown, details_of, verdicts_of)
     files: list[str] = []
-    for workspace, given in parts:
-        included = {path for each in given for path in workspace.closure(each) if path != each}
-        for path in [each for each in given if each not in included] or given:
+    for workspace, requested in parts:
+        included = {path for each in requested for path in workspace.closure(each) if path != each}
+        for path in [each for each in requested if each not in included] or requested:
             files.append(shown(path))
             collector.add(workspace, path)
     return collector.overview(tuple(files))
@@ -96,29 +96,29 @@ class _Collector:
         self._meanings: dict[_Key, NameMeaning] = {}  # of their qualities
         self._uses: defaultdict[_Key, dict[AppliedRequirement, None]] = defaultdict(dict)
         self._loose: dict[_Key, list[str]] = {}  # without a node in every mission in which other clauses have one
-        self._seen: defaultdict[_Key, list[ClauseEvidence]] = defaultdict(list)
+        self._verdicts: defaultdict[_Key, list[ClauseEvidence]] = defaultdict(list)
         self._qualities: dict[str, QualityRow] = {}
         self._concerned: defaultdict[str, dict[str, None]] = defaultdict(dict)  # the nodes that satisfice a quality
 
     def add(self, workspace: Workspace, path: str) -> None:
         """Add a mission: a file and all its includes."""
-        found = requirements(workspace, path)
+        resolved = requirements(workspace, path)
         meanings = Meanings(workspace, path)
         self._edition = self._edition or meanings.edition
         place = _places(workspace, self._shown)
-        for source in found.nodes.all:
+        for source in resolved.nodes.all:
             if id(source.node) not in self._nodes:
                 self._sources[id(source.node)] = source
                 self._places.setdefault(id(source.item), place(_tree_place(source)))
                 self._nodes[id(source.node)] = _node(f"n{len(self._nodes) + 1}", source, place(source.place))
         self._declared(workspace, path, meanings, place)
-        self._concerns(found, meanings, place)
-        self._definitions(found, meanings, place)
-        self._evidence(path, found)
-        own = self._add_uses(workspace, path, found, place)
-        for source in found.nodes.all:
+        self._concerns(resolved, meanings, place)
+        self._definitions(resolved, meanings, place)
+        self._evidence(path, resolved)
+        own = self._add_uses(workspace, path, resolved, place)
+        for source in resolved.nodes.all:
             node = self._nodes[id(source.node)]
-            carries: Carries = "own" if id(source) in own else "above" if _is_below(found, source, own) else "none"
+            carries: Carries = "own" if id(source) in own else "above" if _is_below(resolved, source, own) else "none"
             if _CARRIES.index(carries) > _CARRIES.index(node.carries):
                 self._nodes[id(source.node)] = replace(node, carries=carries)  # of several missions, the weakest
 
@@ -148,7 +148,7 @@ class _Collector:
         )
 
     def _linked(self, key: _Key, row: RequirementRow, is_of_one_mission: bool) -> RequirementRow:
-        evidence = sorted(self._seen[key], key=lambda one: WORST_FIRST.index(one.verdict))
+        evidence = sorted(self._verdicts[key], key=lambda one: WORST_FIRST.index(one.verdict))
         return replace(
             row,
             uses=tuple(self._uses[key]),
@@ -158,24 +158,24 @@ class _Collector:
 
     def _declared(self, workspace: Workspace, path: str, meanings: Meanings, place: Callable[[Place], At]) -> None:
         """Add user-defined qualities, whether used or not."""
-        for each in workspace.scope(path).paths:
-            for item in workspace.files[each].of_type(QualityDecl):
+        for other in workspace.scope(path).paths:
+            for item in workspace.files[other].of_type(QualityDecl):
                 if item.name is not None:
-                    self._quality(item.name.text, meanings, place(Place(item.name.span, each, item)))
+                    self._quality(item.name.text, meanings, place(Place(item.name.span, other, item)))
 
-    def _concerns(self, found: Requirements, meanings: Meanings, place: Callable[[Place], At]) -> None:
-        for source in found.nodes.all:
+    def _concerns(self, resolved: Requirements, meanings: Meanings, place: Callable[[Place], At]) -> None:
+        for source in resolved.nodes.all:
             for name, written in concerns(source):
-                at = place(Place(written.span, source.path, source.item))
-                key = self._quality(name, meanings, at)
+                location = place(Place(written.span, source.path, source.item))
+                key = self._quality(name, meanings, location)
                 self._concerned[key][self._nodes[id(source.node)].key] = None
                 note = Note("quality", key, name, text=f"satisfices {name}", link=f"#{key}")
                 self._notes[id(source.node)][name] = note
 
-    def _definitions(self, found: Requirements, meanings: Meanings, place: Callable[[Place], At]) -> None:
-        for requirement in found.all.values():
-            key, name, at = _place_of(requirement), requirement.quality, place(requirement.place)
-            quality = self._quality(name, meanings, at) if name is not None else None
+    def _definitions(self, resolved: Requirements, meanings: Meanings, place: Callable[[Place], At]) -> None:
+        for requirement in resolved.all.values():
+            key, name, location = _place_of(requirement), requirement.quality, place(requirement.place)
+            quality = self._quality(name, meanings, location) if name is not None else None
             if key not in self._requirements:
                 self._meanings[key] = meanings.of(name) if name is not None else _NO_MEANING
                 self._requirements[key] = RequirementRow(
@@ -185,43 +185,44 @@ class _Collector:
                     name,
                     quality,
                     tuple(_stated(requirement)),
-                    at,
+                    location,
                     uses=(),
                     loose=(),
                     is_hard=requirement.demands_enforcement and not requirement.is_verified_by_people,
                     evidence=(),
                 )
 
-    def _evidence(self, path: str, found: Requirements) -> None:
-        for each in self._verdicts_of(path) if self._verdicts_of is not None else ():
-            if (requirement := found.all.get(each.id)) is not None:
-                self._seen[_place_of(requirement)] += [
-                    ClauseEvidence(self._shown(path), one.text, one.path, one.verdict, result(one))
-                    for one in each.clauses
+    def _evidence(self, path: str, resolved: Requirements) -> None:
+        for verdicts in self._verdicts_of(path) if self._verdicts_of is not None else ():
+            if (requirement := resolved.all.get(verdicts.id)) is not None:
+                self._verdicts[_place_of(requirement)] += [
+                    ClauseEvidence(self._shown(path), clause.text, clause.path, clause.verdict, result(clause))
+                    for clause in verdicts.clauses
                 ]
 
-    def _quality(self, name: str, meanings: Meanings, at: At) -> str:
+    def _quality(self, name: str, meanings: Meanings, location: At) -> str:
         """The key of a quality, which is added if it is new."""
         meaning = meanings.of(name)
         id_ = meaning.id or name
         if id_ not in self._qualities:
-            key, of = f"q{len(self._qualities) + 1}", meaning.characteristic
-            self._qualities[id_] = QualityRow(key, name, meaning.id, of, meaning.definition, at, (), ())
+            key, characteristic = f"q{len(self._qualities) + 1}", meaning.characteristic
+            definition = meaning.definition
+            self._qualities[id_] = QualityRow(key, name, meaning.id, characteristic, definition, location, (), ())
         return self._qualities[id_].key
 
     def _add_uses(
-        self, workspace: Workspace, path: str, found: Requirements, place: Callable[[Place], At]
+        self, workspace: Workspace, path: str, resolved: Requirements, place: Callable[[Place], At]
     ) -> dict[int, None]:
         """Add what requirements hold for; returns the nodes that carry something themselves, by `id`."""
-        own = {id(source): None for source in found.nodes.all if any(True for _ in concerns(source))}
-        places = {each.name: _place_of(each) for each in found.all.values()}
-        loose = {(requirement.name, claim.text) for requirement, claim in found.about_no_node()}
-        for name in dict.fromkeys(each.requirement.name for each in found.applied):
-            known = self._loose.get(places[name], [claim.text for claim in found.all[name].claims])
-            self._loose[places[name]] = [text for text in known if (name, text) in loose]
-        measured = measured_by(found, self._verdicts_of(path)) if self._verdicts_of is not None else lambda _: ()
-        for applied, clauses in zip(found.applied, self._ways(workspace, path, found), strict=True):
-            at = places[applied.requirement.name]
+        own = {id(source): None for source in resolved.nodes.all if any(True for _ in concerns(source))}
+        places = {each.name: _place_of(each) for each in resolved.all.values()}
+        loose = {(requirement.name, claim.text) for requirement, claim in resolved.about_no_node()}
+        for name in dict.fromkeys(each.requirement.name for each in resolved.applied):
+            clauses_left = self._loose.get(places[name], [claim.text for claim in resolved.all[name].claims])
+            self._loose[places[name]] = [text for text in clauses_left if (name, text) in loose]
+        measured = measured_by(resolved, self._verdicts_of(path)) if self._verdicts_of is not None else lambda _: ()
+        for applied, clauses in zip(resolved.applied, self._ways(workspace, path, resolved), strict=True):
+            definition_key = places[applied.requirement.name]
             sources = applied.nodes
             own.update((id(source), None) for source in sources)
             use = AppliedRequirement(
@@ -232,18 +233,18 @@ class _Collector:
                 place(applied.place),
                 tuple(clauses),
             )
-            self._uses[at][use] = None
-            note = _note(self._requirements[at].key, applied, use, measured(applied))
+            self._uses[definition_key][use] = None
+            note = _note(self._requirements[definition_key].key, applied, use, measured(applied))
             for source in sources:
                 self._notes[id(source.node)].setdefault((note.key, use.arguments, tuple(note.lines)), note)
-        for trace in found.traces:
+        for trace in resolved.traces:
             own[id(trace.node)] = None
-            at, node, name = places[trace.requirement], id(trace.node.node), trace.requirement
+            definition_key, node, name = places[trace.requirement], id(trace.node.node), trace.requirement
             use = AppliedRequirement(
                 _name(trace.node), (self._nodes[node].key,), "link", "", place(trace.node.place), ()
             )
-            self._uses[at][use] = None
-            key, notes = self._requirements[at].key, self._notes[node]
+            self._uses[definition_key][use] = None
+            key, notes = self._requirements[definition_key].key, self._notes[node]
             if all(note.key != key for note in notes.values()):
                 notes[key] = Note("requirement", key, name, link=f"#{key}")
         return own
@@ -264,8 +265,8 @@ class _Collector:
             drawn = figure(group, keys, notes, links)
             if self._details_of is not None:
                 drawn = replace(drawn, boxes=tuple(map(_with_details, drawn.boxes, map(self._details_of, group))))
-            at = self._places[id(group[0].item)]
-            yield TreeRow(group[0].tree or "", at, tuple(row.key for row in rows), is_bare, drawn)
+            location = self._places[id(group[0].item)]
+            yield TreeRow(group[0].tree or "", location, tuple(row.key for row in rows), is_bare, drawn)
 
 
 def _with_details(box: Box, details: tuple[tuple[str, ...], str]) -> Box:
@@ -279,13 +280,13 @@ def _with_details(box: Box, details: tuple[tuple[str, ...], str]) -> Box:
 def _places(workspace: Workspace, shown: Callable[[str], str]) -> Callable[[Place], At]:
     shown_once = cache(shown)  # a file has thousands of places
 
-    def at(place: Place) -> At:
+    def location_of(place: Place) -> At:
         assert place.path is not None, "places of nodes and requirements have a path"
         file = workspace.files[place.path]
         position = file.source_lines.position(file.on_disk(file.span_of(place)).start)
         return At(shown_once(place.path), position.line + 1, position.column + 1)
 
-    return at
+    return location_of
 
 
 def _place_of(requirement: ResolvedRequirement) -> _Key:
@@ -299,20 +300,20 @@ def _tree_place(source: ResolvedNode) -> Place:
     return Place(name, source.path, tree)
 
 
-def _is_below(found: Requirements, source: ResolvedNode, own: dict[int, None]) -> bool:
+def _is_below(resolved: Requirements, source: ResolvedNode, own: dict[int, None]) -> bool:
     """Whether, on each path to a node through SubTree nodes, a node above carries something."""
     waiting = [source]
     seen: set[int] = set()
     is_below = False
     while waiting:
-        at = waiting.pop()
-        above = at.parent
+        node = waiting.pop()
+        above = node.parent
         while above is not None and id(above) not in own:
             above = above.parent
         if above is not None:
             is_below = True
             continue
-        callers = found.nodes.callers(at.tree)
+        callers = resolved.nodes.callers(node.tree)
         if not callers:
             return False
         for caller in callers:
@@ -333,9 +334,9 @@ def _subject(applied: Applied) -> str:
     return claim.text.partition(f" {claim.verb} ")[0]
 
 
-def _node(key: str, source: ResolvedNode, at: At) -> NodeRow:
+def _node(key: str, source: ResolvedNode, location: At) -> NodeRow:
     is_skill = source.kind is None and source.category != "SubTree" and not source.children
-    return NodeRow(key, _name(source), source.tree or "", source.category, is_skill, _CARRIES[0], at)
+    return NodeRow(key, _name(source), source.tree or "", source.category, is_skill, _CARRIES[0], location)
 
 
 def _name(source: ResolvedNode) -> str:
@@ -371,27 +372,30 @@ def _stated(requirement: ResolvedRequirement) -> Iterator[str]:
 
 
 def _totals(
-    edition: Edition, rows: Sequence[RequirementRow], quality_rows: Sequence[QualityRow], meant: Sequence[str | None]
+    edition: Edition,
+    rows: Sequence[RequirementRow],
+    quality_rows: Sequence[QualityRow],
+    by_requirement: Sequence[str | None],
 ) -> tuple[TotalRow, ...]:
     """A total for each product characteristic, each characteristic in use that is named, and the rest.
 
     Args:
-        meant: the characteristic of each requirement.
+        by_requirement: the characteristic of each requirement.
     """
     characteristics = [each.id for each in qualities(edition) if each.parent is None and each.kind == "product"]
-    named = (*meant, *(each.characteristic for each in quality_rows if each.concerns))
+    named = (*by_requirement, *(each.characteristic for each in quality_rows if each.concerns))
     characteristics += [each for each in dict.fromkeys(named) if each is not None and each not in characteristics]
     totals: list[TotalRow] = []
     for id_ in (*characteristics, None):
-        mine = [row for row, characteristic in zip(rows, meant, strict=True) if characteristic == id_]
-        clauses = [clause for row in mine for use in row.uses for clause in use.clauses]
+        own = [row for row, characteristic in zip(rows, by_requirement, strict=True) if characteristic == id_]
+        clauses = [clause for row in own for use in row.uses for clause in use.clauses]
         concerns = {key for each in quality_rows if each.characteristic == id_ for key in each.concerns}
-        if id_ is None and not mine and not concerns:
+        if id_ is None and not own and not concerns:
             continue
-        known = get(id_, edition) if id_ is not None else None
-        name = known.name if known is not None else id_ or "without a characteristic"
+        quality = get(id_, edition) if id_ is not None else None
+        name = quality.name if quality is not None else id_ or "without a characteristic"
         ways = [clause.way for clause in clauses]
-        totals.append(TotalRow(id_ or "", name, len(concerns), len(mine), *map(ways.count, WAYS)))
+        totals.append(TotalRow(id_ or "", name, len(concerns), len(own), *map(ways.count, WAYS)))
     return tuple(totals)
 
 

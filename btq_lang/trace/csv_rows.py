@@ -36,22 +36,23 @@ def _rows(overview: Overview) -> Iterator[dict[str, str | int]]:
     trees = {node.key: node.tree for node in overview.nodes}
     nodes = {node.key: node for node in overview.nodes}
     characteristics = {quality.key: quality.characteristic or "" for quality in overview.qualities}
-    for each in overview.requirements:
-        row = _requirement(each, characteristics.get(each.quality_key or "", ""))
-        if not each.uses:
-            yield {"kind": "requirement without node", **row, "clause": "; ".join(each.clauses)}
-        for use in each.uses:
+    for requirement in overview.requirements:
+        row = _requirement(requirement, characteristics.get(requirement.quality_key or "", ""))
+        if not requirement.uses:
+            yield {"kind": "requirement without node", **row, "clause": "; ".join(requirement.clauses)}
+        for use in requirement.uses:
             tree = trees[use.nodes[0]] if use.nodes else ""
-            held = {**row, "holds_for": use.subject + use.arguments, "tree": tree, "attached_by": use.how}
+            applied = {**row, "holds_for": use.subject + use.arguments, "tree": tree, "attached_by": use.how}
             for clause in use.clauses or (None,):
-                yield {"kind": "requirement", **held, **_clause(clause), **_source(use.at)}
-        for loose in each.loose:
+                yield {"kind": "requirement", **applied, **_clause(clause), **_source(use.at)}
+        for loose in requirement.loose:
             yield {"kind": "clause without node", **row, "clause": loose}
-        for one in each.evidence:
-            seen = {"holds_for": one.path, "clause": one.clause, "verdict": one.verdict, "result": one.result}
-            yield {"kind": "evidence", **row, **seen, **({"source": one.mission} if one.mission else {})}
-    for each in overview.unenforced:
-        row = _requirement(each, characteristics.get(each.quality_key or "", ""))
+        for evidence in requirement.evidence:
+            verdict = {"clause": evidence.clause, "verdict": evidence.verdict, "result": evidence.result}
+            source = {"source": evidence.mission} if evidence.mission else {}
+            yield {"kind": "evidence", **row, "holds_for": evidence.path, **verdict, **source}
+    for requirement in overview.unenforced:
+        row = _requirement(requirement, characteristics.get(requirement.quality_key or "", ""))
         yield {"kind": "hard requirement not enforced", **row}
     for quality in overview.qualities:
         named = {"quality": quality.id or quality.name, "characteristic": quality.characteristic or ""}
@@ -67,14 +68,14 @@ def _rows(overview: Overview) -> Iterator[dict[str, str | int]]:
         yield {"kind": "tree without quality", "holds_for": bare.name, "tree": bare.name, **_source(bare.at)}
 
 
-def _requirement(each: RequirementRow, characteristic: str) -> dict[str, str | int]:
+def _requirement(requirement: RequirementRow, characteristic: str) -> dict[str, str | int]:
     return {
-        "requirement": each.name,
-        "title": each.title,
-        "quality": each.quality or "",
+        "requirement": requirement.name,
+        "title": requirement.title,
+        "quality": requirement.quality or "",
         "characteristic": characteristic,
-        "defined": each.at.path,
-        "defined_line": each.at.line,
+        "defined": requirement.at.path,
+        "defined_line": requirement.at.line,
     }
 
 
@@ -82,8 +83,8 @@ def _clause(clause: Clause | None) -> dict[str, str | int]:
     return {"clause": clause.text, "how": clause.way, "why": clause.why} if clause is not None else {}
 
 
-def _source(at: At) -> dict[str, str | int]:
-    return {"source": at.path, "line": at.line}
+def _source(place: At) -> dict[str, str | int]:
+    return {"source": place.path, "line": place.line}
 
 
 COLUMNS: Final = (

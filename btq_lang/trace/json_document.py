@@ -85,18 +85,18 @@ def render(overview: Overview) -> str:
     return json.dumps(document, indent=1) + "\n"
 
 
-def _requirement(each: RequirementRow, has_evidence: bool) -> Json:
+def _requirement(requirement: RequirementRow, has_evidence: bool) -> Json:
     return {
-        "key": each.key,
-        "id": each.name,
-        "title": each.title,
-        "quality": each.quality,
-        "quality_key": each.quality_key,
-        "how": each.way,
-        "clauses": list(each.clauses),
-        "at": as_dict(each.at),
-        "clauses_without_nodes": list(each.loose),
-        "evidence": [as_dict(one) for one in each.evidence] if has_evidence else None,
+        "key": requirement.key,
+        "id": requirement.name,
+        "title": requirement.title,
+        "quality": requirement.quality,
+        "quality_key": requirement.quality_key,
+        "how": requirement.way,
+        "clauses": list(requirement.clauses),
+        "at": as_dict(requirement.at),
+        "clauses_without_nodes": list(requirement.loose),
+        "evidence": [as_dict(clause) for clause in requirement.evidence] if has_evidence else None,
         "holds_for": [
             {
                 "subject": use.subject,
@@ -104,13 +104,13 @@ def _requirement(each: RequirementRow, has_evidence: bool) -> Json:
                 "arguments": use.arguments,
                 "at": as_dict(use.at),
                 "attached_by": use.how,
-                "clauses": [{"text": one.text, "how": one.way, "why": one.why} for one in use.clauses],
+                "clauses": [{"text": clause.text, "how": clause.way, "why": clause.why} for clause in use.clauses],
             }
-            for use in each.uses
+            for use in requirement.uses
         ],
     }
 
 
-def _total(each: CharacteristicTotals) -> Json:
-    fields = as_dict(each)
+def _total(totals: CharacteristicTotals) -> Json:
+    fields = as_dict(totals)
     return {"characteristic": fields.pop("id") or None, **fields}

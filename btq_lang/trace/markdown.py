@@ -38,24 +38,26 @@ def _lines(overview: Overview) -> Iterator[str]:
     yield from table(("Characteristic", "Concerns", "Requirements", "Enforced", "Monitored", "Reviewed"), totals, 1)
 
 
-def _requirement(each: RequirementRow, has_evidence: bool) -> tuple[str, ...]:
-    cell = [f"**{escaped(each.name)}**", *([escaped(each.title)] if each.title else [])]
-    cell += [code(clause) for clause in each.clauses]
-    subjects = [", ".join((_node(use.subject + use.arguments, use.at), *remarks(each, use))) for use in each.uses]
-    how = "<br>".join((each.way, *each.whys))
-    seen = "<br>".join(f"**{verdict}** {escaped(text)}" for verdict, text in evidence_lines(each)) or "none"
+def _requirement(requirement: RequirementRow, has_evidence: bool) -> tuple[str, ...]:
+    cell = [f"**{escaped(requirement.name)}**", *([escaped(requirement.title)] if requirement.title else [])]
+    cell += [code(clause) for clause in requirement.clauses]
+    subjects = [
+        ", ".join((_node(use.subject + use.arguments, use.at), *remarks(requirement, use))) for use in requirement.uses
+    ]
+    how = "<br>".join((requirement.way, *requirement.whys))
+    evidence = "<br>".join(f"**{verdict}** {escaped(text)}" for verdict, text in evidence_lines(requirement)) or "none"
     return (
         "<br>".join(cell),
-        escaped(each.quality or ""),
+        escaped(requirement.quality or ""),
         "<br>".join(subjects) or "nothing",
         how,
-        *((seen,) if has_evidence else ()),
-        escaped(str(each.at)),
+        *((evidence,) if has_evidence else ()),
+        escaped(str(requirement.at)),
     )
 
 
 def _gaps(overview: Overview) -> Iterator[str]:
-    found = {
+    gaps = {
         "unenforced": [f"{escaped(each.name)} ({each.at})" for each in overview.unenforced],
         "unmeasured": [f"{escaped(shown_quality(each))} ({each.at})" for each in overview.unmeasured],
         "unattached": [f"{escaped(each.name)} ({each.at})" for each in overview.unattached],
@@ -63,13 +65,13 @@ def _gaps(overview: Overview) -> Iterator[str]:
         "bare_trees": [_node(each.name, each.at) for each in overview.bare_trees],
         "bare_nodes": [_node(each.name, each.at) for each in overview.bare_nodes],
     }
-    if not any(found.values()):
+    if not any(gaps.values()):
         return
     yield from ("", "### Gaps", "")
-    for gap, lines in found.items():
+    for gap, lines in gaps.items():
         if lines:
             yield f"* {GAPS[gap]}: {', '.join(lines)}"
 
 
-def _node(name: str, at: object) -> str:
-    return f"{code(name)} ({escaped(str(at))})"
+def _node(name: str, place: object) -> str:
+    return f"{code(name)} ({escaped(str(place))})"

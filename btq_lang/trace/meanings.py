@@ -37,8 +37,8 @@ class Meanings:
             for item in workspace.files[each].of_type(Qualities):
                 word = item.edition.text if item.edition is not None else word
         self.edition: Edition = EDITIONS.get(word, DEFAULT_EDITION)
-        found = {fold(name): scope.find(Kind.QUALITY, name) for name in scope.names(Kind.QUALITY)}
-        targets = {name: each.symbol.target for name, each in found.items() if each is not None}
+        definitions = {fold(name): scope.find(Kind.QUALITY, name) for name in scope.names(Kind.QUALITY)}
+        targets = {name: each.symbol.target for name, each in definitions.items() if each is not None}
         self._own = {name: each for name, each in targets.items() if isinstance(each, QualityDecl)}
 
     def of(self, name: str) -> NameMeaning:
@@ -50,14 +50,14 @@ class Meanings:
             name = declared.parent.text if declared.parent is not None else ""
             declared = self._own.get(fold(name.rpartition(".")[2]))
         ids = [each.name.text for each in own if each.name is not None]
-        known = self._in_model(name) if name and declared is None else None
-        model = [known.id, *([known.parent] if known.parent else [])] if known is not None else []
+        quality = self._in_model(name) if name and declared is None else None
+        model = [quality.id, *([quality.parent] if quality.parent else [])] if quality is not None else []
         if own:
             text = own[0].text.text if own[0].text is not None else ""
-            return NameMeaning(ids[0], (*ids[1:], *model), self._characteristic(known), text)
-        if known is None:
+            return NameMeaning(ids[0], (*ids[1:], *model), self._characteristic(quality), text)
+        if quality is None:
             return NameMeaning(None, (), None, "")
-        return NameMeaning(known.id, tuple(model[1:]), self._characteristic(known), known.definition)
+        return NameMeaning(quality.id, tuple(model[1:]), self._characteristic(quality), quality.definition)
 
     def _in_model(self, name: str) -> Quality | None:
         match = find(tuple(name.split(".")), self.edition)

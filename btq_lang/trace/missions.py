@@ -82,24 +82,24 @@ def trace_tables(
         bundled: they are built with all their includes.
         details_of, verdicts_of: as in `collect`.
     """
-    errors = {path: number for workspace, given in parts for path, number in _errors(workspace, given)}
+    errors = {path: number for workspace, requested in parts for path, number in _errors(workspace, requested)}
     broken = frozenset(path for path, number in errors.items() if number)
 
-    def ways(workspace: Workspace, path: str, found: Requirements) -> Sequence[Sequence[Clause]]:
+    def ways(workspace: Workspace, path: str, resolved: Requirements) -> Sequence[Sequence[Clause]]:
         if not broken.isdisjoint(workspace.closure(path)):
-            return declared_ways(workspace, path, found, "btq build writes nothing for a mission with errors")
+            return declared_ways(workspace, path, resolved, "btq build writes nothing for a mission with errors")
         is_built = is_mission(workspace, path)
-        return built_ways(workspace, path, found, bundled) if is_built else declared_ways(workspace, path, found)
+        return built_ways(workspace, path, resolved, bundled) if is_built else declared_ways(workspace, path, resolved)
 
     overview = collect(parts, ways, shown, details_of, verdicts_of)
     return TraceTable(replace(overview, errors=sum(errors.values())))
 
 
 def built_ways(
-    workspace: Workspace, path: str, found: Requirements, bundled: bool = False
+    workspace: Workspace, path: str, resolved: Requirements, bundled: bool = False
 ) -> Sequence[Sequence[Clause]]:
     """How clauses are covered in the output of `btq build`, or as declared if the mission cannot be built."""
-    declared = declared_ways(workspace, path, found)
+    declared = declared_ways(workspace, path, resolved)
     enforced = as_xml(workspace, path, bundled=bundled).clauses
     if not enforced:
         return declared
@@ -110,8 +110,8 @@ def built_ways(
     ]
 
 
-def _errors(workspace: Workspace, given: Sequence[str]) -> list[tuple[str, int]]:
+def _errors(workspace: Workspace, requested: Sequence[str]) -> list[tuple[str, int]]:
     """How many errors each file has, included files too."""
-    paths = dict.fromkeys(path for each in given for path in workspace.closure(each))
-    found = zip(paths, check_each(workspace, paths), strict=True)
-    return [(path, sum(each.effective_severity is Severity.ERROR for each in of_file)) for path, of_file in found]
+    paths = dict.fromkeys(path for each in requested for path in workspace.closure(each))
+    checked = zip(paths, check_each(workspace, paths), strict=True)
+    return [(path, sum(each.effective_severity is Severity.ERROR for each in of_file)) for path, of_file in checked]

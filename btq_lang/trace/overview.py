@@ -116,15 +116,17 @@ class RequirementRow(Record):
         """How it is covered: one way, or `enforced, monitored` or `enforced, not attached` if clauses differ, or `not
         attached`.
         """
-        found = {clause.way for use in self.uses for clause in use.clauses}
-        ways: list[str] = [way for way in WAYS if way in found] or (["linked"] if self.uses else [])
+        covered = {clause.way for use in self.uses for clause in use.clauses}
+        ways: list[str] = [way for way in WAYS if way in covered] or (["linked"] if self.uses else [])
         return ", ".join(ways if ways and not self.loose else [*ways, "not attached"])
 
     @property
     def whys(self) -> tuple[str, ...]:
         """Why its clauses are not covered better, each reason once."""
-        found = [clause.why for use in self.uses for clause in use.clauses if clause.way == "monitored" and clause.why]
-        return tuple(dict.fromkeys((*found, *(f"`{clause}` applies to no node" for clause in self.loose))))
+        reasons = [
+            clause.why for use in self.uses for clause in use.clauses if clause.way == "monitored" and clause.why
+        ]
+        return tuple(dict.fromkeys((*reasons, *(f"`{clause}` applies to no node" for clause in self.loose))))
 
 
 class QualityRow(Record):

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.catalog.units import Unit, parse_unit
 from btq_lang.evidence.verdicts import OUTCOMES
 from btq_lang.evidence.wording import duration, quantity, timestamp
-from btq_lang.render.axis import round_values
+from btq_lang.render.chart import round_values
 from btq_lang.util.grouping import grouped
 from btq_lang.util.record import Record
 from btq_lang.util.text import counted

@@ -36,7 +36,7 @@ def _lines(overview: Overview, paint: Paint, width: int) -> Iterator[str]:
         yield ""
     nodes = {node.key: node for node in overview.nodes}
     concerns = [
-        ((shown_quality(each),), [f"{nodes[key].name}, {_at(nodes[key].at, folder)}" for key in each.concerns])
+        ((shown_quality(each),), [f"{nodes[key].name}, {_place(nodes[key].at, folder)}" for key in each.concerns])
         for each in overview.qualities
         if each.concerns
     ]
@@ -44,12 +44,12 @@ def _lines(overview: Overview, paint: Paint, width: int) -> Iterator[str]:
         yield from _table(("Concern", "Nodes"), concerns, paint, width)
         yield ""
     gaps = {
-        "unenforced": [f"{each.name}, {_at(each.at, folder)}" for each in overview.unenforced],
-        "unmeasured": [f"{shown_quality(each)}, {_at(each.at, folder)}" for each in overview.unmeasured],
-        "unattached": [f"{each.name}, {_at(each.at, folder)}" for each in overview.unattached],
-        "loose": [f"{each.name}, {_at(each.at, folder)}: {clause}" for each, clause in overview.loose],
-        "bare_trees": [f"{each.name}, {_at(each.at, folder)}" for each in overview.bare_trees],
-        "bare_nodes": [f"{each.name}, {_at(each.at, folder)}" for each in overview.bare_nodes],
+        "unenforced": [f"{each.name}, {_place(each.at, folder)}" for each in overview.unenforced],
+        "unmeasured": [f"{shown_quality(each)}, {_place(each.at, folder)}" for each in overview.unmeasured],
+        "unattached": [f"{each.name}, {_place(each.at, folder)}" for each in overview.unattached],
+        "loose": [f"{each.name}, {_place(each.at, folder)}: {clause}" for each, clause in overview.loose],
+        "bare_trees": [f"{each.name}, {_place(each.at, folder)}" for each in overview.bare_trees],
+        "bare_nodes": [f"{each.name}, {_place(each.at, folder)}" for each in overview.bare_nodes],
     }
     for gap, lines in gaps.items():
         if lines:
@@ -73,22 +73,27 @@ def _folder(overview: Overview) -> str:
     return os.path.commonpath(folders).replace(os.sep, "/") if folders and are_below else ""
 
 
-def _at(at: At, folder: str) -> str:
-    return str(at).removeprefix(f"{folder}/") if folder else str(at)
+def _place(place: At, folder: str) -> str:
+    return str(place).removeprefix(f"{folder}/") if folder else str(place)
 
 
-def _requirement(each: RequirementRow, folder: str) -> tuple[Sequence[str], ...]:
+def _requirement(requirement: RequirementRow, folder: str) -> tuple[Sequence[str], ...]:
     subjects = [
-        ", ".join((f"{use.subject}{use.arguments}", _at(use.at, folder), *remarks(each, use))) for use in each.uses
+        ", ".join((f"{use.subject}{use.arguments}", _place(use.at, folder), *remarks(requirement, use)))
+        for use in requirement.uses
     ]
-    lines = [f"{each.name}, {_at(each.at, folder)}", *([each.title] if each.title else []), *each.clauses]
-    lines += [f"for {each.quality}"] if each.quality else []
+    lines = [
+        f"{requirement.name}, {_place(requirement.at, folder)}",
+        *([requirement.title] if requirement.title else []),
+        *requirement.clauses,
+    ]
+    lines += [f"for {requirement.quality}"] if requirement.quality else []
     lines[1:] = [f"  {line}" for line in lines[1:]]
-    return lines, subjects or ("nothing",), (*each.way.split(", "), *each.whys)
+    return lines, subjects or ("nothing",), (*requirement.way.split(", "), *requirement.whys)
 
 
-def _evidence(each: RequirementRow) -> Sequence[str]:
-    lines = [line for verdict, text in evidence_lines(each) for line in (verdict, f"  {text}")]
+def _evidence(requirement: RequirementRow) -> Sequence[str]:
+    lines = [line for verdict, text in evidence_lines(requirement) for line in (verdict, f"  {text}")]
     return lines or ("none",)
 
 
@@ -98,7 +103,8 @@ def _table(
     """A table whose cells are lines; the first line of the first cell is the row's subject."""
     cells = [[[printable(line) for line in cell] for cell in row] for row in rows]
     widths = [
-        max(cells_of(title), *(cells_of(line) for row in cells for line in row[at])) for at, title in enumerate(heading)
+        max(cells_of(title), *(cells_of(line) for row in cells for line in row[index]))
+        for index, title in enumerate(heading)
     ]
     widths = narrowed(widths, width - _BETWEEN * (len(widths) - 1))
     titles = [
@@ -111,17 +117,17 @@ def _table(
         in_lines = [
             [part for line in cell for part in broken(line, room)] for cell, room in zip(row, widths, strict=True)
         ]
-        for at, line in enumerate(zip_longest(*in_lines, fillvalue="")):
-            yield _row(line, widths, numbers_from, paint, "message" if at == 0 else "")
+        for index, line in enumerate(zip_longest(*in_lines, fillvalue="")):
+            yield _row(line, widths, numbers_from, paint, "message" if index == 0 else "")
 
 
 def _row(cells: Sequence[str], widths: Sequence[int], numbers_from: int, paint: Paint, style: str = "") -> str:
     """A line of cells; style: of its first cell."""
     parts = []
-    for at, (cell, room) in enumerate(zip(cells, widths, strict=True)):
+    for index, (cell, room) in enumerate(zip(cells, widths, strict=True)):
         blanks = " " * (room - cells_of(cell))
-        shown = paint(_WAYS.get(cell, "message"), cell) if cell in _WAYS or (style and at == 0) else cell
-        parts.append(blanks + shown if at >= numbers_from else shown + blanks)
+        shown = paint(_WAYS.get(cell, "message"), cell) if cell in _WAYS or (style and index == 0) else cell
+        parts.append(blanks + shown if index >= numbers_from else shown + blanks)
     return (" " * _BETWEEN).join(parts).rstrip()
 
 

@@ -6,14 +6,15 @@ One invariant: every fact in a drawing is also in a text, and colour is never th
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from html import escape
+from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.folding import folded_sources
 from btq_lang.evidence.node_rows import node_columns
 from btq_lang.evidence.sentences import headline, reason, result
 from btq_lang.evidence.verdicts import VIOLATED, WORST_FIRST
-from btq_lang.evidence.wording import clock_time, duration
-from btq_lang.trace.histogram import histogram
+from btq_lang.evidence.wording import clock_time, duration, quantity
 from btq_lang.trace.run_figure import Breach, run_figure
 from btq_lang.util.grouping import grouped
 from btq_lang.util.text import counted
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.node_rows import Column
     from btq_lang.evidence.verdicts import (
         ClauseVerdict,
+        Histogram,
         MissionVerdicts,
         NodeSummary,
         RequirementVerdict,
@@ -108,7 +110,7 @@ def _violating(requirement: str, clause: ClauseVerdict, medians: Mapping[str, fl
     drawn = clause.timeline.run if clause.timeline is not None else None
     rows = [_row(clause, violation, drawn, medians) for violation in clause.violations]
     shown = _SHOWN if clause.verdict == VIOLATED else 0
-    rest = clause.violated - len(rows)
+    unlisted = clause.violated - len(rows)
     caption = f"Runs that violate {requirement}: {clause.text}"
     more = counted(len(rows) - shown, "more violation" if shown else "violation")
     return {
@@ -117,7 +119,7 @@ def _violating(requirement: str, clause: ClauseVerdict, medians: Mapping[str, fl
         "more": rows[shown:],
         "more_summary": f"{more} of {requirement}",
         "more_caption": f"{caption}, continued" if shown else caption,
-        "not_listed": f"{counted(rest, 'violation')} more of {requirement} not listed." if rest > 0 else "",
+        "not_listed": f"{counted(unlisted, 'violation')} more of {requirement} not listed." if unlisted > 0 else "",
     }
 
 
@@ -132,3 +134,52 @@ def _row(clause: ClauseVerdict, violation: Violation, drawn: int | None, medians
 
 
 _SHOWN: Final = 10
+
+
+# ---- the distribution of what a clause measured ----
+
+
+def histogram(distribution: Histogram) -> str:
+    """The steps as bars, with a line for each mark."""
+    counts, marks, unit = distribution.counts, distribution.marks, distribution.unit
+    edges = [distribution.low + index * distribution.step for index in range(len(counts) + 1)]
+    low = min(edges[0], *(mark.si for mark in marks.values()))
+    high = max(edges[-1], *(mark.si for mark in marks.values()))
+    span = high - low or 1.0
+    ceiling = _TEXT * len(marks)
+
+    def across(value: float) -> float:
+        return round(_EDGE + (value - low) / span * (_WIDE - 2 * _EDGE), 1)
+
+    label = f"{counted(sum(counts), 'value')} from {quantity(edges[0], unit)} to {quantity(edges[-1], unit)}; "
+    label += ", ".join(f"{kind} {mark.text}" for kind, mark in marks.items())
+    parts = [f'<svg class="histogram" viewBox="0 0 {_WIDE} {_HIGH}" role="img" aria-label="{escape(label)}">']
+    for number, (left, right) in zip(counts, pairwise(edges), strict=True):
+        if number:
+            x = across(left)
+            height = max(round(number / max(counts) * (_GROUND - ceiling), 1), 1.0)
+            wide = min(max(across(right) - x, 1), _WIDEST)
+            parts.append(
+                f'<rect class="bin" x="{x}" y="{_GROUND - height:g}" width="{wide:.1f}" height="{height:g}">'
+                f"<title>{number} from {escape(quantity(left, unit))} to {escape(quantity(right, unit))}</title></rect>"
+            )
+    parts.append(f'<path class="axis" d="M{_EDGE} {_GROUND}H{_WIDE - _EDGE}"/>')
+    for line, (kind, mark) in enumerate(marks.items()):
+        x, y = across(mark.si), _TEXT * (line + 1) - 2
+        anchor = "end" if x > _WIDE / 2 else "start"
+        shift = -3 if anchor == "end" else 3
+        parts.append(f'<path class="{kind.rpartition(" ")[2]}" d="M{x} {_TEXT * line}V{_GROUND}"/>')
+        parts.append(f'<text x="{x + shift:g}" y="{y}" style="text-anchor: {anchor}">{kind} {escape(mark.text)}</text>')
+    ends = [(_EDGE, "start", low), (_WIDE - _EDGE, "end", high)]
+    for x, anchor, value in ends if high - low > distribution.step else ends[:1]:  # where all are alike, one number
+        text = escape(quantity(value, unit))
+        parts.append(f'<text x="{x}" y="{_HIGH - 3}" style="text-anchor: {anchor}">{text}</text>')
+    return "".join(parts) + "</svg>"
+
+
+_WIDE: Final = 300  # pixels
+_HIGH: Final = 110
+_GROUND: Final = 92
+_TEXT: Final = 13
+_EDGE: Final = 6
+_WIDEST: Final = 24  # a bar, where there are few

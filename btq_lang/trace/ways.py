@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 
 
 def declared_ways(
-    workspace: Workspace, path: str, found: Requirements, because: str = ""
+    workspace: Workspace, path: str, resolved: Requirements, because: str = ""
 ) -> Sequence[Sequence[Clause]]:
     """Every claim as monitored, or as reviewed if people verify the requirement.
 
     Args:
         because: the reason to give for claims that the engine must enforce.
     """
-    return [_clauses(applied, because) for applied in found.applied]
+    return [_clauses(applied, because) for applied in resolved.applied]
 
 
 def _clauses(applied: Applied, because: str) -> tuple[Clause, ...]:

@@ -22,24 +22,26 @@ def summary(overview: Overview) -> str:
     """All counts, in a sentence."""
     ways: dict[str, int] = {way: sum(getattr(total, way) for total in overview.totals) for way in WAYS}
     ways["without a node"] = len(overview.loose)
-    held = ", ".join(f"{number} {way}" for way, number in ways.items() if number)
+    covered = ", ".join(f"{number} {way}" for way, number in ways.items() if number)
     sentence = f"{counted(len(overview.requirements), 'requirement')}"
-    sentence += f" ({counted(sum(ways.values()), 'clause')}: {held})" if held else ""
+    sentence += f" ({counted(sum(ways.values()), 'clause')}: {covered})" if covered else ""
     if hard := len(overview.unenforced):
         sentence += f", {hard} of them hard (on violation fail or halt) and not enforced everywhere"
     sentence += f", {counted(len(overview.qualities), 'quality', 'qualities')}"
     skills = overview.coverage()
     if not sum(skills.values()):
         return f"{sentence}."
-    of = f"{sentence}; of {counted(sum(skills.values()), 'custom leaf node')}, {skills['own']}"
-    of += " carries" if skills["own"] == 1 else " carry"
-    return f"{of} a quality or a requirement, {skills['above']} only through a node above, {skills['none']} not at all."
+    whole = f"{sentence}; of {counted(sum(skills.values()), 'custom leaf node')}, {skills['own']}"
+    whole += " carries" if skills["own"] == 1 else " carry"
+    return (
+        f"{whole} a quality or a requirement, {skills['above']} only through a node above, {skills['none']} not at all."
+    )
 
 
 def shown_quality(quality: QualityRow) -> str:
     """A quality's name, with the model's name if that differs."""
-    known = quality.id
-    return quality.name if known is None or known.endswith(quality.name) else f"{quality.name} ({known})"
+    id_ = quality.id
+    return quality.name if id_ is None or id_.endswith(quality.name) else f"{quality.name} ({id_})"
 
 
 def evidence_lines(requirement: RequirementRow) -> Iterator[tuple[Verdict, str]]:
@@ -47,12 +49,15 @@ def evidence_lines(requirement: RequirementRow) -> Iterator[tuple[Verdict, str]]
     in them.
     """
     of_all = requirement.evidence
-    for each in of_all:
-        parts = [each.mission] if each.mission else []
-        parts += [each.clause] if any(one.clause != each.clause for one in of_all) else []
-        if any((one.mission, one.clause) == (each.mission, each.clause) and one.path != each.path for one in of_all):
-            parts += [f"at {each.path}"] if each.path else []
-        yield each.verdict, f"{' '.join(parts)}: {each.result}" if parts else each.result
+    for evidence in of_all:
+        parts = [evidence.mission] if evidence.mission else []
+        parts += [evidence.clause] if any(one.clause != evidence.clause for one in of_all) else []
+        if any(
+            (one.mission, one.clause) == (evidence.mission, evidence.clause) and one.path != evidence.path
+            for one in of_all
+        ):
+            parts += [f"at {evidence.path}"] if evidence.path else []
+        yield evidence.verdict, f"{' '.join(parts)}: {evidence.result}" if parts else evidence.result
 
 
 def remarks(requirement: RequirementRow, use: AppliedRequirement) -> Iterator[str]:

@@ -129,7 +129,7 @@ def test_a_number_keeps_its_unit() -> None:
 
 
 def rectangles(drawing: Drawing) -> list[Rectangle]:
-    return [at for box in drawing.boxes for at in (box.at, *(note.at for note in box.notes))]
+    return [at for box in drawing.boxes for at in (box.area, *(note.area for note in box.notes))]
 
 
 def apart(one: Rectangle, other: Rectangle) -> bool:

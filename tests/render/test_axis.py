@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from btq_lang.render.axis import round_values
+from btq_lang.render.chart import round_values
 
 
 @pytest.mark.parametrize(

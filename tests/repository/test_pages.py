@@ -24,11 +24,10 @@ WRITERS = {
     "evidence/compare/markdown.py": "Markdown, in which only HTML folds and ends a line",
     "evidence/markdown.py": "Markdown, in which only HTML ends a line of a table",
     "graph/mermaid.py": "Mermaid, in which only HTML ends a line",
-    "graph/sparkline.py": "SVG, the title of a drawing",
     "graph/svg.py": "SVG, its links, its style sheet and the titles of boxes",
     "render/chart.py": "SVG, the titles of values and marks",
-    "trace/histogram.py": "SVG, the titles of bars",
     "trace/markdown.py": "Markdown, in which only HTML ends a line of a table",
+    "trace/verdicts.py": "SVG, the titles of bars",
 }
 # What a template may put on the page as it is: drawings and style sheets, made by the writers above.
 SAFE = {

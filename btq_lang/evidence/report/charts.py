@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.catalog.units import from_si, to_si
 from btq_lang.evidence.wording import measured as written
 from btq_lang.evidence.wording import moment
-from btq_lang.render.axis import round_values
-from btq_lang.render.chart import Chart, ChartMark, ChartSeries, Level, drawn
+from btq_lang.render.chart import Chart, ChartMark, ChartSeries, Level, drawn, round_values
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
