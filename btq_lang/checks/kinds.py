@@ -468,7 +468,7 @@ def _tree_as_node(view: View, resolved: ResolvedNode, name: Word) -> Diagnostic:
 
 
 def _bare_subtrees(view: View) -> Iterator[Diagnostic]:
-    """`PickPlace` where only a model `SubTree PickPlace` declares it: version 3 runs the tree, version 4 knows no such
+    """`PickPlace` where only a model `SubTree PickPlace` declares it: version 3 runs the tree, version 4 refuses the
     node."""
     bare = [resolved for resolved in view.seen.subtrees if resolved.node.category is None]
     if bare and (not view.is_xml or view.ask(is_for_version_4)):
