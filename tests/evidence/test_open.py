@@ -119,7 +119,8 @@ def test_markdown(verify: Verify) -> None:
 
 def test_page(verify: Verify) -> None:
     page = verify.text(*folder(verify, JUDGED + OPEN), "--format", "html")
-    open_rows = re.findall(r'<tr data-note="r\d+"><td><span class="verdict open">open</span></td>(.*?)</tr>', page)
+    open_row = r'<tr data-note="r\d+">\s*<td><span class="verdict open">open</span></td>(.*?)</tr>'
+    open_rows = re.findall(open_row, page, re.DOTALL)
     assert [re.sub("<[^>]*>", " ", row).split() for row in open_rows] == [
         ["kind", "Nobody", "is", "startled", "verified", "by", "analysis"],
         ["calm", *NO_CLAUSE.split()],
