@@ -99,8 +99,7 @@ def handling(store: Store[Workspace], viewpoint: str, tree: str) -> Handling:
 def _mentions(view: View, path: str, tree: Facts) -> Iterator[EntryMention]:
     for resolved, pair, value in view.seen_in(path, tree).values():
         if "{" in value.raw and (name := pointed_at(pair.key.text, value.text)) is not None:
-            inner = value.span if name == pair.key.text else _inside(value, name)
-            yield EntryMention(name, inner, resolved, *_use(view, resolved, pair), False)
+            yield EntryMention(name, _inside(value, name), resolved, *_use(view, resolved, pair), False)
         elif is_script(resolved, pair):
             yield from _in_script(view, resolved, value)
         elif resolved.kind is not None and (port := resolved.kind.port(pair.key.text)) and port.content == "key":
@@ -322,7 +321,7 @@ def _use(view: View, resolved: ResolvedNode, pair: Pair) -> tuple[bool, bool, bo
 
 
 def _inside(value: Word, name: str) -> Span:
-    """The name in `{name}`, in quotes or not."""
+    """The name in `{name}`, in quotes or not; all of `{=}`."""
     offset = value.raw.find(name)
     start = value.start + offset
     return Span(start, start + len(name)) if offset > 0 else value.span

@@ -17,7 +17,7 @@ from btq_lang.checks.entries import EntryMention, blackboards
 from btq_lang.checks.entries import mentions as mentions_in
 from btq_lang.checks.strings import in_source, moved
 from btq_lang.checks.view import View
-from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix, write_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix, write_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Tree, Verbatim
 from btq_lang.util.record import replace
@@ -179,11 +179,16 @@ def _diagnostic(mentions: Iterable[EntryMention], mention: EntryMention, meant: 
         message = f"nothing writes `{name}`, which is read here; did you mean `{meant}`?"
     elif not mention.reads and mention.writes:
         message = f"nothing reads `{name}`, which is written here; did you mean `{meant}`?"
-    fixes = [replace_fix(f"Replace `{name}` with `{meant}`", mention.span, meant)]
+    fixes = [_renaming(mention, meant)]
     if is_single and other is not None:
-        fixes.append(replace_fix(f"Replace `{meant}` with `{name}`", other.span, name))
+        fixes.append(_renaming(other, name))
     related = (Related(Place(other.span), f"`{meant}`"),) if other is not None else ()
     return Diagnostic("misspelt-entry", mention.span, message, related=related, fixes=tuple(fixes))
+
+
+def _renaming(mention: EntryMention, name: str) -> Fix:
+    is_bare = len(mention.name) == mention.span.end - mention.span.start  # else it is `{=}`
+    return replace_fix(f"Replace `{mention.name}` with `{name}`", mention.span, name if is_bare else f"{{{name}}}")
 
 
 def _by_piece(names: Iterable[str]) -> dict[str, list[str]]:

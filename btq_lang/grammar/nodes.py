@@ -616,7 +616,7 @@ def at_ports(cursor: Cursor) -> bool:
         cursor.kind != OPEN
         or cursor.kinds[first] != NAME
         or cursor.raws[first] in _NO_PORTS
-        or "=" in cursor.raws[first:]
+        or ("=" in cursor.raws[first:] and cursor.raws[first + 1] != ":")
     ):
         return False
     return cursor.kinds[first + 1] in (NAME, CLOSE) or cursor.raws[first + 1] in (":", ",", "::")
@@ -636,7 +636,8 @@ def ports_in_brackets(cursor: Cursor, owner: str) -> None:
         step = below[1] if below else "    "
         gone = FixEdit(Place(Span(cursor.last_end() + cursor.base, cursor.starts[closing] + 1)), "")
         lines = [
-            f"\n{step}{port['direction'] or 'input'} {port['name']}{f' : {type_}' if type_ else ''}"
+            f"\n{step}{port['direction'] or 'input'} {port['name']}"
+            f"{f' : {type_}' if type_ else ''}{port['default'] or ''}"
             for port in ports
             if port is not None
             for type_ in [port["type"] or port["before"]]
@@ -728,7 +729,7 @@ _ENTRY: Final = re.compile(r"\{(@?[^\W\d]\w*)\}")
 _ARROW: Final = re.compile(r"[-=~]+ ?>")
 _BRACKETED_PORT: Final = re.compile(
     r"(?:(?P<direction>input|output|inout)\s+)?(?:(?P<before>(?:\w+::)*\w+)\s+)?(?P<name>[^\W\d]\w*)"
-    r"(?:\s*:\s*(?P<type>(?:\w+::)*\w+))?"
+    r"(?:\s*:\s*(?P<type>(?:\w+::)*\w+)(?P<default>\s*=\s*[\w.'\"-]+)?)?"
 )
 _TYPE_FIRST: Final = re.compile(r"(\w+)[ \t]+([^\W\d]\w*)(?![ \t]*:)")
 _NO_PORTS: Final = NODE_CLAUSES | {"parameters", "QualityReq"}

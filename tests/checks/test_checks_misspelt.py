@@ -78,6 +78,12 @@ def test_without_models_two_places_that_are_alone_are_told_once_and_either_may_b
     ]
 
 
+@pytest.mark.parametrize(("own", "renamed"), [("{picture}", "{pictuer}"), ("{=}", "{pictuer}")])
+def test_braces_stay_around_an_entry_with_the_name_of_its_port(own: str, renamed: str) -> None:
+    text = f"BehaviorTree Main\n    ->\n        A (picture = {own})\n        B (x = {{pictuer}})\n"
+    assert ("Replace `picture` with `pictuer`", False, text.replace(own, renamed)) in fixes(text, RULE)
+
+
 @pytest.mark.parametrize(
     "lines",
     [

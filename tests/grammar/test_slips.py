@@ -697,6 +697,7 @@ def test_a_symbol_with_a_star(symbol: str, said: str, meant: tuple[str, ...]) ->
         ("(string place)", ["input place : string"]),
         ("(output std::string place)", ["output place : std::string"]),
         ("(inout place)", ["inout place"]),
+        ("(place: string, speed: double = 0.5)", ["input place : string", "input speed : double = 0.5"]),
     ],
 )
 @pytest.mark.parametrize(("item", "owner"), [("BehaviorTree Main", "tree"), ("Action Turn", "node")])
