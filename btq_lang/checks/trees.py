@@ -18,7 +18,7 @@ from btq_lang.checks.view import View, is_first_tree, near_names
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related, Tag, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.nodes import OF_ITS_OWN
-from btq_lang.syntax.tree import Model, Node, Tree, written
+from btq_lang.syntax.tree import Model, Node, Root, Tree, written
 from btq_lang.util.record import replace
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.util.text import Span
@@ -53,6 +53,9 @@ def unknown_tree(view: View) -> Iterator[Diagnostic]:
         elsewhere = view.ask(lookups.elsewhere, Kind.TREE, use.name)
         fixes = tuple(include_fix(view, path) for path in elsewhere[:3])
         likely = view.ask(near_names, Kind.TREE, use.name)
+        if not likely and not elsewhere and isinstance(view.item, Root):
+            tops = tuple([name for name in view.ask(lookups.own_trees) if not view.ask(calls.callers, name)])
+            likely = tops if len(tops) == 1 else ()
         fixes += tuple(replace_fix(f"Replace `{use.name}` with `{name}`", use.span, written(name)) for name in likely)
         message = f"unknown tree `{use.name}`{_nowhere(view) if elsewhere or not likely else did_you_mean(likely)}"
         model = view.ask(lookups.meaning, Kind.MODEL, use.name)

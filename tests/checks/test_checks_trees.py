@@ -32,6 +32,16 @@ def test_a_tree_that_4_6_does_not_read(engines: tuple[str, ...], severity: str |
 # ---- unknown-tree ----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.parametrize(
+    ("runs", "end"),
+    [("SubTree Other", "; did you mean `Pick`?"), ("Dock", "; neither this file nor its includes define it")],
+)
+def test_an_unknown_main_tree_may_be_the_only_one_that_no_other_runs(runs: str, end: str) -> None:
+    text = f"Root MainTree\nBehaviorTree Pick\n    {runs}\nBehaviorTree Other\n    Dock\n"
+    (found,) = problems(text, "unknown-tree")
+    assert found.message == f"unknown tree `MainTree`{end}"
+
+
 def test_the_way_to_an_unknown_tree() -> None:
     misspelt = "BehaviorTree Main\n    SubTree Pik\n" + PICK
     assert_problems(misspelt, "2:13 error unknown-tree «Pik» unknown tree `Pik`; did you mean `Pick`?")
