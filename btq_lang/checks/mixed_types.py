@@ -21,6 +21,7 @@ from btq_lang.checks.view import View, port_of
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Pair
+from btq_lang.util.grouping import grouped
 from btq_lang.util.reach import reached
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import did_you_mean
@@ -184,12 +185,19 @@ def _clashes(view: View, tree: str, key: str, meetings: list[_Meeting]) -> Itera
 
 def _meant(view: View, tree: str, type_: str) -> str | None:
     """The only entry of a tree that has a type and is written, but not read."""
-    found = view.ask(inputs.definition, Kind.TREE, tree)
-    named = view.ask(mentions, *found) if found is not None else ()
-    read = {each.name for each in named if each.reads or each.node.is_subtree}
-    of_type = {key for key, meetings in view.ask(_types, tree).items() if [each.type for each in meetings] == [type_]}
-    unread = {each.name for each in named if each.writes and each.name not in read and each.name in of_type}
-    return f"{{{unread.pop()}}}" if len(unread) == 1 else None
+    unread = view.ask(_unread_by_type, tree).get(type_, ())
+    return f"{{{unread[0]}}}" if len(unread) == 1 else None
+
+
+def _unread_by_type(store: Store[Workspace], viewpoint: str, tree: str) -> dict[str, list[str]]:
+    """The entries of a tree that are written, but not read, and have one type, by that type."""
+    view = View(store, viewpoint)
+    definition = view.ask(inputs.definition, Kind.TREE, tree)
+    entries = view.ask(mentions, *definition) if definition is not None else ()
+    read = {mention.name for mention in entries if mention.reads or mention.node.is_subtree}
+    unread = {mention.name for mention in entries if mention.writes} - read
+    types = ((key, [meeting.type for meeting in meetings]) for key, meetings in view.ask(_types, tree).items())
+    return grouped((of_key[0], key) for key, of_key in types if key in unread and len(of_key) == 1)
 
 
 def _port(view: View, port: _Port) -> tuple[ResolvedNode, Pair]:

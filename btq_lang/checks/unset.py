@@ -7,6 +7,7 @@ entries in other trees.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import chain
 
@@ -26,6 +27,7 @@ from btq_lang.checks.view import View, declared_ports, port_of
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import port_named, written
+from btq_lang.util.grouping import grouped
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
@@ -262,14 +264,11 @@ def _not_written(view: View, mentions: Sequence[EntryMention]) -> Iterator[str]:
     of_tree = view.ask(mentions_in, view.path, view.facts)
     read = {mention.name for mention in of_tree if mention.reads or mention.node.is_subtree}
     written_only = [mention.name for mention in of_tree if mention.writes and mention.name not in read]
+    counts = Counter(mention.name for mention in of_tree)
     for mention in mentions:
         if likely := near(mention.name, written_only, 1):
             yield f"did you mean `{likely[0]}`, which a node writes?"
-        elif (
-            not mention.in_script
-            and mention.node.of_model is not None
-            and sum(mention.name == other.name for other in of_tree) > 1
-        ):
+        elif not mention.in_script and mention.node.of_model is not None and counts[mention.name] > 1:
             node = mention.node.node
             port = next(pair.key.text for pair in node.attributes if pair.span.contains(mention.span))
             yield f"if `{node.head.text}` writes `{mention.name}`, its model declares `{port}` as an output"
@@ -284,14 +283,20 @@ def _reads(mention: EntryMention) -> bool:
 def _needs(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
     """Whether a node in a tree, or in the trees that get the entry from it, needs its value."""
     view = View(store, viewpoint)
-    definition = view.ask(inputs.definition, Kind.TREE, tree)
-    mentions = view.ask(mentions_in, *definition) if definition is not None else ()
-    if any(mention.name == name and not mention.node.is_subtree and _is_needed(view, mention) for mention in mentions):
+    mentions = view.ask(_mentions_by_name, tree).get(name, ())
+    if any(not mention.node.is_subtree and _is_needed(view, mention) for mention in mentions):
         return True
     calls = view.ask(handling, tree).calls
     below = {(call.tree, port) for call in calls for port, passed in call.given.items() if passed == name}
     below |= {(call.tree, name) for call in calls if call.passed(name) == name}
     return any(view.ask(_needs, *entry) for entry in sorted(below))
+
+
+def _mentions_by_name(store: Store[Workspace], viewpoint: str, tree: str) -> dict[str, list[EntryMention]]:
+    view = View(store, viewpoint)
+    definition = view.ask(inputs.definition, Kind.TREE, tree)
+    mentions = view.ask(mentions_in, *definition) if definition is not None else ()
+    return grouped((mention.name, mention) for mention in mentions)
 
 
 def _is_needed(view: View, mention: EntryMention) -> bool:

@@ -9,6 +9,7 @@ from functools import lru_cache
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import BUILTINS, NodeKind, PortKind, available, is_by_children
+from btq_lang.checks.engines import engines_of
 from btq_lang.ide.place import LineNode
 from btq_lang.ide.ports import declared_ports, ports_of_kind, ports_of_tree
 from btq_lang.ide.proposals import Proposal, defined, escaped, keys, unknown, words
@@ -29,7 +30,7 @@ def nodes(workspace: Workspace, path: str) -> Iterator[Proposal]:
     for name in unknown(workspace, workspace.scope(path).paths):
         if name not in seen:
             yield Proposal(name, "node", "custom node", written(name), None, "", name)
-    yield from _builtins(workspace.project.target)
+    yield from _builtins(workspace.store.ask(engines_of, path)[-1])
     yield Proposal("SubTree", "keyword", "run another tree", "SubTree")
     for category in ("Action", "Condition", "Decorator", "Control"):
         yield Proposal(category, "keyword", "a custom node, with its category", category)

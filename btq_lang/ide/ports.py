@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import NodeKind, PortKind, lookup, of_version
+from btq_lang.checks.engines import engines_of
 from btq_lang.syntax.tree import Model, Node, Tree
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
@@ -33,7 +34,7 @@ def ports_of_kind(
 
 def _ports(workspace: Workspace, path: str, kind: NodeKind | None, name: str) -> tuple[PortKind, ...]:
     if kind is not None:
-        version = workspace.project.target
+        version = workspace.store.ask(engines_of, path)[-1]
         return tuple(of_version(port, version) for port in kind.ports)
     model = workspace.scope(path).target(Kind.MODEL, name)
     return declared_ports(model) if isinstance(model, Model) else ()

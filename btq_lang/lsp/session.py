@@ -31,6 +31,7 @@ from btq_lang.workspace.inputs import advance
 from btq_lang.workspace.item_index import Name
 from btq_lang.workspace.loader import LoadProblem, find_project, is_project_file, read, stamp, work_in
 from btq_lang.workspace.overrides import Override, Severities
+from btq_lang.workspace.queries import Cancelled
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -61,6 +62,7 @@ class Session:
         self.projects: dict[str, tuple[str, tuple[LoadProblem, ...]]] = {}
         self.parameters: dict[str, tuple[Workspace, FileFindings]] = {}
         self.check_seconds: dict[str, float] = {}
+        self._interrupted_seconds: dict[str, float] = {}  # of the pieces of a check that has not ended
         self._evidence: dict[str, ProjectVerdicts] = {}  # by the folder of the project
         self._files = Files()
         self._files.overlay = self.open
@@ -125,6 +127,7 @@ class Session:
         for workspace in self.workspaces_of(path):
             forget(workspace, path)
         self.check_seconds.pop(path, None)
+        self._interrupted_seconds.pop(path, None)
         self._checked.pop(path, None)  # its offsets count from items that are no longer kept
         is_of_folder = any(path.startswith(f"{folder}/") for folder in self.folders)
         if is_of_folder and not is_xml and text is not None and read(path)[0] == text:
@@ -333,10 +336,14 @@ class Session:
         if checked is not None and [id(each()) for each in checked[0]] == [*map(id, workspaces)]:
             return checked[1]
         if path in self.open:
-            begin = perf_counter()
+            begin = perf_counter() - self._interrupted_seconds.pop(path, 0)
             for workspace in workspaces:
                 keep(workspace, path)
-            of_each = [findings(workspace.store, path, self._seen(workspace, path)) for workspace in workspaces]
+            try:
+                of_each = [findings(workspace.store, path, self._seen(workspace, path)) for workspace in workspaces]
+            except Cancelled:
+                self._interrupted_seconds[path] = perf_counter() - begin
+                raise
             file_findings = of_each[0]
             if len(of_each) > 1:
                 file_findings = self._merged(workspaces, [each.diagnostics for each in of_each])

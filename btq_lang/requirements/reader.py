@@ -36,7 +36,8 @@ from btq_lang.requirements.terms import (
 from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import NAME, NUMBER, QUANTITY, STRING
-from btq_lang.util.spelling import did_you_mean, sharing_a_word
+from btq_lang.util.grouping import grouped
+from btq_lang.util.spelling import did_you_mean, long_words
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts
@@ -110,6 +111,12 @@ def _depth(store: Store[Workspace], viewpoint: str, name: str) -> int:
         return 1
     others = _contexts_in(store, viewpoint, _written_context(definition[1], name))
     return 1 + max([store.ask(_depth, viewpoint, other) for other in others], default=0)
+
+
+def _contexts_by_word(store: Store[Workspace], viewpoint: str) -> dict[str, list[str]]:
+    return grouped(
+        (word, name) for name in store.ask(inputs.names, viewpoint, Kind.CONTEXT) for word in long_words(name)
+    )
 
 
 def _written_context(facts: Facts, name: str) -> syntax.Context:
@@ -249,7 +256,7 @@ class Reader(PathReader):
             return
         likely = self.near(word.text, *kinds) if word.text not in OF_PYTHON else (word.text.lower(),)
         if not likely and "contexts" in kinds:
-            likely = sharing_a_word(word.text, self.names("contexts"))
+            likely = self._sharing_a_word(word.text)
         title = f"Replace `{word.text}` with"
         fixes = tuple(replace_fix(f"{title} `{name}`", word.span, syntax.written(name)) for name in likely)
         if word.text[-1] in "²³":
@@ -261,6 +268,13 @@ class Reader(PathReader):
         note = f"{'or ' if likely else ''}declare it: `signal {word.text} : {unit} from {{{word.text}}}`"
         message = f"unknown signal `{word.text}`{did_you_mean(likely)}"
         self.complain("unknown-signal", word.span, message, notes=(note,), fixes=fixes)
+
+    def _sharing_a_word(self, name: str) -> tuple[str, ...]:
+        """The contexts that have a word in common with a name: `people_near` for `person_near`; none if more than three
+        have."""
+        by_word = self.store.ask(_contexts_by_word, self.viewpoint)
+        sharing = sorted({context for word in long_words(name) for context in by_word.get(word, ())})
+        return tuple(sharing) if len(sharing) <= 3 else ()
 
     def _is_subtraction(self, word: syntax.Word) -> bool:
         """Whether an unknown name is two known ones with a `-` between them, which is then reported."""

@@ -38,15 +38,8 @@ def near(word: str, candidates: Iterable[str], limit: int = 3) -> tuple[str, ...
     return tuple(name for edits, _, name in ranked if edits <= ranked[0][0] + 1)[:limit]
 
 
-def sharing_a_word(name: str, candidates: Iterable[str]) -> tuple[str, ...]:
-    """The candidates that have a word in common with a name of several: `people_near` for `person_near`; empty if
-    more than three have."""
-    words = _long_words(name)
-    sharing = sorted({each for each in candidates if not words.isdisjoint(_long_words(each))})
-    return tuple(sharing) if len(sharing) <= 3 else ()
-
-
-def _long_words(name: str) -> set[str]:
+def long_words(name: str) -> set[str]:
+    """The words of more than three letters in a name of several: `person` and `near` of `person_near`."""
     return {word for word in re.split("[_-]", name.casefold()) if len(word) > 3}
 
 

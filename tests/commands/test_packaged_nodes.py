@@ -28,7 +28,7 @@ XML = '<root BTCPP_format="4"><BehaviorTree ID="Main"><FollowPath path="{path}" 
 FOUND = [
     "m.btq:3:56: error[unknown-port] `ComputePathToPose` has no port `planer_id`; did you mean `planner_id`?",
     "m.btq:4:9: warning[missing-port] `FollowPath` requires a value for its port `path`",
-    "m.btq:5:29: warning[entry-with-two-types] `path` of `ComputePathToPose` creates `{path}` as nav_msgs::msg::Path, "
+    "m.btq:5:29: error[entry-with-two-types] `path` of `ComputePathToPose` creates `{path}` as nav_msgs::msg::Path, "
     "but `goal` of `GoalReached` has the type geometry_msgs::msg::PoseStamped",
     "m.btq:6:9: hint[unknown-node] unknown node `Own`",
 ]

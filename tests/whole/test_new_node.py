@@ -34,7 +34,7 @@ import btq_lang.catalog
 text = Path(folder, "versions.py").read_text(encoding="utf-8")
 for row, changed in (
     ('("4.6", "4.8", "4.10")', '("4.6", "4.8", "4.10", "4.11")'),
-    ('UNIQUE_SUBTREES: Final = Change("4.8"', 'UNIQUE_SUBTREES: Final = Change("4.11"'),
+    ('UNIQUE_SUBTREES: Final = VersionChange("4.8"', 'UNIQUE_SUBTREES: Final = VersionChange("4.11"'),
 ):
     assert text.count(row) == 1, row
     text = text.replace(row, changed)
