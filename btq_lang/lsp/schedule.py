@@ -80,14 +80,14 @@ class CheckSchedule:
     async def check(self, path: str) -> None:
         """Check a file for a request, after handling any message that comes meanwhile."""
         while True:
-            await self._rest(path)
+            await self._wait_after_keystroke(path)
             try:
                 self._client.session.check(path, self._client.has_message)
                 return
             except Cancelled:
                 await asyncio.sleep(0)
 
-    async def _rest(self, path: str) -> None:
+    async def _wait_after_keystroke(self, path: str) -> None:
         """Let requests go first: wait after the last keystroke as long as a long check takes."""
         clock = asyncio.get_running_loop().time
         while (check_seconds := self._client.session.check_seconds.get(path, 0)) > LONG_CHECK:
@@ -113,7 +113,7 @@ class CheckSchedule:
             if not is_open and (self.answering or loop.time() < published_at + REQUEST_WINDOW):
                 await asyncio.sleep(REQUEST_WINDOW / 10)
                 continue
-            await self._rest(path)
+            await self._wait_after_keystroke(path)
             if path != next(iter(self.waiting)):  # another file was edited meanwhile
                 continue
             del self.waiting[path]

@@ -220,7 +220,7 @@ def test_the_value_that_keeps_the_meaning_is_named(tmp_path: Path, spelling: str
         ("trees/18-shared-blackboard-literal/t4.xml", ["17:46 warning unread-argument"]),
         (
             "trees/27-subtree-does-not-share",
-            ["4:20 error isolated-node", "5:26 warning unset-entry", "10:32 warning unset-entry"],
+            ["4:20 error isolated-node", "5:26 warning unset-entry", "10:33 warning unset-entry"],
         ),
         ("trees/28-read-before-write/t.xml", ["4:22 hint unset-entry"]),
         (
@@ -229,7 +229,7 @@ def test_the_value_that_keeps_the_meaning_is_named(tmp_path: Path, spelling: str
                 "4:26 warning unread-argument",
                 "4:45 hint unset-entry",
                 "5:22 warning unset-entry",
-                "10:23 warning unset-entry",
+                "10:24 warning unset-entry",
             ],
         ),
         ("nav2/unset", ["6:26 warning unset-entry"]),
