@@ -10,7 +10,7 @@ from collections.abc import Callable, Container
 from typing import Final, Literal, TypeAlias
 
 from btq_lang.btcpp.conditions import NoScript, first_value_script, signal_script
-from btq_lang.btcpp.guards import Guarded, NotEnforced
+from btq_lang.btcpp.guards import ClauseGuard, NotEnforced
 from btq_lang.btcpp.wrappers import may_be_skipped
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements.budgets import Budgets
@@ -118,29 +118,29 @@ class Judge:
 
     def needs(
         self, requirement: ResolvedRequirement, claim: ResolvedClaim, node: ResolvedNode, name: str, stop: str
-    ) -> tuple[Guarded, dict[str, str]]:
+    ) -> tuple[ClauseGuard, dict[str, str]]:
         """What enforces a clause, and the first values of the signals that its scripts read.
 
         Raises:
             NotEnforced: the engine cannot do it.
         """
-        guarded = Guarded(requirement, claim, node, name, stop, self._is_shared)
+        guard = ClauseGuard(requirement, claim, node, name, stop, self._is_shared)
         if VERBS[claim.verb].limits and claim.limit is not None and not self._budgets.composed(node).waits:
             raise NotEnforced(f"{node.shown} completes within one tick")
-        for guarded_node in dict.fromkeys(guarded_node for guarded_node, _ in guarded.wrappers):
+        for guarded_node in dict.fromkeys(guarded_node for guarded_node, _ in guard.wrappers):
             if self._files is not None and guarded_node.path not in self._files:
                 raise Elsewhere(guarded_node)
             self._check_around(guarded_node)
         first: dict[str, str] = {}
-        for signal in guarded.signals:
+        for signal in guard.signals:
             first |= _first_value(signal)
-        if (first or guarded.cells or guarded.stop) and not self._is_shared:
+        if (first or guard.initial_values or guard.stop) and not self._is_shared:
             mission = self._mission()
             if mission is None:
                 raise UnknownMission("the main tree is unknown; name it with a line `Root <tree>`")
-            if guarded.stop is not None:
+            if guard.stop is not None:
                 self._check_around(mission)
-        return guarded, first
+        return guard, first
 
     def _check_around(self, node: ResolvedNode) -> None:
         """Check that a wrapper around a node does not change the behavior of the tree.

@@ -140,7 +140,7 @@ class _Plan:
     Attributes:
         wrappers: by `id(node)` of the syntax.
         enforced: the keys of enforced clauses (clause, node, arguments), for the files that include these.
-        cells: the entries that a mission initializes, each with its value.
+        initial_values: the entries that a mission initializes, each with its value.
         first: those of signals, each with its value before the first sample.
         stops: the entries that halt it.
     """
@@ -150,7 +150,7 @@ class _Plan:
     ) -> None:
         self.wrappers: Final[dict[int, list[Wrapper]]] = {}
         self.enforced: Final[dict[object, ClauseEnforcement]] = {}
-        self.cells: Final[dict[str, str]] = {}
+        self.initial_values: Final[dict[str, str]] = {}
         self.first: Final[dict[str, str]] = {}
         self.stops: Final[dict[str, None]] = {}
         self._workspace: Final = workspace
@@ -221,18 +221,18 @@ class _Plan:
             NotEnforced: the engine cannot do it.
         """
         name = self._keys.next(requirement.name)
-        guarded, first = self._judge.needs(requirement, claim, node, name, self._keys.stop(requirement.name))
+        guard, first = self._judge.needs(requirement, claim, node, name, self._keys.stop(requirement.name))
         self._keys.take(name)
-        self.cells.update(guarded.cells)
+        self.initial_values.update(guard.initial_values)
         self.first.update(first)
-        if guarded.stop is not None:
-            self.stops[guarded.stop] = None
-        for guarded_node, wrapper in guarded.wrappers:
+        if guard.stop is not None:
+            self.stops[guard.stop] = None
+        for guarded_node, wrapper in guard.wrappers:
             self.wrappers.setdefault(id(guarded_node.node), []).append(wrapper)
-        notes = [*guarded.notes]
-        if unset := [*(signal.name for signal in guarded.signals if signal.initially is None), *guarded.entries]:
+        notes = [*guard.notes]
+        if unset := [*(signal.name for signal in guard.signals if signal.initially is None), *guard.entries]:
             notes.append(f"the mission ends if a guard reads {_listed(unset)} before anything writes it")
-        if aging := [signal.name for signal in guarded.signals if signal.fresh is not None]:
+        if aging := [signal.name for signal in guard.signals if signal.fresh is not None]:
             notes.append(f"guards read the latest value of {_listed(aging)}, whatever its age")
         return "; ".join(notes)
 
@@ -246,15 +246,15 @@ def _listed(names: Sequence[str]) -> str:
 
 def _start(plans: Iterable[_Plan]) -> tuple[Wrapper, ...]:
     """The nodes around the mission; empty if it has nothing to initialize."""
-    cells: dict[str, str] = {}
+    initial_values: dict[str, str] = {}
     first: dict[str, str] = {}
     stops: dict[str, str] = {}
     for plan in plans:
-        cells.update(plan.cells)
+        initial_values.update(plan.initial_values)
         first.update(plan.first)
         stops.update(dict.fromkeys(plan.stops, "false"))
     before = [first_values(_ALL, first)] if first else []
-    if statements := [f"{key} := {value}" for key, value in (cells | stops).items()]:
+    if statements := [f"{key} := {value}" for key, value in (initial_values | stops).items()]:
         before.append(leaf("Script", _ALL, "btq_start", "; ".join(statements)))
     if not before:
         return ()

@@ -1,7 +1,7 @@
 """What makes the engine enforce a clause: the wrappers around nodes, or why there are none.
 
 One invariant: a clause counts as enforced if and only if it has wrappers that a test in `tests/engine` has seen at
-work, or the engine does by itself what it demands.  It does not know the other clauses.
+work, or the engine meets the clause without any.  This module looks at one clause at a time.
 """
 
 from __future__ import annotations
@@ -47,16 +47,16 @@ class NotEnforced(Exception):
     """No wrapper makes the engine enforce a clause; the text is the reason and reads well after "because"."""
 
 
-class Guarded:
-    """What enforces a clause that applies to a node.
+class ClauseGuard:
+    """The wrappers and scripts that make the engine enforce one clause at one node.
 
     Attributes:
         wrappers: each with its node, from the outside in.
-        cells: the entries of the root blackboard that the mission initializes, each with its first value.
-        signals: that its scripts read.
-        entries: that those scripts read which the requirement itself spells.
+        initial_values: for each root blackboard entry that the mission initializes, its first value.
+        signals: the signals that the scripts read.
+        entries: the other blackboard entries that the scripts read, as the requirement names them.
         stop: the entry that halts the mission, if a violation does.
-        notes: what of the clause is not enforced, or how it is interpreted.
+        notes: which parts of the clause are not enforced, or how it is interpreted.
     """
 
     def __init__(
@@ -78,7 +78,7 @@ class Guarded:
             NotEnforced: the engine cannot do it.
         """
         self.wrappers: list[tuple[ResolvedNode, Wrapper]] = []
-        self.cells: Final[dict[str, str]] = {}
+        self.initial_values: Final[dict[str, str]] = {}
         self.signals: tuple[ResolvedSignal, ...] = ()
         self.entries: tuple[str, ...] = ()
         self.stop: Final = stop if requirement.action == "halt" else None
@@ -108,7 +108,7 @@ class Guarded:
         self.signals = tuple({signal.name: signal for signal in read}.values())
         self.entries = entries_in(claim.condition)
 
-    def around(
+    def wrap(
         self,
         rank: int,
         tag: WrapperTag,
@@ -149,14 +149,15 @@ class Guarded:
             "value", table_script(table, lambda value: number_script(value, unit, self.stored), self.stored)
         )
 
-    def cell(self, what: str, first: str, with_node: ResolvedNode | None = None) -> str:
-        """A variable that outlives the node: the tree's, if the node `with_node` above it in the tree initializes it;
-        else the mission's."""
-        if with_node is not None and _is_above(with_node, self.node):
+    def entry(self, what: str, initial: str, initializer: ResolvedNode | None = None) -> str:
+        """A variable that outlives the node: an entry of the tree if `initializer`, an ancestor in the same tree,
+        initializes it; otherwise an entry of the root blackboard.
+        """
+        if initializer is not None and _is_above(initializer, self.node):
             return f"_{self.name}_{what}"
         tree = f"_{legal(self.node.tree or '')}" if self._shared else ""
         key = f"@{self.name}{tree}_{what}"
-        self.cells[key] = first
+        self.initial_values[key] = initial
         return key
 
     def when(self) -> str | None:
@@ -165,12 +166,12 @@ class Guarded:
         return self.at_start("when", scopes) if scopes is not None else None
 
     def in_scope(self, script: str) -> str:
-        """A condition that need not hold outside the scope, evaluated when the node starts."""
+        """A script for a condition that need hold only in scope; both are evaluated when the node starts."""
         scopes = self._scopes()
         return script if scopes is None else f"((!{scopes}) || {script})"
 
-    def unscoped(self) -> None:
-        """Refuse a scope: the clause is one that cannot be limited to one."""
+    def refuse_scopes(self) -> None:
+        """Refuse any scope: this kind of clause cannot have one."""
         if self.requirement.scopes:
             raise NotEnforced(f"its scope, `{self.requirement.scopes[0].text}`, is evaluated only in logs")
 
@@ -185,47 +186,47 @@ class Guarded:
 # ---- verbs ----
 
 
-def _takes(draft: Guarded) -> None:
+def _takes(guard: ClauseGuard) -> None:
     """`<Timeout msec="30000">X</Timeout>`: halts X at the deadline and returns FAILURE."""
-    when = draft.when()
-    _limit(draft, _upper(draft), when)
-    if isinstance(draft.claim.subject, Interval):
-        draft.notes.append(f"as a limit on {draft.node.shown}, which restarts whenever {draft.node.shown} starts")
+    when = guard.when()
+    _add_timeout(guard, _upper_bound(guard), when)
+    if isinstance(guard.claim.subject, Interval):
+        guard.notes.append(f"as a limit on {guard.node.shown}, which restarts whenever {guard.node.shown} starts")
 
 
-def _succeeds(draft: Guarded) -> None:
-    """A failure breaks the clause by itself; a Timeout makes a failure of a late success."""
-    if draft.claim.limit is None and not draft.stop:
-        draft.notes.append("the node's failure is the violation itself")
+def _succeeds(guard: ClauseGuard) -> None:
+    """Any failure violates the clause; a Timeout turns a late success into a failure."""
+    if guard.claim.limit is None and not guard.stop:
+        guard.notes.append("the node's failure is the violation itself")
         return
-    when = draft.when()
-    if draft.claim.limit is not None:
-        _limit(draft, _upper(draft), when)
-    if draft.stop:
-        stop = draft.stop
+    when = guard.when()
+    if guard.claim.limit is not None:
+        _add_timeout(guard, _upper_bound(guard), when)
+    if guard.stop:
+        stop = guard.stop
         failed = f"{stop} := true" if when is None else f"{stop} := ({stop} || {when})"
-        draft.around(INSIDE, "Sequence", "succeeds", attributes=(("_onFailure", failed),))
+        guard.wrap(INSIDE, "Sequence", "succeeds", attributes=(("_onFailure", failed),))
 
 
-def _limit(draft: Guarded, bound: Limit, when: str | None) -> None:
+def _add_timeout(guard: ClauseGuard, bound: Limit, when: str | None) -> None:
     value = bound.value
     milliseconds = (
         _milliseconds(value)
         if not isinstance(value, ResolvedTable)
-        else table_script(value, _milliseconds, draft.stored)
+        else table_script(value, _milliseconds, guard.stored)
     )
     if isinstance(value, ResolvedTable) or when is not None:
         chosen = milliseconds if when is None else f"({when} ? {milliseconds} : 0)"  # 0 means no limit for the engine
-        milliseconds = f"{{{draft.at_start('ms', chosen)}}}"
+        milliseconds = f"{{{guard.at_start('ms', chosen)}}}"
     attributes: tuple[tuple[str, str], ...] = (("msec", milliseconds),)
-    if not draft.stop:
-        draft.around(LIMIT, "Timeout", "limit", attributes=attributes)
+    if not guard.stop:
+        guard.wrap(LIMIT, "Timeout", "limit", attributes=attributes)
         return
     # A Timeout fails also if its child fails in time: only a node that is not done by then was late.
-    completed = draft.at_start("done", "false")
-    late = f"{draft.stop} := ({draft.stop} || (!{completed}))"
-    draft.around(LIMIT, "Timeout", "limit", attributes=(*attributes, ("_onFailure", late)))
-    draft.around(LIMIT, "Sequence", "done", attributes=(("_post", f"{completed} := true"),))
+    completed = guard.at_start("done", "false")
+    late = f"{guard.stop} := ({guard.stop} || (!{completed}))"
+    guard.wrap(LIMIT, "Timeout", "limit", attributes=(*attributes, ("_onFailure", late)))
+    guard.wrap(LIMIT, "Sequence", "done", attributes=(("_post", f"{completed} := true"),))
 
 
 def _milliseconds(value: Bounded) -> str:
@@ -237,72 +238,72 @@ def _milliseconds(value: Bounded) -> str:
     return str(whole)
 
 
-def _needs(draft: Guarded) -> None:
+def _needs(guard: ClauseGuard) -> None:
     """`<Sequence><ScriptCondition code="φ"/>X</Sequence>`"""
-    code = draft.in_scope(draft.script(_condition(draft)))
-    draft.around(CONDITION, "Sequence", "needs", before=(draft.condition("check", code),))
+    code = guard.in_scope(guard.script(_condition(guard)))
+    guard.wrap(CONDITION, "Sequence", "needs", before=(guard.condition("check", code),))
 
 
-def _keeps(draft: Guarded) -> None:
+def _keeps(guard: ClauseGuard) -> None:
     """`<ReactiveSequence><ScriptCondition code="φ"/>X</ReactiveSequence>`: evaluated at every tick."""
-    code = draft.script(_condition(draft))
-    if draft.claim.verb == "never":
+    code = guard.script(_condition(guard))
+    if guard.claim.verb == "never":
         code = f"(!{code})"
-    for scope in reversed(draft.requirement.scopes):
-        script = draft.script(scope.condition)
-        code = f"((!{script if scope.word == 'while' else draft.at_start('when', script)}) || {code})"
-    draft.around(GUARD, "ReactiveSequence", draft.claim.verb, before=(draft.condition("guard", code),))
+    for scope in reversed(guard.requirement.scopes):
+        script = guard.script(scope.condition)
+        code = f"((!{script if scope.word == 'while' else guard.at_start('when', script)}) || {code})"
+    guard.wrap(GUARD, "ReactiveSequence", guard.claim.verb, before=(guard.condition("guard", code),))
 
 
-def _leaves(draft: Guarded) -> None:
+def _leaves(guard: ClauseGuard) -> None:
     """`<Sequence>X<ScriptCondition code="φ"/></Sequence>`"""
-    code = draft.script(_condition(draft))
-    if (when := draft.when()) is not None:
+    code = guard.script(_condition(guard))
+    if (when := guard.when()) is not None:
         code = f"((!{when}) || {code})"
-    draft.around(CHECK, "Sequence", "leaves", after=(draft.condition("check", code),))
+    guard.wrap(CHECK, "Sequence", "leaves", after=(guard.condition("check", code),))
 
 
-def _uses(draft: Guarded) -> None:
+def _uses(guard: ClauseGuard) -> None:
     """The signal's value at the start, and two conditions: while the node runs, and when it has succeeded."""
-    signal = draft.claim.signal
+    signal = guard.claim.signal
     assert signal is not None, "the clause names one"
     if signal.behaviour == "gauge":
         raise NotEnforced(f"`{signal.name}` is neither a level nor a counter")
-    bound = _upper(draft)
+    bound = _upper_bound(guard)
     unit = replace(signal.unit, offset=0.0) if signal.unit is not None else None
     key = signal_script(signal)
-    before = draft.at_start("before", f"({key} + 0.0)")
+    before = guard.at_start("before", f"({key} + 0.0)")
     used = f"({before} - {key})" if signal.behaviour == "level" else f"({key} - {before})"
-    code = f"({used} {bound.relation} {number_script(bound.value, unit, draft.stored)})"
-    if (when := draft.when()) is not None:
+    code = f"({used} {bound.relation} {number_script(bound.value, unit, guard.stored)})"
+    if (when := guard.when()) is not None:
         code = f"((!{when}) || {code})"
-    draft.around(CHECK, "Sequence", "used", after=(draft.condition("check", code),))
-    draft.around(GUARD, "ReactiveSequence", "uses", before=(draft.condition("guard", code),))
+    guard.wrap(CHECK, "Sequence", "used", after=(guard.condition("check", code),))
+    guard.wrap(GUARD, "ReactiveSequence", "uses", before=(guard.condition("guard", code),))
 
 
-def _tries(draft: Guarded) -> None:
-    """A counter, reset when the node starts whose activations it counts in."""
-    draft.unscoped()
-    bound = _upper(draft)
-    per = draft.claim.per
+def _tries(guard: ClauseGuard) -> None:
+    """A counter of starts; where the clause says `per` a node, each start of that node resets it."""
+    guard.refuse_scopes()
+    bound = _upper_bound(guard)
+    per = guard.claim.per
     holder = per.node if isinstance(per, NodeTarget) else None
     if isinstance(per, NodeTarget) and per.through:
-        raise NotEnforced("its `per` names only some instances of a node")
-    count = draft.cell("count", "0.0", holder)
-    most = number_script(bound.value, None, draft.stored)
+        raise NotEnforced("its `per` path selects only some instances of the node")
+    count = guard.entry("count", "0.0", holder)
+    most = number_script(bound.value, None, guard.stored)
     code = f"(({count} + 1.0) {bound.relation} {most})"
-    draft.around(CONDITION, "Sequence", "tries", before=(draft.condition("check", code),))
-    counter = draft.leaf("Script", "counter", f"{count} := ({count} + 1.0)")
-    draft.around(INSIDE, "Sequence", "counted", before=(counter,))
+    guard.wrap(CONDITION, "Sequence", "tries", before=(guard.condition("check", code),))
+    counter = guard.leaf("Script", "counter", f"{count} := ({count} + 1.0)")
+    guard.wrap(INSIDE, "Sequence", "counted", before=(counter,))
     if holder is not None:
-        reset = draft.leaf("Script", "zero", f"{count} := {real(0.0)}")
-        draft.around(INSIDE, "Sequence", "per", before=(reset,), node=holder)
+        reset = guard.leaf("Script", "zero", f"{count} := {real(0.0)}")
+        guard.wrap(INSIDE, "Sequence", "per", before=(reset,), node=holder)
 
 
-def _follows(draft: Guarded) -> None:
+def _follows(guard: ClauseGuard) -> None:
     """A flag that the event sets and the start of the node resets."""
-    draft.unscoped()
-    event = draft.claim.event
+    guard.refuse_scopes()
+    event = guard.claim.event
     assert event is not None, "the clause names one"
     subject = event.subject
     is_start = isinstance(subject, MissionRun) and event.happening == "starts"
@@ -310,35 +311,35 @@ def _follows(draft: Guarded) -> None:
         raise NotEnforced("the engine runs no script at this event")
     if isinstance(subject, NodeTarget) and subject.through:
         raise NotEnforced("its event names only some instances of a node")
-    flag = draft.cell("seen", "true" if is_start else "false")
-    draft.around(CONDITION, "Sequence", "follows", before=(draft.condition("check", f"({flag} == true)"),))
-    reset = draft.leaf("Script", "taken", f"{flag} := false")
-    draft.around(INSIDE, "Sequence", "started", before=(reset,))
+    flag = guard.entry("seen", "true" if is_start else "false")
+    guard.wrap(CONDITION, "Sequence", "follows", before=(guard.condition("check", f"({flag} == true)"),))
+    reset = guard.leaf("Script", "taken", f"{flag} := false")
+    guard.wrap(INSIDE, "Sequence", "started", before=(reset,))
     if not isinstance(subject, NodeTarget):
         return
     attribute = _RECORDED_BY[event.happening]
     note = f"{flag} := true"
     if attribute is None:
-        draft.around(INSIDE, "Sequence", "event", before=(draft.leaf("Script", "seen", note),), node=subject.node)
+        guard.wrap(INSIDE, "Sequence", "event", before=(guard.leaf("Script", "seen", note),), node=subject.node)
     else:
-        draft.around(INSIDE, "Sequence", "event", attributes=((attribute, note),), node=subject.node)
+        guard.wrap(INSIDE, "Sequence", "event", attributes=((attribute, note),), node=subject.node)
 
 
-def _upper(draft: Guarded) -> Limit:
+def _upper_bound(guard: ClauseGuard) -> Limit:
     """The upper bound of a clause."""
-    limit = draft.claim.limit
+    limit = guard.claim.limit
     assert limit is not None, "the clause has a bound"
     if limit.relation in (">=", ">"):
         raise NotEnforced("the engine can stop a node, but cannot make it do more")
     if limit.upper is None:
         return limit
-    draft.notes.append("its lower bound is only monitored")
+    guard.notes.append("its lower bound is only monitored")
     return Limit("<=", limit.upper)
 
 
-def _condition(draft: Guarded) -> Condition:
-    assert draft.claim.condition is not None, "the clause has one"
-    return draft.claim.condition
+def _condition(guard: ClauseGuard) -> Condition:
+    assert guard.claim.condition is not None, "the clause has one"
+    return guard.claim.condition
 
 
 def _is_above(node: ResolvedNode, below: ResolvedNode) -> bool:
@@ -356,7 +357,7 @@ _RECORDED_BY: Final[dict[str, str | None]] = {
     "fails": "_onFailure",
     "finishes": "_post",
 }
-_BY_VERB: Final[dict[str, Callable[[Guarded], None]]] = {
+_BY_VERB: Final[dict[str, Callable[[ClauseGuard], None]]] = {
     "takes": _takes,
     "succeeds": _succeeds,
     "needs": _needs,

@@ -1,10 +1,11 @@
 """XML text to a document, as BehaviorTree.CPP reads it.
 
-One invariant: what the engine's reader (tinyxml2) loads is read, with the elements and values that it sees; what it
-refuses is refused.  That is more lenient than the standard in some points (`--` in comments, `<` and `&` in values,
-text around the document element) and stricter in others (no processing instruction inside the document element), so
-`strict` judges the text as well: what only the engine accepts is a warning.  Every step moves forward, nothing is
-expanded, fetched or nested by recursion.  It does not know what the elements mean.
+One invariant: but for a NUL character before the last tag, which it refuses, this module accepts exactly the texts that
+the engine's parser (tinyxml2) accepts, and reads the same elements and values from them.  That is more lenient than the
+standard in some points (`--` in comments, `<` and `&` in values, text around the document element) and stricter in
+others (no processing instruction inside the document element), so `strict` judges the text as well: what only the
+engine accepts is a warning.  The reader moves forward only, expands no entities that the document defines, fetches
+nothing, and does not recurse.  This module does not interpret the elements.
 
 Source: tinyxml2 11, `XMLNode::ParseDeep`, `XMLDocument::Identify`, `XMLElement::ParseAttributes`.
 """
@@ -39,7 +40,8 @@ from btq_lang.util.text import LINE_END, Span
 if TYPE_CHECKING:
     from btq_lang.btcpp.malformed import Mistake
 
-# Its name, its attributes (None: an end tag), whether it is an empty element, its length, whether text may follow it.
+# name, attributes (None: an end tag), is_empty, length, may_have_text (after it).  A NamedTuple takes six times as long
+# to make.
 Tag: TypeAlias = tuple[str, tuple[Attribute, ...] | None, bool, int, bool]
 
 MAX_DEPTH: Final = 498  # open elements; the engine refuses the next one
@@ -113,7 +115,7 @@ class _Reader:
         self.is_strict: Final = is_strict  # whether duplicate attributes are excluded already
         self.open: Final[list[Element]] = []
         self.attributes: Final[dict[str, tuple[Attribute, ...]]] = {}  # by their text: many nodes have the same
-        self.is_marked = False  # whether there was a DOCTYPE or the like
+        self.seen_markup_declaration = False  # whether a DOCTYPE or a CDATA section was read
         self.has_prefixes = False  # whether there may be names like `xsi:type`, which some tools refuse
 
     def contents(self) -> list[Content]:
@@ -147,37 +149,37 @@ class _Reader:
                 tag = self.tag(match, start, end)
                 if match.end() <= end:
                     tags[stripped] = tag
-            name, attributes, is_leaf, length, has_text = tag
+            name, attributes, is_empty, length, may_have_text = tag
             last_end = start + length
             if attributes is None:
                 if not opened:  # the engine stops reading here
                     return top
                 element = opened.pop()
                 if name != element.tag:
-                    self.mismatched(element, Span(start, last_end), name)
+                    self.fail_mismatched(element, Span(start, last_end), name)
                 element.close = last_end
                 contents = opened[-1].children if opened else top
             else:
                 element = Element(name, attributes, None, text, start, last_end)
                 contents.append(element)
-                if not is_leaf:
+                if not is_empty:
                     opened.append(element)
                     contents = element.children
                     if len(opened) > MAX_DEPTH:
                         raise _Broken(Diagnostic("nested-too-deep", Span(start, last_end), _TOO_DEEP))
-            if has_text:
+            if may_have_text:
                 self.characters(last_end, text.find("<", last_end), contents)
         if opened:
-            self.unclosed(opened[-1])
+            self.fail_unclosed(opened[-1])
         return top
 
     def tag(self, match: re.Match[str], start: int, end_of_piece: int) -> Tag:
         """A tag; text may follow it unless it is all of its piece."""
         name, pairs, slash, closing = match.groups()
         end = match.end()
-        has_text = end != end_of_piece
+        may_have_text = end != end_of_piece
         if closing is not None:
-            return closing, None, False, end - start, has_text
+            return closing, None, False, end - start, may_have_text
         attributes = self.attributes.get(pairs)
         if attributes is None:
             attributes = self.attributes[pairs] = tuple([Attribute(key, raw) for key, _, raw in _ATTRIBUTES(pairs)])
@@ -186,8 +188,8 @@ class _Reader:
         if ":" in name:
             self.has_prefixes = True
         if not self.is_strict and len({each.name for each in attributes}) < len(attributes):
-            self.twice(name, Span(start, end))
-        return name, attributes, slash == "/", end - start, has_text
+            self.fail_duplicate_attribute(name, Span(start, end))
+        return name, attributes, slash == "/", end - start, may_have_text
 
     def other(self, start: int, last_end: int, contents: list[Content], is_first: bool) -> int:
         """Read what begins with `<` but is not a tag; return where it ends."""
@@ -195,13 +197,16 @@ class _Reader:
         if text.startswith("<!--", start):
             return self.comment(start, last_end, contents)
         if text.startswith("<!", start):
-            return self.marked(start, contents)
+            return self.markup_declaration(start, contents)
         if text.startswith("<?", start):
             return self.declaration(start, is_first)
-        self.broken_tag(start)
+        self.fail_malformed_tag(start)
 
     def characters(self, start: int, end: int, contents: list[Content]) -> None:
-        """Add text between tags, if it is not blank; the engine cannot end it after the last tag."""
+        """Add the text between two tags unless it is blank.
+
+        Text after the last tag is refused after the document element and otherwise dropped, as the engine does.
+        """
         if end < 0:
             end = len(self.text)
         between = self.text[start:end]
@@ -211,12 +216,12 @@ class _Reader:
         is_last = end == len(self.text)
         if is_last and not self.open and any(isinstance(content, Element) for content in contents):
             begin = start + between.index(stripped)
-            self.broken(Span(begin, begin + len(stripped)), "unexpected text after the document element", "remove it")
+            self.fail(Span(begin, begin + len(stripped)), "unexpected text after the document element", "remove it")
         if not is_last:
             contents.append(XmlText(unescape(_line_ends(between)), start))
 
-    def mismatched(self, element: Element, span: Span, closing: str) -> NoReturn:
-        """Refuse `</b>` where another element is open."""
+    def fail_mismatched(self, element: Element, span: Span, closing: str) -> NoReturn:
+        """Report `</b>` where another element is open."""
         note = f"write </{element.tag}>"
         if any(other.tag == closing for other in self.open):
             note = f"close <{element.tag}> first: write </{element.tag}>, or /> where it has no children"
@@ -226,7 +231,7 @@ class _Reader:
             if (tag := engine_element(closing)) not in ("", element.tag):
                 note = f"the engine's element is <{tag}>: write <{tag}> where it opens, and </{tag}> here"
         related = (Related(Place(Span(element.start, element.end)), f"<{element.tag}> opens here"),)
-        self.broken(span, f"expected </{element.tag}>, found </{closing}>", note, related)
+        self.fail(span, f"expected </{element.tag}>, found </{closing}>", note, related)
 
     def comment(self, start: int, last_end: int, contents: list[Content]) -> int:
         """ "<!--" … "-->"; last_end: the end of what was read last"""
@@ -237,9 +242,9 @@ class _Reader:
         contents.append(XmlComment(_line_ends(text[start + 4 : end]), beside, start))
         return end + 3
 
-    def marked(self, start: int, contents: list[Content]) -> int:
+    def markup_declaration(self, start: int, contents: list[Content]) -> int:
         """ "<![CDATA[" … "]]>", "<!" … ">"; the latter is skipped, as the engine does"""
-        self.is_marked = True
+        self.seen_markup_declaration = True
         text = self.text
         if text.startswith("<![CDATA[", start):
             end = self.closing("]]>", start + 9, start, "missing ]]> for this CDATA section")
@@ -253,27 +258,25 @@ class _Reader:
         """ "<?" … "?>": the engine takes each for a declaration, which must come first"""
         end = self.closing("?>", start + 2, start, "missing ?> for this declaration") + 2
         self.has_prefixes = self.has_prefixes or ":" in self.text[start:end]
-        if not is_first or self.is_marked:
+        if not is_first or self.seen_markup_declaration:
             span = Span(start, end)
             what = "an XML declaration" if self.text.startswith("<?xml ", start) else "a processing instruction"
-            self.broken(
-                span, f"{what} after other content", "the engine expects it first in the file; move or remove it"
-            )
+            self.fail(span, f"{what} after other content", "the engine expects it first in the file; move or remove it")
         return end
 
     def closing(self, mark: str, begin: int, start: int, message: str) -> int:
         end = self.text.find(mark, begin)
         if end < 0:
-            self.broken(Span(start, min(begin, len(self.text))), message, f"write {mark} where it ends")
+            self.fail(Span(start, min(begin, len(self.text))), message, f"write {mark} where it ends")
         return end
 
     # ---- mistakes ----
 
-    def broken(self, span: Span, message: str, note: str, related: tuple[Related, ...] = ()) -> NoReturn:
+    def fail(self, span: Span, message: str, note: str, related: tuple[Related, ...] = ()) -> NoReturn:
         raise _Broken(Diagnostic(RULE, span, message, related, (note,)))
 
-    def twice(self, tag: str, span: Span) -> NoReturn:
-        """Refuse two values for one attribute."""
+    def fail_duplicate_attribute(self, tag: str, span: Span) -> NoReturn:
+        """Report an attribute that is given twice."""
         first: dict[str, Span] = {}
         for match in attribute_matches(self.text, span.start, span.end):
             name = match[1]
@@ -281,13 +284,13 @@ class _Reader:
                 break
             first[name] = Span(*match.span(1))
         related = (Related(Place(first[name]), "its first value is here"),)
-        self.broken(Span(*match.span(1)), f"duplicate attribute `{name}` in <{tag}>", "keep one of them", related)
+        self.fail(Span(*match.span(1)), f"duplicate attribute `{name}` in <{tag}>", "keep one of them", related)
 
-    def unclosed(self, element: Element) -> NoReturn:
+    def fail_unclosed(self, element: Element) -> NoReturn:
         message = f"<{element.tag}> is never closed"
-        self.broken(Span(element.start, element.end), message, f"write </{element.tag}> where it ends")
+        self.fail(Span(element.start, element.end), message, f"write </{element.tag}> where it ends")
 
-    def broken_tag(self, start: int) -> NoReturn:
+    def fail_malformed_tag(self, start: int) -> NoReturn:
         """Report where a tag is malformed: parse it again, piece by piece."""
         text, size = self.text, len(self.text)
         name = _NAME(text, start + (2 if text.startswith("</", start) else 1))
@@ -295,30 +298,30 @@ class _Reader:
             note = "write the character as &lt;"
             if self.text.startswith("--", start + 1) or self.text.startswith("!-", start + 1):
                 note = "a comment is written <!-- … -->"
-            self.broken(Span(start, start + 1), "unexpected `<`: no tag begins here", note)
+            self.fail(Span(start, start + 1), "unexpected `<`: no tag begins here", note)
         offset = name.end()
         while True:
             offset = _SPACE(text, offset).end()  # type: ignore[union-attr]  # it matches nothing at least
             if offset >= size:
-                self.broken(Span(start, name.end()), f"missing > for <{name[0]}", "write > or /> where the tag ends")
+                self.fail(Span(start, name.end()), f"missing > for <{name[0]}", "write > or /> where the tag ends")
             key = _NAME(text, offset)
             equals = _EQUALS(text, key.end()) if key is not None else None
             if equals is None and text[offset - 1] in "\"'" and text[offset] not in "\"',;":
                 span = Span(offset, key.end() if key is not None else offset + 1)
                 note = "write a quote in a value as &quot;, in a script as '"
-                self.broken(span, f"the value before `{text[span.start : span.end]}` ends at its second quote", note)
+                self.fail(span, f"the value before `{text[span.start : span.end]}` ends at its second quote", note)
             if key is None:
                 shown = text[offset] if text[offset].isprintable() else repr(text[offset])
                 note = 'attributes are written name="value", and a tag ends with > or />'
                 message = f"expected an attribute or the end of <{name[0]}>, found `{shown}`"
-                self.broken(Span(offset, offset + 1), message, note)
+                self.fail(Span(offset, offset + 1), message, note)
             if equals is None:
                 note = f'write {key[0]}="…", or remove it'
-                self.broken(Span(offset, key.end()), f"missing value in quotes for the attribute `{key[0]}`", note)
+                self.fail(Span(offset, key.end()), f"missing value in quotes for the attribute `{key[0]}`", note)
             end = text.find(equals[1], equals.end())
             if end < 0:
                 message = f"missing closing {equals[1]} for the value of `{key[0]}`"
-                self.broken(Span(equals.end() - 1, equals.end()), message, f"write {equals[1]} where it ends")
+                self.fail(Span(equals.end() - 1, equals.end()), message, f"write {equals[1]} where it ends")
             offset = end + 1
 
 
@@ -339,7 +342,7 @@ _TOO_DEEP: Final = f"more than {MAX_DEPTH} nested elements, which BehaviorTree.C
 _PART: Final = 32_000
 _BLANKS: Final = " \t\n\v\f\r"
 _PAIRS: Final = rf"((?:{SPACE}{WORD}{SPACE}={SPACE}(?:\"[^\"]*\"|'[^']*'))*)"
-# No two parts of it can match the same characters, so there is only one way to match: the time is linear.
+# No two adjacent parts can match the same characters, so a text matches in one way only, and the time is linear.
 _TAG: Final = re.compile(
     rf"<(?:{SPACE}({WORD})(?!{IN_WORD}){_PAIRS}{SPACE}(/?)>|/({WORD})(?!{IN_WORD})(?:{SPACE}{WORD}{SPACE}={SPACE}(?:\"[^\"]*\"|'[^']*'))*{SPACE}>)"
 ).match

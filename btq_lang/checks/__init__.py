@@ -374,10 +374,10 @@ def _reported(
     if type(facts.item) is syntax.Include and not is_alone:
         diagnostics = [*diagnostics, *includes.include_with_errors(view, _errors_in)]
     if entry.diagnostics:
-        from btq_lang.checks.misplaced_children import on_own_lines  # few items have mistakes in their syntax
+        from btq_lang.checks.misplaced_children import reword_diagnostics  # few items have mistakes in their syntax
         from btq_lang.checks.positional import with_ports
 
-        reported = meant_entries.with_entries(view, with_ports(view, on_own_lines(view, entry.diagnostics)))
+        reported = meant_entries.with_entries(view, with_ports(view, reword_diagnostics(view, entry.diagnostics)))
         diagnostics = (*reported, *_on_sound_lines(diagnostics, entry, view.text))
     elif not diagnostics:
         return None

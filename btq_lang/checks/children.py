@@ -10,7 +10,13 @@ from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.nodes import is_by_children
 from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks.kinds import OF_SUBTREE, declared_category, model_related
-from btq_lang.checks.misplaced_children import TOO_FAR, below, dedented, label_as_child, sequence_above
+from btq_lang.checks.misplaced_children import (
+    TOO_FAR,
+    dedent_fixes,
+    indent_below_fixes,
+    label_as_child,
+    wrap_in_sequence_fixes,
+)
 from btq_lang.checks.ports import is_case
 from btq_lang.checks.view import View, misspelt_clause
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
@@ -69,8 +75,8 @@ def child_count(view: View) -> Iterator[Diagnostic]:
             span = extra.head.span if isinstance(extra, Node) else Span(extra.start, extra.end)
             related += (Related(Place(span), "first extra child"),)
         message = f"{_called(resolved)} requires {_range(least, most)}, found {count or 'none'}"
-        fixes = sequence_above(view, resolved.node.children) if most == 1 < count else ()
-        if most is not None and count > most and (moved := dedented(view, resolved, resolved.node.children[most:])):
+        fixes = wrap_in_sequence_fixes(view, resolved.node.children) if most == 1 < count else ()
+        if most is not None and count > most and (moved := dedent_fixes(view, resolved, resolved.node.children[most:])):
             notes, fixes = (*notes, TOO_FAR), moved + fixes
         if count == 0 and resolved.behavior is not None:
             as_child, fixes = label_as_child(view, resolved)
@@ -94,7 +100,7 @@ def _beside(view: View, resolved: ResolvedNode, most: int | None) -> tuple[tuple
     if not siblings or view.is_xml:
         return (), ()
     if most == 1:
-        return (CHILD,), below(view, resolved.node, siblings[:1])
+        return (CHILD,), indent_below_fixes(view, resolved.node, siblings[:1])
     return (BELOW,), ()  # at the top of a tree, tree_root_count indents them
 
 

@@ -17,7 +17,7 @@ from btq_lang.catalog.versions import VERSIONS, at_least, is_before_4, last_of
 from btq_lang.checks import calls, lookups
 from btq_lang.checks.engines import is_for_version_3, is_for_version_4, old_words
 from btq_lang.checks.lookups import Declaration
-from btq_lang.checks.misplaced_children import TOO_FAR, dedented, has_bare_label, label_as_child
+from btq_lang.checks.misplaced_children import TOO_FAR, dedent_fixes, has_bare_label, label_as_child
 from btq_lang.checks.missing_ids import missing_id
 from btq_lang.checks.view import COUNTS, SECOND, View, has_names, is_first_tree, misspelt_clause, near_names
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related, replace_fix
@@ -399,7 +399,7 @@ def _unknown(view: View, resolved: ResolvedNode, name: Word) -> Iterator[Diagnos
         why = "it has children and is not built in" if is_parent else f"{others} have models"
         why = "no C++ of the factory registers it" if are_in_cpp else why
         notes = (f"{why}; to declare {'it' if is_parent else 'this one'}, write {shortest}",)
-        if moved := dedented(view, resolved, resolved.node.children):
+        if moved := dedent_fixes(view, resolved, resolved.node.children):
             notes, fixes = (*notes, TOO_FAR), fixes + moved
     severity = None if likely or has_palette else Severity.HINT
     if has_palette and view.factory is not None and view.factory.nodes:

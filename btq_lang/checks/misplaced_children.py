@@ -1,7 +1,8 @@
-"""Children in the wrong place: on the line of their parent (`Inverter Dark`, where the language reads a label, and
-`Sequence Go, Turn`), too deep, or several where one must be; and the fixes that move them.
+"""Misplaced children, and the fixes that move them: on the line of their parent (`Sequence Go, Turn`, or
+`Inverter Dark`, in which `Dark` is read as a label), indented too far, or more of them than the parent takes.
 
-One invariant: only a node that must have children and has none below it is said to have one on its line.
+One invariant: a word on a node's line is reported as a child only if the node must have children and, unless the word
+is the name of a known node, has none below it.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from btq_lang.grammar.cursor import QUOTES
 from btq_lang.grammar.nodes import CHILD
 from btq_lang.lexer import tokens
 from btq_lang.syntax.scan import line_end, line_start
-from btq_lang.syntax.suggestions import CHILDREN as ON_LINES
+from btq_lang.syntax.suggestions import CHILDREN as CHILDREN_ON_LINES
 from btq_lang.syntax.tokens import NAME, NODE_CLAUSES
 from btq_lang.syntax.tree import Node, Tree, Verbatim, is_name
 from btq_lang.util.record import replace
@@ -39,7 +40,7 @@ def label_as_child(view: View, resolved: ResolvedNode, tag: str = "") -> tuple[t
         return (), ()
     notes = (f"btq reads `{node.label.raw}` as the label of `{node.head.text}`; {CHILD}",)
     has_own_ports = resolved.kind is not None and any(resolved.kind.port(pair.key.text) for pair in node.attributes)
-    fixes = () if has_own_ports or node.clauses else _on_lines(view, node, (node.label.start,))
+    fixes = () if has_own_ports or node.clauses else _line_break_fixes(view, node, (node.label.start,))
     if tag:
         title = f"Write `{tag}`, and `{node.label.raw}` on a line of its own"
         fixes = tuple([Fix(title, (FixEdit(Place(node.head.span), tag), *fix.changes)) for fix in fixes])
@@ -51,17 +52,17 @@ def has_bare_label(view: View, node: Node) -> bool:
     return node.label is not None and node.label.kind == NAME and not (node.children or view.is_xml)
 
 
-def on_own_lines(view: View, reported: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+def reword_diagnostics(view: View, reported: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """The parser's diagnostics of an item, reworded where the parser took a child for a label."""
     for diagnostic in reported:
         yield (
-            _on_own_line(view, diagnostic)
+            _reworded(view, diagnostic)
             if isinstance(view.item, Tree) and diagnostic.notes[:1] in _REPORTED
             else diagnostic
         )
 
 
-def _on_own_line(view: View, reported: Diagnostic) -> Diagnostic:
+def _reworded(view: View, reported: Diagnostic) -> Diagnostic:
     text, offset = view.text, reported.span.start
     resolved = view.node_before(offset)
     if resolved is None or resolved.behavior is None or resolved.behavior.children[0] == 0:
@@ -74,13 +75,18 @@ def _on_own_line(view: View, reported: Diagnostic) -> Diagnostic:
         word = text[offset : reported.span.end]
         if node.label is not None or not is_name(word) or (node.children and not _is_node(view, word)):
             return reported
-        fixes = () if node.children else _on_lines(view, node, (offset,))
+        fixes = () if node.children else _line_break_fixes(view, node, (offset,))
         return replace(reported, message=CHILD, notes=(), fixes=fixes)
     names = _NAMES.match(text, node.head.end, end)
     words = [*_NAME.finditer(text, node.head.end, names.end(1))] if names is not None else []
     if node.children or not words or not NODE_CLAUSES.isdisjoint(word[0] for word in words):
         return reported
-    return replace(reported, message=ON_LINES, notes=(), fixes=_on_lines(view, node, [word.start() for word in words]))
+    return replace(
+        reported,
+        message=CHILDREN_ON_LINES,
+        notes=(),
+        fixes=_line_break_fixes(view, node, [word.start() for word in words]),
+    )
 
 
 def _is_node(view: View, word: str) -> bool:
@@ -91,8 +97,10 @@ def _is_node(view: View, word: str) -> bool:
     )
 
 
-def _on_lines(view: View, node: Node, starts: Sequence[int]) -> tuple[Fix, ...]:
-    """The fix that begins lines of their own at some words after a node's kind, one step deeper."""
+def _line_break_fixes(view: View, node: Node, starts: Sequence[int]) -> tuple[Fix, ...]:
+    """The fix that moves the words at `starts`, which follow a node's kind, each to its own line, indented one level
+    deeper.
+    """
     text = view.text
     line = line_start(text, 0, node.start)
     margin = text[line : node.start]
@@ -103,7 +111,7 @@ def _on_lines(view: View, node: Node, starts: Sequence[int]) -> tuple[Fix, ...]:
     return () if margin.strip() else (Fix(title, tuple(changes)),)
 
 
-def sequence_above(view: View, children: Sequence[Node | Verbatim]) -> tuple[Fix, ...]:
+def wrap_in_sequence_fixes(view: View, children: Sequence[Node | Verbatim]) -> tuple[Fix, ...]:
     """The fix that writes `->` above children of one parent; none if their lines cannot be indented."""
     margin, step, starts = _movable_lines(view, children)
     if not starts:
@@ -112,14 +120,14 @@ def sequence_above(view: View, children: Sequence[Node | Verbatim]) -> tuple[Fix
     return (Fix("Put them below a Sequence `->`", (above, *_indented(starts[1:], step))),)
 
 
-def below(view: View, parent: Node, siblings: Sequence[Node | Verbatim]) -> tuple[Fix, ...]:
+def indent_below_fixes(view: View, parent: Node, siblings: Sequence[Node | Verbatim]) -> tuple[Fix, ...]:
     """The fix that indents the nodes after a parent without children, so that they are its children."""
     _, step, starts = _movable_lines(view, siblings)
     title = f"Indent {'it' if len(siblings) == 1 else 'them'} below `{parent.head.text}`"
     return (Fix(title, tuple(_indented(starts, step))),) if starts else ()
 
 
-def dedented(view: View, resolved: ResolvedNode, children: Sequence[Node | Verbatim]) -> tuple[Fix, ...]:
+def dedent_fixes(view: View, resolved: ResolvedNode, children: Sequence[Node | Verbatim]) -> tuple[Fix, ...]:
     """The fix that dedents some children of a node to its level; none if its parent takes no more."""
     parent = resolved.parent
     category = parent.stated_category if parent is not None else None
@@ -155,12 +163,12 @@ def _movable_lines(view: View, children: Sequence[Node | Verbatim]) -> tuple[str
 
 
 def _end(child: Node | Verbatim) -> int:
-    """Where a node and all that is below it ends."""
-    below = [part for node in child.walk() for part in (node, *node.children)] if isinstance(child, Node) else []
-    return max(part.end for part in (child, *below))
+    """The end offset of a node with all its descendants."""
+    descendants = [part for node in child.walk() for part in (node, *node.children)] if isinstance(child, Node) else []
+    return max(part.end for part in (child, *descendants))
 
 
-_REPORTED: Final = ((CHILD,), (ON_LINES,), (QUOTES,))
+_REPORTED: Final = ((CHILD,), (CHILDREN_ON_LINES,), (QUOTES,))
 _NAME: Final = re.compile(r"[^\W\d]\w*")
 _NAMES: Final = re.compile(r"((?:[ \t,]+[^\W\d]\w*)+)[ \t]*(?=#|\r?\n|\Z|\r)")
 TOO_FAR: Final = "what is below it may be indented too far"

@@ -1,8 +1,8 @@
 """Blackboard entries whose name is misspelt.
 
 Every name is an entry to the engine, and the robot's program may read and write any, so an unused name proves nothing.
-A name is reported if it occurs in one place only, its use there has no effect, and another name in the same tree
-differs from it as only misspellings do.
+A name is reported if it occurs in one place only, it has no effect there, and another name in scope differs from it
+only as a misspelling would.
 """
 
 from __future__ import annotations
@@ -29,8 +29,9 @@ from btq_lang.workspace.workspace import Workspace
 
 
 def misspelt_entry(view: View) -> Iterator[Diagnostic]:
-    """An entry that is named once, and read though nothing writes it, or written though nothing reads it, if another
-    entry has nearly the same name."""
+    """Entries that are named once, only read or only written, and almost spelt like another entry; also `True` and
+    unquoted texts in scripts.
+    """
     tree = view.item
     mentions = view.ask(mentions_in, view.path, view.facts)
     if not isinstance(tree, Tree) or tree.name is None or not mentions:
@@ -44,17 +45,17 @@ def misspelt_entry(view: View) -> Iterator[Diagnostic]:
     names = dict.fromkeys((*counts, *(port.name.text for port in tree.ports if port.name is not None)))
     if (outside := view.ask(lookups.outside_entries)) and not view.ask(callers, tree.name.text):
         names |= dict.fromkeys(name for name, _ in outside)
-    of_program = view.ask(lookups.set_in_cpp).names
-    if of_program and not view.ask(callers, tree.name.text):
-        names |= dict.fromkeys(sorted(of_program))
+    names_set_in_cpp = view.ask(lookups.set_in_cpp).names
+    if names_set_in_cpp and not view.ask(callers, tree.name.text):
+        names |= dict.fromkeys(sorted(names_set_in_cpp))
     if any(mention.name[:1] == "@" for mention in mentions):
-        names |= dict.fromkeys(f"@{name}" for name in sorted(view.ask(_root_names) | of_program))
-    by_piece = _by_piece(names)
+        names |= dict.fromkeys(f"@{name}" for name in sorted(view.ask(_root_names) | names_set_in_cpp))
+    deletion_index = _deletion_index(names)
     reported: set[str] = set()
     for mention in mentions:
         if counts[mention.name] > 1:
             continue
-        for meant in _alike(mention.name, by_piece):
+        for meant in _alike(mention.name, deletion_index):
             if meant in reported or _occur_together(mentions, mention, meant):
                 continue
             if view.ask(_is_meant, tree.name.text, mention.name, meant, meant in counts) and view.ask(
@@ -63,13 +64,13 @@ def misspelt_entry(view: View) -> Iterator[Diagnostic]:
                 reported.add(mention.name)
                 yield _diagnostic(mentions, mention, meant, counts.get(meant) == 1)
                 break
-    once = [
+    unreported_in_scripts = [
         mention
         for mention in mentions
         if mention.in_script and counts[mention.name] == 1 and mention.name not in reported
     ]
-    if once:
-        yield from _unquoted_texts(once, view, tree.name.text)
+    if unreported_in_scripts:
+        yield from _unquoted_texts(unreported_in_scripts, view, tree.name.text)
 
 
 def _misspelt_booleans(mentions: Iterable[EntryMention], view: View, tree: str) -> Iterator[Diagnostic]:
@@ -109,12 +110,12 @@ def _unquoted_texts(mentions: Iterable[EntryMention], view: View, tree: str) -> 
 
 
 def _may_be_text(name: str) -> bool:
-    """Whether a name may be a text without quotes; those of enumerations are in capitals."""
+    """Whether a name may be a text whose quotes are missing; one in capitals is taken for an enumeration constant."""
     return name[:1] != "@" and not name.isupper() and name.lower() not in ("true", "false")
 
 
 def _occur_together(mentions: Iterable[EntryMention], mention: EntryMention, other: str) -> bool:
-    """Whether one node has both entries at its ports, or creates both: then two are meant."""
+    """Whether the same node uses the other entry in a port, or writes both; then they are two different entries."""
     other = other.removeprefix("@")
     return any(
         another.node is mention.node
@@ -142,7 +143,7 @@ def _is_meant(store: Store[Workspace], viewpoint: str, tree: str, name: str, mea
     """Whether the use of one entry has no effect, and would have one for another entry.
 
     Args:
-        is_mentioned: whether the tree names the other one other than as a port.
+        is_mentioned: whether the tree mentions `meant` outside its port declarations.
     """
     boards = store.ask(blackboards, viewpoint)
     if boards.is_given(tree, name) or boards.is_one(tree, name, meant):
@@ -152,17 +153,18 @@ def _is_meant(store: Store[Workspace], viewpoint: str, tree: str, name: str, mea
         return False
     uses, other_uses = boards.uses_of(tree, name), boards.uses_of(tree, meant)
     is_port = boards.is_port(tree, meant)
-    of_program = store.ask(lookups.set_in_cpp, viewpoint).names
-    if name.removeprefix("@") in of_program:
+    names_set_in_cpp = store.ask(lookups.set_in_cpp, viewpoint).names
+    if name.removeprefix("@") in names_set_in_cpp:
         return False
     if not any(use.writes for use in uses):  # read only
         root, entry = boards.place(tree, meant)
-        return is_port or any(use.writes for use in other_uses) or (not root and entry in of_program)
-    if _is_skeleton(name, meant):
+        return is_port or any(use.writes for use in other_uses) or (not root and entry in names_set_in_cpp)
+    if _is_without_vowels(name, meant):
         return False
     if not any(use.reads for use in uses):  # written only
-        is_reported_there = len(other_uses) == 1 and not other_uses[0].writes  # there, where it is read
-        return is_port or (any(use.reads for use in other_uses) and not is_reported_there)
+        # the only use of the other name is a read, which gets its own diagnostic
+        reported_at_read = len(other_uses) == 1 and not other_uses[0].writes
+        return is_port or (any(use.reads for use in other_uses) and not reported_at_read)
     return len(uses) == 1 and (is_port or is_mentioned)
 
 
@@ -187,37 +189,42 @@ def _diagnostic(mentions: Iterable[EntryMention], mention: EntryMention, meant: 
 
 
 def _renaming(mention: EntryMention, name: str) -> Fix:
-    is_bare = len(mention.name) == mention.span.end - mention.span.start  # else it is `{=}`
+    # otherwise the source is `{=}`, short for the port's own name
+    is_bare = len(mention.name) == mention.span.end - mention.span.start
     return replace_fix(f"Replace `{mention.name}` with `{name}`", mention.span, name if is_bare else f"{{{name}}}")
 
 
-def _by_piece(names: Iterable[str]) -> dict[str, list[str]]:
-    """An index to find similar names without comparing all pairs: two names one edit apart become equal, or equal to
-    the other, when one letter is left out."""
-    by_piece: dict[str, list[str]] = {}
+def _deletion_index(names: Iterable[str]) -> dict[str, list[str]]:
+    """An index to find similar names without comparing all pairs: if two names are one edit apart, deleting at most one
+    letter from each makes them equal.
+    """
+    index: dict[str, list[str]] = {}
     for name in names:
-        for piece in _pieces(name):
-            by_piece.setdefault(piece, []).append(name)
-    return by_piece
+        for variant in _deletions(name):
+            index.setdefault(variant, []).append(name)
+    return index
 
 
-def _alike(name: str, by_piece: dict[str, list[str]]) -> list[str]:
-    """The names that may be meant by another one, the most similar first."""
-    slips = {other for piece in _pieces(name) for other in by_piece.get(piece, ()) if _is_slip(name, other)}
-    return sorted(slips - {name}, key=lambda other: (distance(name, other), other))
+def _alike(name: str, deletion_index: dict[str, list[str]]) -> list[str]:
+    """The names of which `name` may be a misspelling, the most similar first."""
+    candidates = {
+        other for variant in _deletions(name) for other in deletion_index.get(variant, ()) if _is_slip(name, other)
+    }
+    return sorted(candidates - {name}, key=lambda other: (distance(name, other), other))
 
 
 @lru_cache(1_000)  # the same names are in tree after tree
 def _is_slip(word: str, meant: str) -> bool:
     """Whether two names are too similar to be meant for two things: `traget`, `batteryLevel`, `imgg`.
 
-    Numbered names, plurals and single letters are two things: `goal1` and `goal2`, `goals`, `goal_x`.
+    Names that differ in a digit, in a plural ending or, if they are short, in one letter at an end are different
+    things: `goal1` and `goal2`, `goal` and `goals`, `goal` and `goal_x`.
     """
     if any((word[:1] == sign) != (meant[:1] == sign) for sign in "@_"):
-        return False  # of the root, or private: not a misspelling
+        return False  # only one of them is on the root blackboard (`@`) or private (`_`): not a misspelling
     word, meant = word.removeprefix("@"), meant.removeprefix("@")
     folded, other = _folded(word), _folded(meant)
-    if folded == other or _is_skeleton(folded, other):
+    if folded == other or _is_without_vowels(folded, other):
         return len(folded) > 2
     if without_digits(folded) == without_digits(other):
         return False
@@ -236,13 +243,13 @@ def _is_slip(word: str, meant: str) -> bool:
 
 
 @lru_cache(1_000)
-def _pieces(name: str) -> frozenset[str]:
+def _deletions(name: str) -> frozenset[str]:
     name = _folded(name)
     return frozenset((name, _without_vowels(name), *(name[:index] + name[index + 1 :] for index in range(len(name)))))
 
 
-def _is_skeleton(word: str, meant: str) -> bool:
-    """`cnt` for `count`."""
+def _is_without_vowels(word: str, meant: str) -> bool:
+    """Whether a word is another one without its vowels: `cnt` for `count`."""
     return len(word) > 2 and word != meant and word == _without_vowels(meant)
 
 

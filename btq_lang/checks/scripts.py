@@ -30,7 +30,9 @@ def is_script(resolved: ResolvedNode, pair: Pair) -> bool:
 
 
 def _expects_value(resolved: ResolvedNode, pair: Pair) -> bool | None:
-    """Whether a script in this attribute must have a value, like a condition; None if it is not a script."""
+    """Whether a script in this attribute must end in an expression with a value, as a condition does; None if the
+    attribute is not a script.
+    """
     key = pair.key.text
     attribute = RESERVED_ATTRIBUTES.get(key)
     if attribute is not None:
@@ -38,7 +40,7 @@ def _expects_value(resolved: ResolvedNode, pair: Pair) -> bool | None:
     port = resolved.kind.port(key) if resolved.kind is not None else None
     if port is None or port.content != "script" or (pair.value is not None and is_pointer(pair.value.text)):
         return None
-    return resolved.flow != "succeeds"  # else the node succeeds whatever the value
+    return resolved.flow != "succeeds"  # a node that always succeeds ignores the value
 
 
 def _problems(view: View, resolved: ResolvedNode, key: str, value: Word, expects_value: bool) -> Iterator[Diagnostic]:
@@ -57,8 +59,10 @@ def _problems(view: View, resolved: ResolvedNode, key: str, value: Word, expects
 
 
 def _empty(resolved: ResolvedNode, key: str, value: Word, diagnostic: Diagnostic) -> Diagnostic:
-    """The diagnostic for an empty script, at the whole value: the engine runs a Script without any character, and
-    refuses all other empty ones."""
+    """The diagnostic for an empty script, with the whole value as its span.
+
+    The engine accepts `""` as the code of a Script node; it rejects any other empty script.
+    """
     is_port = resolved.kind is not None and resolved.kind.port(key) is not None
     if is_port and resolved.flow == "succeeds" and value.text == "":
         return replace(diagnostic, span=value.span, message="empty script", severity=Severity.WARNING)

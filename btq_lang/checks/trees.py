@@ -12,7 +12,7 @@ from btq_lang.catalog.versions import DEEP_TREES
 from btq_lang.checks import calls, lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.lookups import VisibleMeaning
-from btq_lang.checks.misplaced_children import below, sequence_above
+from btq_lang.checks.misplaced_children import indent_below_fixes, wrap_in_sequence_fixes
 from btq_lang.checks.missing_ids import missing_id
 from btq_lang.checks.view import View, is_first_tree, near_names
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related, Tag, replace_fix
@@ -229,9 +229,9 @@ def tree_root_count(view: View) -> Iterator[Diagnostic]:
     message = f"a tree must have one node at its top, found {len(tree.children)}"
     notes = (f"put them below one node, such as a Sequence{'' if view.is_xml else ' `->`'}",)
     related = (Related(Place(first), "first one"),)
-    fixes = sequence_above(view, tree.children)
+    fixes = wrap_in_sequence_fixes(view, tree.children)
     if (top := _lacks_children(view)) is not None:
-        fixes = below(view, top, tree.children[1:])
+        fixes = indent_below_fixes(view, top, tree.children[1:])
     yield Diagnostic("tree-root-count", extra, message, related, notes, fixes)
 
 

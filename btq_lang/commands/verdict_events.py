@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def events_problem(path: str | None) -> str | None:
-    """The usage error in the path of the file of the violations."""
+    """The usage error for the path of `--events`; None if it can be used."""
     if path is None:
         return None
     if os.path.splitext(path)[1] != _MCAP:
@@ -31,8 +31,8 @@ def events_problem(path: str | None) -> str | None:
     return None
 
 
-def overwrites(path: str, logs: Iterable[str]) -> str | None:
-    """The reason why violations cannot be written to a path: the file is one of the logs, or would be read as one."""
+def overwrite_problem(path: str, logs: Iterable[str]) -> str | None:
+    """The usage error for a path that is one of the logs, or is inside a log's folder; None otherwise."""
     file = os.path.realpath(path)
     for log in map(os.path.realpath, logs):
         if file == log or file.startswith(os.path.join(log, "")):
@@ -59,14 +59,16 @@ def write_events(path: str, report: VerdictReport, logs: Sequence[str], messages
     write_file(path, events.data)
     if events.uncounted:
         number = counted(events.uncounted, "violation")
-        messages.remark(f"btq verify: {path}: {number} left out; it has the first thousand of each clause")
+        messages.remark(
+            f"btq verify: {path}: left out {number}; the file contains only the first thousand of each clause"
+        )
     if events.untimed:
         number = counted(events.untimed, "violation")
-        messages.remark(f"btq verify: {path}: {number} left out; a ROS message cannot have their times")
+        messages.remark(f"btq verify: {path}: left out {number} whose times do not fit in a ROS timestamp")
 
 
 def _clocks(report: VerdictReport, logs: Sequence[str]) -> dict[str, Clock]:
-    """The clocks of the bags in which something is violated, by source."""
+    """The clocks of the bags that contain a violation, by source."""
     clock_of_source: dict[str, Clock] = {}
     violated_sources = {
         violation.source
@@ -79,7 +81,8 @@ def _clocks(report: VerdictReport, logs: Sequence[str]) -> dict[str, Clock]:
         name = shown(log)
         if any(source == name or source.startswith(f"{name} ") for source in violated_sources):
             for topic, clock in clocks(log).items():
-                clock_of_source[f"{name} {topic}"] = clock_of_source[name] = clock  # several topics are named
+                # a source names its topic only if the bag has several logs
+                clock_of_source[f"{name} {topic}"] = clock_of_source[name] = clock
     return clock_of_source
 
 

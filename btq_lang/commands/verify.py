@@ -10,7 +10,7 @@ from btq_lang.commands.candidates import candidates, strict_problem
 from btq_lang.commands.output import form_of, form_problem
 from btq_lang.commands.progress import Progress
 from btq_lang.commands.stored import opened, reads_store, store_problem, summarise, with_store
-from btq_lang.commands.verdict_events import events_problem, overwrites
+from btq_lang.commands.verdict_events import events_problem, overwrite_problem
 from btq_lang.commands.verdict_report import finish, progress_to_editor
 from btq_lang.commands.verify_options import FORMATS, VerifyOptions
 from btq_lang.evidence.judging import Means
@@ -46,7 +46,7 @@ def run(options: VerifyOptions, messages: CommandOutput) -> int:
         return summarise(options, options.store, messages)
     problems: list[str] = []
     logs, missions, samples = _inputs(options, problems)
-    if options.events is not None and (problem := overwrites(options.events, [*options.logs, *logs])):
+    if options.events is not None and (problem := overwrite_problem(options.events, [*options.logs, *logs])):
         problems.append(problem)
     if options.run is not None and not problems:
         return _print_run(logs, missions, options.run, messages)

@@ -30,26 +30,26 @@ def findings(nodes: CppNodes, texts: Mapping[str, str]) -> dict[str, tuple[Diagn
 
 def nothing_registered(texts: Mapping[str, str]) -> str:
     """The message for some files that register no node."""
-    where = "name the files with BT_REGISTER_NODES, registerNodeType or registerBuilder, too"
+    advice = "also pass the files that call BT_REGISTER_NODES, registerNodeType or registerBuilder"
     if (macro := next(uncalled(texts), None)) is not None:
-        where = f"`{macro.name}` of {macro.path} registers what it is given: name the files that use it, too"
-    return f"no node is registered in {counted(len(texts), 'C++ file')}; {where}"
+        advice = f"the macro `{macro.name}` in {macro.path} registers its argument: also pass the files that use it"
+    return f"no node is registered in {counted(len(texts), 'C++ file')}; {advice}"
 
 
-def _rule_findings(nodes_read: CppNodes) -> Iterator[tuple[str, SourcePosition, str]]:
+def _rule_findings(nodes: CppNodes) -> Iterator[tuple[str, SourcePosition, str]]:
     """Each finding: its rule, place and message; nodes that share a base class, and so a place, are named together."""
-    nodes: dict[tuple[str, SourcePosition, str], list[str]] = {}
-    for node in nodes_read.nodes:
+    names_by_finding: dict[tuple[str, SourcePosition, str], list[str]] = {}
+    for node in nodes.nodes:
         for port in node.unread:
             message = f"provides the port `{port.name}`, but its code never names it"
-            nodes.setdefault((UNUSED, port.place, message), []).append(node.name)
+            names_by_finding.setdefault((UNUSED, port.place, message), []).append(node.name)
         for use in node.undeclared:
             message = f"{'writes' if use.writes else 'reads'} the port `{use.port}`, which it does not provide"
-            nodes.setdefault((UNDECLARED, use.place, message), []).append(node.name)
-    for (rule, place, message), names in nodes.items():
-        more = f" (as {len(names) - 1} more)" if len(names) > 1 else ""
-        yield rule, place, f"`{names[0]}`{more} {message}"
-    for unseen in nodes_read.unseen:
+            names_by_finding.setdefault((UNDECLARED, use.place, message), []).append(node.name)
+    for (rule, place, message), names in names_by_finding.items():
+        others = f" (like {counted(len(names) - 1, 'other node')})" if len(names) > 1 else ""
+        yield rule, place, f"`{names[0]}`{others} {message}"
+    for unseen in nodes.unseen:
         yield UNSEEN, unseen.place, unseen.message
 
 

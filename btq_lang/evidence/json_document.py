@@ -84,7 +84,7 @@ def _mission(mission: MissionVerdicts) -> Json:
         "retries": _fields(mission.retries),
         "recoveries": _fields(mission.recoveries),
         "contexts": [_fields(each) for each in mission.contexts],
-        "nodes": [_fields(node, but=("is_leaf", "written")) for node in mission.nodes],
+        "nodes": [_fields(node, exclude=("is_leaf", "written")) for node in mission.nodes],
     }
 
 
@@ -100,13 +100,13 @@ def _requirement(requirement: RequirementVerdict, mission: MissionVerdicts) -> J
 
 def _clause(clause: ClauseVerdict) -> Json:
     return {
-        **_fields(clause, but=("of", "histogram", "timeline", "measures", "by_run")),
+        **_fields(clause, exclude=("of", "histogram", "timeline", "measures", "by_run")),
         "worst": _fields(clause.worst) if clause.worst is not None else None,
         "bounded": _fields(clause.bounded) if clause.bounded is not None else None,
         "limits": clause.limits if clause.interval is not None else None,
         "violations": [
             {
-                **_fields(violation, but=("passed",)),
+                **_fields(violation, exclude=("passed",)),
                 "start": timestamp(violation.start),
                 "measured": violation.measured or None,
                 "bound": violation.bound or None,
@@ -128,18 +128,24 @@ def _measures(measures: Measures) -> Json:
     return {**_fields(measures), "margins": margins}
 
 
-def _fields(record: object, but: Container[str] = ()) -> dict[str, Json]:
-    """The fields of a record by name; the schema has them."""
-    return {name: value for name, value in as_dict(record).items() if name not in but}
+def _fields(record: object, exclude: Container[str] = ()) -> dict[str, Json]:
+    """The fields of a record, by name; the schema describes each of them."""
+    return {name: value for name, value in as_dict(record).items() if name not in exclude}
 
 
 class NotVerdicts(ValueError):
-    """A text that is not such a document."""
+    """Text that is not a verdicts document."""
 
 
 class WrittenSource(Record):
-    """A log: its runs, the number of the first, when the last one ended, empty without any, whether all nodes were
-    found in the mission, and the numbers there of runs that are counted in another log.
+    """A log, as the document describes it.
+
+    Attributes:
+        runs: how many runs of the mission it contains.
+        first_run: the number of the first of them.
+        end: when the last of them ended; empty if there are none.
+        is_whole: whether all nodes of the log were found in the mission.
+        left_out: the numbers, in this log, of the runs that are counted in another log.
     """
 
     file: str
@@ -176,7 +182,8 @@ def read_verdicts(text: str) -> tuple[WrittenMission, ...]:
     try:
         document = json.loads(text)
         if document["format"] != FORMAT or document["version"] not in _VERSIONS:
-            raise NotVerdicts(f"expected {FORMAT} {VERSION}, found {document['format']} {document['version']}")
+            expected = " or ".join(map(str, _VERSIONS))
+            raise NotVerdicts(f"expected {FORMAT} {expected}, found {document['format']} {document['version']}")
         return tuple(
             WrittenMission(
                 mission["name"],
@@ -189,7 +196,7 @@ def read_verdicts(text: str) -> tuple[WrittenMission, ...]:
             for mission in document["missions"]
         )
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-        why = str(error) if isinstance(error, NotVerdicts) else "expected what btq verify --format json writes"
+        why = str(error) if isinstance(error, NotVerdicts) else _OTHER_TEXT
         raise NotVerdicts(why) from error
 
 
@@ -198,48 +205,47 @@ def _parts_of(mission: dict[str, Any], parts: Iterable[dict[str, Any]]) -> Itera
     return (part for part in parts if part["mission"] == mission["name"])
 
 
-def _read_requirement(written: dict[str, Any]) -> RequirementVerdict:
-    return RequirementVerdict(
-        written["id"], written["title"], written["verdict"], tuple(map(_read_clause, written["clauses"]))
-    )
+def _read_requirement(data: dict[str, Any]) -> RequirementVerdict:
+    return RequirementVerdict(data["id"], data["title"], data["verdict"], tuple(map(_read_clause, data["clauses"])))
 
 
-def _read_source(written: dict[str, Any]) -> WrittenSource:
-    is_whole = written["joined"] == written["nodes"]
-    end, left_out = written["end"] or "", tuple(written.get("left_out", ()))
-    return WrittenSource(written["file"], written["runs"], written["first_run"], end, is_whole, left_out)
+def _read_source(data: dict[str, Any]) -> WrittenSource:
+    is_whole = data["joined"] == data["nodes"]
+    end, left_out = data["end"] or "", tuple(data.get("left_out", ()))
+    return WrittenSource(data["file"], data["runs"], data["first_run"], end, is_whole, left_out)
 
 
-def _read_clause(written: dict[str, Any]) -> ClauseVerdict:
-    fields = {name: written[name] for name in ClauseVerdict.__match_args__ if name in written}
-    interval = written["interval"]
+def _read_clause(data: dict[str, Any]) -> ClauseVerdict:
+    fields = {name: data[name] for name in ClauseVerdict.__match_args__ if name in data}
+    interval = data["interval"]
     fields |= {
         "of": "",
-        "worst": Worst(**written["worst"]) if written["worst"] is not None else None,
-        "bounded": Bounded(**written["bounded"]) if written.get("bounded") is not None else None,
+        "worst": Worst(**data["worst"]) if data["worst"] is not None else None,
+        "bounded": Bounded(**data["bounded"]) if data.get("bounded") is not None else None,
         "interval": (interval[0], interval[1]) if interval is not None else None,
-        "limits": written["limits"] or "one look",
-        "violations": tuple(map(_violation, written["violations"])),
-        "by_run": tuple(map(_read_run_value, written.get("by_run", ()))),
+        "limits": data["limits"] or "one look",
+        "violations": tuple(map(_read_violation, data["violations"])),
+        "by_run": tuple(map(_read_run_value, data.get("by_run", ()))),
         "histogram": None,
-        "measures": _read_measures(written["measures"]) if "measures" in written else None,
+        "measures": _read_measures(data["measures"]) if "measures" in data else None,
     }
     return ClauseVerdict(**fields)
 
 
-def _read_run_value(written: dict[str, Any]) -> RunValue:
-    return RunValue(**{**written, "start": time_of(written["start"])})
+def _read_run_value(data: dict[str, Any]) -> RunValue:
+    return RunValue(**{**data, "start": time_of(data["start"])})
 
 
-def _read_measures(written: dict[str, Any]) -> Measures:
-    odds, margins = written["odds"], written["margins"]
+def _read_measures(data: dict[str, Any]) -> Measures:
+    odds, margins = data["odds"], data["margins"]
     read = {"odds": tuple(odds) if odds else None, "margins": Margins.read(margins) if margins else None}
-    return Measures(**{**written, **read})
+    return Measures(**{**data, **read})
 
 
-def _violation(written: dict[str, Any]) -> Violation:
-    words = {"measured": written["measured"] or "", "bound": written["bound"] or "", "start": time_of(written["start"])}
-    return Violation(**{**written, **words, "chain": tuple(CauseLink(**link) for link in written["chain"])})
+def _read_violation(data: dict[str, Any]) -> Violation:
+    converted = {"measured": data["measured"] or "", "bound": data["bound"] or "", "start": time_of(data["start"])}
+    return Violation(**{**data, **converted, "chain": tuple(CauseLink(**link) for link in data["chain"])})
 
 
-_VERSIONS: Final = range(1, VERSION + 1)  # what an older one has, this one has too
+_VERSIONS: Final = range(1, VERSION + 1)  # each version only adds fields
+_OTHER_TEXT: Final = "this is not a document that btq verify --format json wrote"

@@ -27,12 +27,13 @@ class XmlBelow:
         .btq file.
 
         Args:
-            top: the folder that contains the paths; if git ignores it as a whole, it was named on purpose.
-            paths: its files in this language and its XML.
+            top: the folder that contains the paths.  If git ignores the folder itself, its files are kept: the user
+                asked for it by name.
+            paths: the files of the mission language and the XML files in it.
         """
         paths = tuple(paths)
         sources = {os.path.basename(path) for path in paths if path.endswith(SUFFIXES)}
-        xml = [path for path in paths if not path.endswith(SUFFIXES) and self._is_written(path, sources)]
+        xml = [path for path in paths if not path.endswith(SUFFIXES) and self._is_hand_written(path, sources)]
         left_out = ignored((top, *xml)) if xml else frozenset()
         kept = {path for path in xml if top in left_out or path not in left_out}
         return tuple(path for path in paths if path in kept or path.endswith(SUFFIXES))
@@ -42,29 +43,33 @@ class XmlBelow:
         if path.endswith(SUFFIXES):
             text = read(path)[0] or ""
             return any(name in text for name in names)
-        ids, _ = self._look(path)
+        ids, _ = self._classify(path)
         return ids is not None and not ids.isdisjoint(names)
 
-    def _is_written(self, path: str, sources: set[str]) -> bool:
-        """Whether an XML file is a mission that was not built from an existing file."""
-        ids, generated = self._look(path)
-        if ids is None or not generated:
+    def _is_hand_written(self, path: str, sources: set[str]) -> bool:
+        """Whether an XML file is a mission, and not the output of a build whose .btq file still exists."""
+        ids, was_generated = self._classify(path)
+        if ids is None or not was_generated:
             return ids is not None
         return self.source_of(path) is None and not is_built_of(read(path)[0] or "", sources)
 
     def is_mission(self, path: str) -> bool:
         """Whether an XML file is the engine's."""
-        return self._look(path)[0] is not None
+        return self._classify(path)[0] is not None
 
     def source_of(self, path: str) -> str | None:
-        """The mission that an XML file was built of, if it exists: beside the XML, or where the side file names it."""
-        if not self._look(path)[1]:
+        """The mission that an XML file was built from, if it exists: beside the XML, or at the path that its side file
+        gives.
+        """
+        if not self._classify(path)[1]:
             return None
         named = named_beside(read(path)[0] or "", path, SUFFIXES)
         return next((mission for mission in (*named, *_named_by_side_file(path)) if os.path.isfile(mission)), None)
 
-    def _look(self, path: str) -> tuple[frozenset[str] | None, bool]:
-        """The IDs of trees and models in an XML file, None if it is not the engine's, and whether a build wrote it."""
+    def _classify(self, path: str) -> tuple[frozenset[str] | None, bool]:
+        """The IDs of the trees and models in an XML file (None if BehaviorTree.CPP does not use it), and whether btq
+        generated it.
+        """
         current = stamp(path)
         remembered = self._seen.get(path)
         if remembered is None or remembered[0] != current:
@@ -78,7 +83,7 @@ def _named_by_side_file(path: str) -> tuple[str, ...]:
     """The mission that the side file of built XML names."""
     import json
 
-    from btq_lang.btcpp.side_file import is_side_file, side_path  # little XML is built
+    from btq_lang.btcpp.side_file import is_side_file, side_path  # imported here because few XML files are generated
 
     side = read(side_path(path))[0] if os.path.isfile(side_path(path)) else None
     if side is None or not is_side_file(side):
@@ -91,7 +96,7 @@ def _named_by_side_file(path: str) -> tuple[str, ...]:
 
 
 def ignored(paths: Iterable[str]) -> frozenset[str]:
-    """Those of some absolute paths that git ignores, none without git; a file that is tracked is not ignored."""
+    """The absolute paths that git ignores; empty if git is not installed.  Tracked files are never ignored."""
     repository_of: dict[str, str | None] = {}  # by folder
     in_repository = ((_repository(os.path.dirname(path), repository_of), path) for path in paths)
     by_repository = grouped((root, path) for root, path in in_repository if root is not None and path != root)
@@ -110,6 +115,7 @@ def _repository(folder: str, repository_of: dict[str, str | None]) -> str | None
 
 
 def _ignored_in(root: str, paths: list[str]) -> frozenset[str]:
+    """The paths in one repository that git ignores."""
     names = "\0".join(path.removeprefix(f"{root.rstrip('/')}/") for path in paths)
     try:
         run = subprocess.run(

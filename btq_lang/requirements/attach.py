@@ -300,12 +300,12 @@ def _selected(reader: Reader, selector: syntax.Selector) -> Iterator[tuple[model
     if selector.tag is not None:
         matching = reader.store.ask(nodes.tagged, reader.viewpoint, selector.tag.text)
         if not matching:
-            reader.no_tag(selector.tag)
+            reader.report_unknown_tag(selector.tag)
         yield from ((model.NodeTarget(node), _EVERY) for node in matching)
     elif selector.every is not None:
         matching = reader.store.ask(nodes.every, reader.viewpoint, selector.every.text)
         if not matching:
-            reader.none_of(selector.every)
+            reader.report_unknown_kind(selector.every)
         rank = _EVERY
         if selector.path is not None:
             top = reader.target(selector.path)

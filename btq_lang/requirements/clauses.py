@@ -172,7 +172,7 @@ def _subject(reader: Reader, written: syntax.Subject) -> model.Subject | None:
         return model.MissionRun(reader.mission)
     if isinstance(written, syntax.Every):
         if not reader.store.ask(nodes.has_any, reader.viewpoint, written.name.text):
-            reader.none_of(written.name)
+            reader.report_unknown_kind(written.name)
             return None
         return model.EveryNode(written.name.text)
     if isinstance(written, syntax.Between):

@@ -1,7 +1,8 @@
 """Reading the paths of clauses: the one node that each of them names.
 
-One invariant: a path that names no node, or several, is None and one problem, reported at the path.  In a file whose
-nodes may be elsewhere (a library, an include that was not found) a path without a node is not a problem.
+One invariant: a path that names no node, or several nodes, resolves to None and adds exactly one problem, at the path.
+In a file whose nodes may be elsewhere (a library, an include that was not found) a path without a node is not a
+problem.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ class Problem(Record):
     """Something wrong with a requirement.
 
     Attributes:
-        place: of the diagnostic, whose own places count from the same item.
+        place: where to report the diagnostic; the spans in the diagnostic are relative to the same item.
     """
 
     place: Place
@@ -44,7 +45,8 @@ class PathReader:
     Attributes:
         path, facts: the item.
         parameters: of the requirement that is read.
-        source: the text that is read, if it is not text of the file, and the place at which all of it is reported.
+        source: None while the text of the file is read; otherwise the text that is read instead, and the span in the
+            item at which all of it is reported.
     """
 
     def __init__(
@@ -84,9 +86,10 @@ class PathReader:
         return tuple(self.store.ask(nodes.kinds if kind == "kinds" else nodes.tags, self.viewpoint))
 
     def near(self, word: str, *kinds: str) -> tuple[str, ...]:
-        """Similar names of these kinds for an unknown one; empty if so many are unknown that suggestions are of no
-        use."""
-        if self.store.ask(_is_crowded, self.viewpoint):
+        """Similar names of these kinds for an unknown one; empty if there are so many that comparing them would take
+        seconds.
+        """
+        if self.store.ask(_too_many_to_compare, self.viewpoint):
             return ()
         return near(word, [name for kind in kinds for name in self.names(kind)])
 
@@ -136,20 +139,20 @@ class PathReader:
             return targets[0]
         shown = "/".join(name.raw for name in path.names)
         if targets:
-            self.ambiguous(path.span, shown, targets)
+            self.report_ambiguous(path.span, shown, targets)
         elif self.knows_all_nodes:
             likely = self._respellings(path)
             fixes = tuple(
                 replace_fix(f"Replace `{word.text}` with `{name}`", word.span, written(name)) for word, name in likely
             )
             message = f"{self._missing(names, shown)}{did_you_mean(name for _, name in likely)}"
-            notes = (_ONE_DEMAND,) if path.names[0].raw == "and" else notes
+            notes = (_ONE_VERB,) if path.names[0].raw == "and" else notes
             notes = (SELECTORS,) if shown in ("all", "everything", "everywhere") else notes
             self.complain("unmatched-path", path.span, message, notes=notes, fixes=fixes)
         return None
 
-    def none_of(self, name: Word) -> None:
-        """Report `every X` without an X."""
+    def report_unknown_kind(self, name: Word) -> None:
+        """Report `every X` where no node matches X."""
         if not self.knows_all_nodes:
             return
         notes: tuple[str, ...] = ()
@@ -157,26 +160,28 @@ class PathReader:
             notes = (f"`{name.text}` is the name of one node, not of a kind: write it without `every`",)
         elif name.raw in ("node", "nodes") or name.raw in CATEGORIES:
             notes = (SELECTORS,)
-        self._no_match(name, f"no node matches `every {name.raw}`", "kinds", notes)
+        self._report_no_match(name, f"no node matches `every {name.raw}`", "kinds", notes)
 
-    def no_tag(self, tag: Word) -> None:
+    def report_unknown_tag(self, tag: Word) -> None:
         """Report `tagged x` without a node that has that tag."""
         if self.knows_all_nodes:
-            self._no_match(tag, f"no node has the tag `{tag.text}`", "tags")
+            self._report_no_match(tag, f"no node has the tag `{tag.text}`", "tags")
 
-    def _no_match(self, word: Word, message: str, kind: str, notes: tuple[str, ...] = ()) -> None:
+    def _report_no_match(self, word: Word, message: str, kind: str, notes: tuple[str, ...] = ()) -> None:
         likely = self.near(word.text, kind)
         fixes = tuple(replace_fix(f"Replace `{word.text}` with `{name}`", word.span, written(name)) for name in likely)
         self.complain("unmatched-path", word.span, f"{message}{did_you_mean(likely)}", notes=notes, fixes=fixes)
 
-    def ambiguous(self, span: Span, shown: str, targets: tuple[NodeTarget, ...]) -> None:
+    def report_ambiguous(self, span: Span, shown: str, targets: tuple[NodeTarget, ...]) -> None:
         """Report a path that names several nodes."""
-        related = tuple(Related(target.node.place, f"in the tree `{target.node.tree}`") for target in targets[:_SHOWN])
-        examined = targets[:_LOOKED_AT]
+        related = tuple(
+            Related(target.node.place, f"in the tree `{target.node.tree}`") for target in targets[:_MAX_SHOWN]
+        )
+        examined = targets[:_MAX_EXAMINED]
         paths = dict.fromkeys(path for target in examined if (path := self._path_to(target)) is not None)
         message = f"ambiguous path `{shown}`: {len(targets)} nodes match"
         notes = ("a path must match one node; write `every` for all of them, in a clause or in `apply … to every …`",)
-        fixes = tuple(write_fix(path, span) for path in list(paths)[:_SHOWN])
+        fixes = tuple(write_fix(path, span) for path in list(paths)[:_MAX_SHOWN])
         self.complain("ambiguous-path", span, message, related=related, notes=notes, fixes=fixes)
 
     def _missing(self, names: tuple[str, ...], shown: str) -> str:
@@ -185,7 +190,9 @@ class PathReader:
         return f"unknown node `{shown}`" if len(names) == 1 else f"no node matches `{shown}`"
 
     def _respellings(self, path: Path) -> list[tuple[Word, str]]:
-        """Words of a path that names no node, each with a similar name that would make it match one."""
+        """Corrections of a path that matches no node: pairs of a word and the similar name with which the path would
+        match exactly one node.
+        """
         respellings = []
         for index, word in enumerate(path.names):
             if self.store.ask(nodes.has_name, self.viewpoint, word.text):
@@ -211,16 +218,16 @@ class PathReader:
         return None
 
 
-def _is_crowded(store: Store[Workspace], viewpoint: str) -> bool:
+def _too_many_to_compare(store: Store[Workspace], viewpoint: str) -> bool:
     """Whether clauses use so many unknown names, and there are so many known ones, that comparing all of them would
     take seconds."""
     names = {*store.ask(inputs.names, viewpoint, Kind.SIGNAL), *store.ask(inputs.names, viewpoint, Kind.CONTEXT)}
     names |= {*store.ask(nodes.node_names, viewpoint), *store.ask(nodes.tags, viewpoint)}
-    return len(store.ask(inputs.asked_for, viewpoint) - names) * len(names) > _MOST_COMPARED
+    return len(store.ask(inputs.asked_for, viewpoint) - names) * len(names) > _MAX_COMPARISONS
 
 
 _DECLARED: Final = {"signals": Kind.SIGNAL, "contexts": Kind.CONTEXT}
-_ONE_DEMAND: Final = "a clause states one demand; write `succeeds within 30 s`, or `succeeds` on a line of its own"
-_SHOWN: Final = 5  # places and fixes of one diagnostic
-_LOOKED_AT: Final = 50  # nodes that a path may mean, for paths that are unambiguous
-_MOST_COMPARED: Final = 200_000  # pairs of names: some tenths of a second
+_ONE_VERB: Final = "a clause has one verb: write `succeeds within 30 s`, or put `succeeds` on a line of its own"
+_MAX_SHOWN: Final = 5  # places and fixes of one diagnostic
+_MAX_EXAMINED: Final = 50  # matching nodes for which an unambiguous path is sought
+_MAX_COMPARISONS: Final = 200_000  # pairs of names; takes a few tenths of a second

@@ -128,7 +128,7 @@ class _Collector:
         measured: defaultdict[str, dict[str, None]] = defaultdict(dict)
         for key, row in self._requirements.items():
             meaning = self._meanings[key]
-            for id_ in (meaning.id or row.quality or "", *meaning.above):
+            for id_ in (meaning.id or row.quality or "", *meaning.ancestors):
                 measured[id_][row.key] = None
         rows = tuple(self._linked(key, row, len(files) == 1) for key, row in self._requirements.items())
         quality_rows = tuple(

@@ -1,4 +1,4 @@
-"""The meaning of quality names in a mission: its own declarations first, then the quality model.
+"""What the quality names in a mission mean: the mission's own declarations take precedence over the quality model.
 
 One invariant: every name has a meaning; an unknown name belongs to no characteristic.
 """
@@ -17,26 +17,26 @@ class NameMeaning(Record):
 
     Attributes:
         id: the declared name, or the model's id; None: unknown.
-        above: the ids of the qualities that contain it, the nearest first.
-        characteristic: that of the ISO standard; None: it belongs to none.
+        ancestors: the ids of the qualities that contain it, the nearest first.
+        characteristic: the id of its ISO characteristic; None: it belongs to none.
     """
 
     id: str | None
-    above: tuple[str, ...]
+    ancestors: tuple[str, ...]
     characteristic: str | None
     definition: str
 
 
 class Meanings:
-    """The quality names of a file and what it includes."""
+    """The meanings of the quality names in a file and in the files it includes."""
 
     def __init__(self, workspace: Workspace, path: str) -> None:
         scope = workspace.scope(path)
-        word = workspace.project.qualities
+        edition_name = workspace.project.qualities
         for each in scope.paths:
             for item in workspace.files[each].of_type(Qualities):
-                word = item.edition.text if item.edition is not None else word
-        self.edition: Edition = EDITIONS.get(word, DEFAULT_EDITION)
+                edition_name = item.edition.text if item.edition is not None else edition_name
+        self.edition: Edition = EDITIONS.get(edition_name, DEFAULT_EDITION)
         definitions = {fold(name): scope.find(Kind.QUALITY, name) for name in scope.names(Kind.QUALITY)}
         targets = {name: each.symbol.target for name, each in definitions.items() if each is not None}
         self._own = {name: each for name, each in targets.items() if isinstance(each, QualityDecl)}
@@ -64,13 +64,15 @@ class Meanings:
         if match.quality is None and match.kind == "ambiguous":
             if match.candidates[0].id in successors(fold(name)):  # the old name of a characteristic, as in the checks
                 return match.candidates[0]
-            above = {each.parent for each in match.candidates}
-            common = above.pop() if len(above) == 1 else None  # common to all its meanings
-            return get(common, self.edition) if common is not None else None
+            parents = {each.parent for each in match.candidates}
+            common_parent = parents.pop() if len(parents) == 1 else None
+            return get(common_parent, self.edition) if common_parent is not None else None
         return match.quality
 
     def _characteristic(self, quality: Quality | None) -> str | None:
-        """The id of the ISO characteristic that a quality is, is a part of, or is nearest to."""
+        """The id of the ISO characteristic: the quality itself, its parent or, for a robotics quality, the nearest
+        one.
+        """
         if quality is None:
             return None
         if quality.kind == "robotics" and quality.nearest is not None:

@@ -325,8 +325,8 @@ def test_what_keeps_nodes_from_being_known_is_said_once_in_the_project_file(
     assert check(robot) == ["btq: btq.toml:2:10: no C++ file matches `lib/*.cc`"]
     write(robot, "btq.toml", 'nodes = ["include/*.hpp"]\n')
     assert check(robot) == [
-        "btq: btq.toml:1:10: no node is registered in 1 C++ file; name the files with BT_REGISTER_NODES, "
-        "registerNodeType or registerBuilder, too"
+        "btq: btq.toml:1:10: no node is registered in 1 C++ file; also pass the files that call BT_REGISTER_NODES, "
+        "registerNodeType or registerBuilder"
     ]
     from btq_lang.cpp import grammar
 

@@ -124,6 +124,30 @@ def test_what_cannot_be_seen_and_what_the_code_does_otherwise_is_said(robot: Pat
     ]
 
 
+@pytest.mark.parametrize(
+    ("names", "subject"),
+    [
+        ("A", "`A`"),
+        ("AB", "`A` (like 1 other node)"),
+        ("ABC", "`A` (like 2 other nodes)"),
+    ],
+)
+def test_nodes_that_share_a_base_class_are_reported_together(tmp_path: Path, names: str, subject: str) -> None:
+    (tmp_path / "n.cpp").write_text(
+        "struct Base : BT::SyncActionNode {\n"
+        '    static BT::PortsList providedPorts() { return { BT::InputPort<int>("a") }; }\n'
+        "    BT::NodeStatus tick() { return BT::NodeStatus::SUCCESS; }\n"
+        "};\n"
+        + "".join(f"struct {name} : Base {{}};\n" for name in names)
+        + "void f(BT::BehaviorTreeFactory& f) {\n"
+        + "".join(f'    f.registerNodeType<{name}>("{name}");\n' for name in names)
+        + "}\n"
+    )
+    _, _, remarks = run_btq("nodes", "n.cpp", cwd=tmp_path)
+    problem = "provides the port `a`, but its code never names it"
+    assert remarks.splitlines()[0] == f"n.cpp:2:53: warning[unused-port-in-cpp] {subject} {problem}"
+
+
 def test_a_node_that_may_have_more_ports_says_so(robot: Path) -> None:
     text = DRIVE.replace("BT::StatefulActionNode", "nav2_behavior_tree::BtActionNode<Go>").replace(
         "return {", "return providedBasicPorts({"

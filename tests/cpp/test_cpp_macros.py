@@ -46,13 +46,16 @@ def test_btq_nodes_of_the_shared_file(shared: Path, tmp_path: Path) -> None:
     [
         (
             "#define REG(t) f.registerNodeType<t>(#t)",
-            "`REG` of n.hpp registers what it is given: name the files that use it, too",
+            "the macro `REG` in n.hpp registers its argument: also pass the files that use it",
         ),
         (
             "#ifndef REG\n#define REG(t) \\\n  f.registerBuilder<t>(#t)\n#endif\n#undef REG\n#define ALSO(t) REG(t)",
-            "`REG` of n.hpp registers what it is given: name the files that use it, too",
+            "the macro `REG` in n.hpp registers its argument: also pass the files that use it",
         ),
-        ("#define TWICE(x) x x", "name the files with BT_REGISTER_NODES, registerNodeType or registerBuilder, too"),
+        (
+            "#define TWICE(x) x x",
+            "also pass the files that call BT_REGISTER_NODES, registerNodeType or registerBuilder",
+        ),
     ],
 )
 def test_a_macro_that_nothing_uses(tmp_path: Path, macros: str, where: str) -> None:

@@ -147,13 +147,13 @@ def test_what_is_left_out_is_counted(robot: Verify) -> None:
     (robot.folder / "run.btlog").write_bytes(btlog(MAIN_XML, many))
     robot.text("run.btlog", "--events", "violations.mcap")
     assert robot.errors == (
-        "btq verify: violations.mcap: 2 violations left out; it has the first thousand of each clause\n"
+        "btq verify: violations.mcap: left out 2 violations; the file contains only the first thousand of each clause\n"
     )
     assert len(messages(robot.folder / "violations.mcap")) == 1000
     (robot.folder / "run.btlog").write_bytes(btlog(MAIN_XML, run, start=2**31 * 1_000_000))
     robot.text("run.btlog", "--events", "violations.mcap")
     assert robot.errors == (
-        "btq verify: violations.mcap: 1 violation left out; a ROS message cannot have their times\n"
+        "btq verify: violations.mcap: left out 1 violation whose times do not fit in a ROS timestamp\n"
     )
     assert messages(robot.folder / "violations.mcap") == []
 

@@ -234,7 +234,7 @@ def test_two_demands_in_one_clause_are_two_clauses() -> None:
     (problem,) = problems_of(resolved(text))
     assert (problem.diagnostic.message, problem.diagnostic.notes) == (
         "unknown node `and`",
-        ("a clause states one demand; write `succeeds within 30 s`, or `succeeds` on a line of its own",),
+        ("a clause has one verb: write `succeeds within 30 s`, or put `succeeds` on a line of its own",),
     )
 
 

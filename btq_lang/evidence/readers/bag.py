@@ -1,7 +1,7 @@
 """ROS 2 bags, read by `rosbags`: folders with a metadata.yaml, MCAP files and rosbag2's SQLite files.
 
-One invariant: any failure of `rosbags` is one NotALog, or, after the first message, one remark.  A chunk or message
-that is too large is an error before it is in memory, whatever size it declares.
+One invariant: any failure of `rosbags` raises NotALog, or adds one remark once messages are being read.  A chunk or
+message that is too large is refused before it is fully decompressed, whatever size it declares.
 
 Only the definitions of requested types are parsed, so a type that `rosbags` cannot read does not affect the rest of its
 bag.
@@ -38,7 +38,7 @@ class Bag:
         ]
         self.remarks: Final = remarks
         self._storages: Final = storages
-        self._packed: Final = [storage for storage in storages if _unpacks_by_itself(storage)]
+        self._compressed: Final = [storage for storage in storages if _disable_decompression(storage)]
 
     def of_type(self, name: str) -> list[Connection]:
         """The topics of a type."""
@@ -62,7 +62,9 @@ class Bag:
                     break
                 try:
                     received = int(received)
-                    message = decoders[connection.msgtype](_unpacked(data) if storage in self._packed else data)
+                    message = decoders[connection.msgtype](
+                        _decompress_zstd(data) if storage in self._compressed else data
+                    )
                 except Exception:  # likewise
                     unread += 1
                 else:
@@ -115,9 +117,9 @@ def _folder(path: str, remarks: list[str]) -> list[Any]:
     return [storage]
 
 
-def _unpacks_by_itself(storage: Any) -> bool:
-    """Whether each message is compressed; the storage then returns them compressed, because its own decompression has
-    no limit.
+def _disable_decompression(storage: Any) -> bool:
+    """Stop a storage from decompressing its messages, which it would do without a size limit; return whether they are
+    compressed.
     """
     if getattr(getattr(storage, "metadata", None), "compression_mode", None) != "message":
         return False
@@ -179,7 +181,7 @@ def _decoder(connection: Connection) -> Callable[[bytes], Any]:
     name, definition = connection.msgtype, connection.msgdef
     try:
         if definition.format == Format.NONE and name == TREE_LOG:
-            # The forms since Jazzy and before, when status changes had no uid.
+            # Two definitions: the one since Jazzy, and the older one, in which status changes have no uid.
             texts = (_TREE_LOG_DEFINITION.format(uid=uid) for uid in ("uint16 uid\n", ""))
             return _either(*(_decoder_of(name, "MSG", text) for text in texts))
         return _decoder_of(name, definition.format.name, definition.data)
@@ -232,15 +234,15 @@ _IDL_RULE: Final = f"{'=' * 80}\n"
 
 
 def limit_chunks() -> None:
-    """Make `rosbags` decompress chunks of MCAP files up to MOST_UNPACKED; without this it has no limit."""
+    """Make `rosbags` decompress chunks of MCAP files up to MAX_DECOMPRESSED_SIZE; without this it has no limit."""
     from lz4.frame import LZ4FrameDecompressor  # type: ignore[import-untyped]  # it has no stubs
     from rosbags.rosbag2 import storage_mcap
 
-    storage_mcap.DECOMPRESSORS["zstd"] = _unpacked
-    storage_mcap.DECOMPRESSORS["lz4"] = lambda data, size: _whole(data, LZ4FrameDecompressor, size)
+    storage_mcap.DECOMPRESSORS["zstd"] = _decompress_zstd
+    storage_mcap.DECOMPRESSORS["lz4"] = lambda data, size: _decompress_frames(data, LZ4FrameDecompressor, size)
 
 
-def _unpacked(data: bytes, size: int | None = None) -> bytes:
+def _decompress_zstd(data: bytes, size: int | None = None) -> bytes:
     """Decompress data that zstd compressed, to the size that the bag declares, if it does.
 
     Raises:
@@ -248,21 +250,21 @@ def _unpacked(data: bytes, size: int | None = None) -> bytes:
     """
     from rosbags.rosbag2.storage_mcap import zstd  # type: ignore[attr-defined]  # whichever module this Python has
 
-    return _whole(data, zstd.ZstdDecompressor, size)
+    return _decompress_frames(data, zstd.ZstdDecompressor, size)
 
 
-def _whole(data: bytes, decompressor: Any, size: int | None) -> bytes:
-    most = MOST_UNPACKED if size is None else min(size, MOST_UNPACKED)
+def _decompress_frames(data: bytes, decompressor: Any, size: int | None) -> bytes:
+    limit = MAX_DECOMPRESSED_SIZE if size is None else min(size, MAX_DECOMPRESSED_SIZE)
     content = b""
-    while data:  # one frame follows another
+    while data:  # the data may consist of several frames
         frame = decompressor()
-        content += frame.decompress(data, max_length=most + 1 - len(content))
-        if len(content) > most:
-            raise ValueError(f"{len(data)} packed bytes are more than {most} when unpacked")
+        content += frame.decompress(data, max_length=limit + 1 - len(content))
+        if len(content) > limit:
+            raise ValueError(f"{len(data)} compressed bytes decompress to more than {limit} bytes")
         if not frame.eof:
-            raise EOFError("what is packed has no end")
+            raise EOFError("the compressed data is truncated")
         data = frame.unused_data
     return content
 
 
-MOST_UNPACKED: Final = 1 << 28  # bytes; rosbag2 writes chunks of less than 1 MB, or of one message
+MAX_DECOMPRESSED_SIZE: Final = 1 << 28  # bytes; rosbag2 writes chunks of less than 1 MB, or of one message

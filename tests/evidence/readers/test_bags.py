@@ -275,7 +275,10 @@ def chunks(data: bytes) -> list[tuple[int, int]]:
 @pytest.mark.parametrize(
     ("compression", "remark"),
     [
-        ("storage", "the bag is damaged, and what comes after the damage is left out: X packed bytes are more than"),
+        (
+            "storage",
+            "the bag is damaged, and what comes after the damage is left out: X compressed bytes decompress to",
+        ),
         ("message", "messages that cannot be decoded, left out: 1"),
     ],
 )
@@ -283,13 +286,13 @@ def test_what_is_packed_is_unpacked_up_to_a_limit(
     compression: Literal["storage", "message"], remark: str, small: Verify, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A few bytes may be gigabytes of blanks."""
-    monkeypatch.setattr(bag, "MOST_UNPACKED", 100_000)
+    monkeypatch.setattr(bag, "MAX_DECOMPRESSED_SIZE", 100_000)
     logs = tree_log(rows(TWO_RUNS), NAMES)
     write_bag(small.folder / "bag", [*logs, text("/tree", START, " " * 10**6)], "mcap", compression)
     (log,) = read(str(small.folder / "bag"))
     assert isinstance(log, NamedLog)
     (said,) = log.remarks
-    assert re.sub(r"\d+ packed", "X packed", said).startswith(remark)
+    assert re.sub(r"\d+ compressed", "X compressed", said).startswith(remark)
     assert (len(log.times) > 0) == (compression == "message")
 
 
@@ -300,9 +303,9 @@ def test_a_chunk_that_unpacks_to_more_than_it_says(pack: Callable[[bytes], bytes
     packed = pack(bytes(10**6))
     assert unpack(packed, 10**6) == bytes(10**6)
     assert unpack(packed + pack(b"ab"), 10**6 + 2) == bytes(10**6) + b"ab"
-    with pytest.raises(ValueError, match=f"{len(packed)} packed bytes are more than 1000 when unpacked"):
+    with pytest.raises(ValueError, match=f"{len(packed)} compressed bytes decompress to more than 1000 bytes"):
         unpack(packed, 1000)
-    with pytest.raises(EOFError):
+    with pytest.raises(EOFError, match="the compressed data is truncated"):
         unpack(packed[:-5], 10**6)
 
 
