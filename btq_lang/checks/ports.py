@@ -17,6 +17,7 @@ from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS, PortKind
 from btq_lang.catalog.units import Unit, convert, dimension_name, parse_unit
 from btq_lang.catalog.versions import ID_IN_COMPACT_FORM, PORTS_OF_SUBTREE, UNDERSCORES, is_before_4
 from btq_lang.checks import lookups
+from btq_lang.checks.entries import handling
 from btq_lang.checks.kinds import model_related, way_in
 from btq_lang.checks.own_nodes import OWN, WHY, may_be_own
 from btq_lang.checks.pointers import pointed_at, remaps_all
@@ -399,6 +400,11 @@ def _builtin_ports(tag: str, has_old_names: bool) -> KnownPorts:
     return KnownPorts(tuple([replace(port, doc=f"{port.doc[0].lower()}{port.doc[1:]}") for port in named]))
 
 
+def _is_used_in(view: View, tree: str, entry: str) -> bool:
+    """Whether a node of a tree reads or writes an entry."""
+    return any(touch.name == entry for touch in view.ask(handling, tree).touches)
+
+
 def _unknown_keys(view: View, resolved: ResolvedNode, ports: KnownPorts) -> dict[Word, tuple[str, ...]]:
     """The keys that are not ports, each with the ports without a value that it may mean."""
     names = ports.names
@@ -412,6 +418,8 @@ def _unknown_keys(view: View, resolved: ResolvedNode, ports: KnownPorts) -> dict
         key = pair.key.text
         if key in names or key in _OWN or not is_port_name(key) or is_case(resolved, key):
             continue
+        if resolved.is_subtree and resolved.id is not None and _is_used_in(view, resolved.id.text, key):
+            continue  # the tree gets the entry, whatever its model declares
         old = OLD_PORTS.get((resolved.kind.tag, key)) if resolved.kind else None
         old = old or (_ATTRIBUTES.get(_plain(key)) if UNDERSCORES.holds(view.target) else None)
         likely = near(key, (port.name for port in free)) if len(unknown) * len(free) < _MOST_COMPARED else ()

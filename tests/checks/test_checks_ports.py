@@ -322,3 +322,14 @@ def test_three_values_are_two_too_many() -> None:
 def test_a_port_whose_value_could_not_be_read_is_not_missing(line: str) -> None:
     found = check(Workspace.of({"main.btq": f"BehaviorTree Main\n    {line}\n        X\n"}), "main.btq")
     assert [problem.rule for problem in found] == ["syntax-error"]
+
+
+@pytest.mark.parametrize(("entry", "rules"), [("limit", []), ("other", ["unknown-port"])])
+def test_a_tree_gets_an_entry_that_its_model_lacks(entry: str, rules: list[str]) -> None:
+    text = (
+        '<root BTCPP_format="4"><BehaviorTree ID="Main"><SubTree ID="Below" limit="5"/></BehaviorTree>'
+        f'<BehaviorTree ID="Below"><Go x="{{{entry}}}"/></BehaviorTree>'
+        '<TreeNodesModel><SubTree ID="Below"><input_port name="speed"/></SubTree></TreeNodesModel></root>'
+    )
+    found = check(Workspace.of({"main.xml": text}), "main.xml")
+    assert [each.rule for each in found if each.rule == "unknown-port"] == rules
