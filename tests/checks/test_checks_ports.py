@@ -331,5 +331,5 @@ def test_a_tree_gets_an_entry_that_its_model_lacks(entry: str, rules: list[str])
         f'<BehaviorTree ID="Below"><Go x="{{{entry}}}"/></BehaviorTree>'
         '<TreeNodesModel><SubTree ID="Below"><input_port name="speed"/></SubTree></TreeNodesModel></root>'
     )
-    found = check(Workspace.of({"main.xml": text}), "main.xml")
+    found = check(workspace_of({"main.xml": text}), "main.xml")
     assert [each.rule for each in found if each.rule == "unknown-port"] == rules
