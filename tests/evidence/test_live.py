@@ -141,7 +141,7 @@ def test_a_mission_is_demanded_before_the_robot_runs(live: Live) -> None:
 def test_the_page_shows_what_is_printed(live: Live) -> None:
     page = Path(__file__).parents[2] / "docs" / "evidence.md"
     *_, shown = re.findall(r"^```text\n(.*?)^```$", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
-    first, second = "0 1R 2R 80 2S 3R 90 3S 1S 2I 3I 1I", "0 1R 2R 150 2F 1F 2I 1I"
+    first, second = "0 1R 2R 80 2S 3R 90 3S 1S 2I 3I 1I", "0 1R 2R 400 2F 1F 2I 1I"
     with Robot(MAIN_XML) as robot:
         printed = live.watch(robot, lambda: robot.play(first, second))
     assert plain(printed, robot)[:5] == plain(shown, robot)
