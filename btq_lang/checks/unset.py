@@ -66,10 +66,12 @@ def _reported_otherwise(view: View, mentions: Sequence[EntryMention]) -> set[str
 
 def _uncreated(view: View, tree: str, mentions: Sequence[EntryMention], excluded: set[str]) -> Iterator[Diagnostic]:
     """The first assignment to each entry that nothing creates."""
-    assigning = [
-        mention for mention in mentions if mention.in_script and mention.writes and _is_created_later(mention, mentions)
-    ]
-    later = {mention.name for mention in assigning if view.ask(_is_of_tree_alone, tree, mention.name)}
+    by_name = grouped((mention.name, mention) for mention in mentions)
+    later = {
+        name
+        for name, of_name in by_name.items()
+        if _are_created_late(of_name) and view.ask(_is_of_tree_alone, tree, name)
+    }
     created = ({mention.name for mention in mentions if mention.creates} - later) | excluded
     writing = [mention for mention in mentions if mention.in_script and mention.writes]
     for name, mention in _first_mentions(writing, created).items():
@@ -77,7 +79,7 @@ def _uncreated(view: View, tree: str, mentions: Sequence[EntryMention], excluded
         is_created = name not in later and use & EntryUse.CREATED
         if is_created or use & (EntryUse.GIVEN | EntryUse.OPEN):
             continue
-        if use & EntryUse.OUTSIDE and next(other for other in mentions if other.name == name) is not mention:
+        if use & EntryUse.OUTSIDE and by_name[name][0] is not mention:
             continue  # programs set what scripts read first
         set_in_cpp = view.ask(lookups.set_in_cpp)
         is_in_cpp = name.removeprefix("@") in set_in_cpp.names
@@ -92,16 +94,16 @@ def _uncreated(view: View, tree: str, mentions: Sequence[EntryMention], excluded
         yield Diagnostic("uncreated-entry", mention.span, message, notes=notes, fixes=fixes, severity=severity)
 
 
-def _is_created_later(mention: EntryMention, named: Sequence[EntryMention]) -> bool:
-    """Whether only scripts that run later create an entry, and no port does when the engine creates the tree."""
-    of_name = [each for each in named if each.name == mention.name]
-    creating = [each for each in of_name if each.creates]
+def _are_created_late(mentions: Sequence[EntryMention]) -> bool:
+    """Whether a script assigns to an entry before the scripts that create it run, and no port does when the engine
+    creates the tree; given all mentions of the entry in a tree."""
+    first, creating = mentions[0], [mention for mention in mentions if mention.creates]
     return (
         bool(creating)
-        and mention.name.isidentifier()
-        and of_name[0] is mention
-        and all(each.in_script for each in of_name)
-        and all(_runs_first(mention.node, each.node) for each in creating)
+        and first.writes
+        and first.name.isidentifier()
+        and all(mention.in_script for mention in mentions)
+        and all(_runs_first(first.node, mention.node) for mention in creating)
     )
 
 

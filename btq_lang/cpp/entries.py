@@ -29,9 +29,9 @@ def set_entries(sources: Iterable[str]) -> SetEntries:
     """The entries that some sources set, of one program."""
     texts = tuple(sources)
     setters = frozenset[str]().union(*(_setters(text) for text in texts)) - {""}
-    found = [_named(text, setters) for text in texts]
-    has_unseen = any(unseen for _, unseen in found) or any("" in _setters(text) for text in texts)
-    return SetEntries(frozenset[str]().union(*(names for names, _ in found)), has_unseen)
+    set_in_texts = [_named(text, setters) for text in texts]
+    has_unseen = any(unseen for _, unseen in set_in_texts) or any("" in _setters(text) for text in texts)
+    return SetEntries(frozenset[str]().union(*(names for names, _ in set_in_texts)), has_unseen)
 
 
 @lru_cache(1_000)  # each file of trees asks for the same sources

@@ -56,6 +56,13 @@ def labels(here: str, text: str = MAIN) -> list[str]:
     return [one.label for one in completed(here, text)[1]]
 
 
+@pytest.mark.parametrize("here", ["<$0", "<Slee$0/>", "<Repeat><$0</Repeat>"])
+def test_nodes_are_those_of_the_version_that_the_file_is_for(here: str) -> None:
+    old = MAIN.replace('BTCPP_format="4"', 'BTCPP_format="3"').replace('<Script code="tries := 1"/>', "")
+    assert {"Sleep", "TryCatch"} <= {*labels(here)}
+    assert {"Sleep", "TryCatch"}.isdisjoint(labels(here, old))
+
+
 @pytest.mark.parametrize(
     ("here", "offered", "absent"),
     [

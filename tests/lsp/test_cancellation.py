@@ -5,7 +5,9 @@ from __future__ import annotations
 import asyncio
 from collections import Counter
 from collections.abc import Callable
+from functools import partial
 from io import BytesIO
+from itertools import count
 
 import pytest
 
@@ -54,6 +56,20 @@ def test_a_check_ends_when_an_edit_waits(pulls: bool) -> None:
         return messages
 
     assert asyncio.run(edit()) == {"cancelled": 1, "unknown node `Fallbck`; did you mean `Fallback`?": 1}
+
+
+def test_the_time_of_an_interrupted_check_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Else a long check that keystrokes interrupt would be taken for a short one."""
+    monkeypatch.setattr("btq_lang.lsp.session.perf_counter", partial(next, count()))  # a second later each time
+    session, path = Server().session, "/p/main.btq"
+    session.edit(path, "BehaviorTree Main\n    Dock\n")
+    with pytest.raises(Cancelled):
+        session.check(path, lambda: True)
+    session.check(path, lambda: False)
+    assert session.check_seconds == {path: 2}
+    session.edit(path, "BehaviorTree Main\n    Pick\n")
+    session.check(path, lambda: False)
+    assert session.check_seconds == {path: 1}
 
 
 def test_a_message_that_is_not_yet_handled_is_known() -> None:
