@@ -35,7 +35,7 @@ class TraceOptions(Record):
 def run(options: TraceOptions, messages: CommandOutput) -> int:
     """Write the overview; for missions with errors, of all valid parts."""
     refuse(usage_problem(options.paths) or form_problem(options.format, options.output, FORMATS))
-    from btq_lang.commands.given_evidence import verdicts_for  # it imports the readers of logs
+    from btq_lang.commands.given_evidence import builds_for, verdicts_for  # it imports the readers of logs
 
     groups, problems = Files().groups(options.paths, options.stdin_filename)
     messages.problems(problems)
@@ -44,10 +44,11 @@ def run(options: TraceOptions, messages: CommandOutput) -> int:
         return 2
     evidence_problems: list[str] = []
     verdicts_of = verdicts_for(options.evidence, groups, evidence_problems)
+    builds_of = builds_for(options.evidence, groups, evidence_problems) if not evidence_problems else None
     for problem in evidence_problems:
         messages.remark(f"btq trace: {problem}")
     parts = [(group.workspace, group.given) for group in groups]
-    table = trace_tables(parts, options.bundle, verdicts_of=verdicts_of)
+    table = trace_tables(parts, options.bundle, verdicts_of=verdicts_of, builds_of=builds_of)
     to_terminal = options.output is None and sys.stdout.isatty()
     colour = is_coloured(options.color, to_terminal)
     form = form_of(options.format, options.output, FORMATS)

@@ -3,7 +3,7 @@
 The columns, which later versions add to but do not change:
 
     kind            requirement | concern | quality without requirement | requirement without node |
-                    clause without node | hard requirement not enforced | evidence |
+                    clause without node | hard requirement not enforced | evidence | build |
                     node without quality | tree without quality
     requirement, title, quality, characteristic
     holds_for       the subject, or the node that has the concern, or the node or tree of a gap
@@ -13,6 +13,7 @@ The columns, which later versions add to but do not change:
     source, line    of what attached it, or of the node or tree
     defined, defined_line   where the requirement or the quality is defined or first named
     verdict, result     of a clause by logs, at the node whose path in the engine is in holds_for
+    build           the label of the runs by which a requirement has the verdict
 
 A text that a spreadsheet would take for a formula (`-> Work`, `=1+1`) gets an apostrophe prefix, as OWASP advises ("CSV
 Injection"); programs that need the exact texts read the JSON.
@@ -51,6 +52,10 @@ def _rows(overview: Overview) -> Iterator[dict[str, str | int]]:
             verdict = {"clause": evidence.clause, "verdict": evidence.verdict, "result": evidence.result}
             source = {"source": evidence.mission} if evidence.mission else {}
             yield {"kind": "evidence", **row, "holds_for": evidence.path, **verdict, **source}
+    for requirement, verdicts in overview.by_build:
+        row = _requirement(requirement, characteristics.get(requirement.quality_key or "", ""))
+        for build, of_build in zip(overview.builds, verdicts, strict=True):
+            yield {"kind": "build", **row, "verdict": of_build, "build": build.label}
     for requirement in overview.unenforced:
         row = _requirement(requirement, characteristics.get(requirement.quality_key or "", ""))
         yield {"kind": "hard requirement not enforced", **row}
@@ -89,5 +94,5 @@ def _source(place: At) -> dict[str, str | int]:
 
 COLUMNS: Final = (
     *("kind", "requirement", "title", "quality", "characteristic", "holds_for", "tree", "clause", "how", "why"),
-    *("attached_by", "source", "line", "defined", "defined_line", "verdict", "result"),
+    *("attached_by", "source", "line", "defined", "defined_line", "verdict", "result", "build"),
 )

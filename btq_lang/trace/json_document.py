@@ -24,13 +24,15 @@ The document, format 1; a later btq adds keys but changes none without a new num
      "gaps": {"hard_requirements_not_enforced": [KEY], "qualities_without_requirements": [KEY],
               "requirements_without_nodes": [KEY], "clauses_without_nodes": [{"requirement": KEY, "clause": TEXT}],
               "nodes_without_qualities": [KEY], "trees_without_qualities": [NAME]},
-     "skills": {"own": N, "above": N, "none": N}}
+     "skills": {"own": N, "above": N, "none": N},
+     "builds": [{"label": TEXT, "verdicts": [{"requirement": KEY, "verdict": VERDICT}]}]}
 
     PLACE = {"path": PATH, "line": N, "column": N}, counted from 1, columns in Unicode code points
 
 A `skill` is an action or a condition that is not built in; it `carries` a quality or a requirement itself, through a
 node above it, or not at all.  Keys are valid in this document only.  `mission` is empty in the overview of
-one mission; `evidence` is null where neither logs nor verdicts are given.  The text is ASCII.
+one mission; `evidence` is null where neither logs nor verdicts are given.  A build is the runs in a store that have its
+label.  The text is ASCII.
 """
 
 from __future__ import annotations
@@ -81,6 +83,13 @@ def render(overview: Overview) -> str:
             "trees_without_qualities": [each.name for each in overview.bare_trees],
         },
         "skills": dict(overview.coverage()),
+        "builds": [
+            {
+                "label": build.label,
+                "verdicts": [{"requirement": key, "verdict": verdict} for key, verdict in build.verdicts],
+            }
+            for build in overview.builds
+        ],
     }
     return json.dumps(document, indent=1) + "\n"
 

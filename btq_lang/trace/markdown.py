@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from btq_lang.render.gfm import code, escaped, table
 from btq_lang.trace.overview import Overview, RequirementRow
-from btq_lang.trace.wording import GAPS, evidence_lines, remarks, shown_quality, summary
+from btq_lang.trace.wording import GAPS, NO_LABEL, evidence_lines, remarks, shown_quality, summary
 
 
 def render(overview: Overview) -> str:
@@ -23,6 +23,10 @@ def _lines(overview: Overview) -> Iterator[str]:
         yield ""
         heading = ["Requirement", "Quality", "Holds for", "How", *(["Evidence"] if has_evidence else ()), "Defined"]
         yield from table(heading, (_requirement(each, has_evidence) for each in overview.requirements))
+    if builds := [(escaped(each.name), *verdicts) for each, verdicts in overview.by_build]:
+        yield from ("", "### By build", "")
+        labels = [escaped(build.label or NO_LABEL) for build in overview.builds]
+        yield from table(("Requirement", *labels), builds)
     nodes = {node.key: node for node in overview.nodes}
     concerns = [quality for quality in overview.qualities if quality.concerns]
     if concerns:

@@ -6,6 +6,7 @@ for the same missions.  Lines and columns count from 1.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from btq_lang.graph.figure import Figure
@@ -198,6 +199,18 @@ class CharacteristicTotals(Record):
         return self.concerns, self.requirements, self.enforced, self.monitored, self.reviewed
 
 
+class BuildVerdicts(Record):
+    """What the logs of a build show.
+
+    Attributes:
+        label: of its runs in the store; empty if they have none.
+        verdicts: on requirements, by the keys of their rows.
+    """
+
+    label: str
+    verdicts: tuple[tuple[str, Verdict], ...]
+
+
 class Overview(Record):
     """The whole overview.
 
@@ -207,6 +220,7 @@ class Overview(Record):
         totals: of each characteristic of the edition, including unused ones.
         has_evidence: whether logs, or verdicts on them, were given.
         errors: how many errors the missions have; with any, rows may be missing.
+        builds: in the order of their first runs; empty unless the evidence is a store with labels.
     """
 
     edition: str
@@ -218,6 +232,16 @@ class Overview(Record):
     totals: tuple[CharacteristicTotals, ...]
     has_evidence: bool = False
     errors: int = 0
+    builds: tuple[BuildVerdicts, ...] = ()
+
+    @property
+    def by_build(self) -> Iterator[tuple[RequirementRow, tuple[str, ...]]]:
+        """The requirements that logs of any build judge, each with its verdict of every build; empty without one."""
+        of_builds = [dict(build.verdicts) for build in self.builds]
+        for requirement in self.requirements:
+            verdicts = tuple(of_build.get(requirement.key, "") for of_build in of_builds)
+            if any(verdicts):
+                yield requirement, verdicts
 
     @property
     def unmeasured(self) -> tuple[QualityRow, ...]:

@@ -16,7 +16,7 @@ from btq_lang.graph.svg import STYLE, colours, part
 from btq_lang.render.pages import PageData, page
 from btq_lang.trace.overview import WAYS, At, Overview, QualityRow, RequirementRow, TreeRow
 from btq_lang.trace.verdicts import verdicts
-from btq_lang.trace.wording import GAPS, evidence_lines, incomplete, remarks, shown_quality, summary
+from btq_lang.trace.wording import GAPS, NO_LABEL, evidence_lines, incomplete, remarks, shown_quality, summary
 from btq_lang.util.text import counted
 
 
@@ -42,6 +42,8 @@ def render(overview: Overview, missions: Sequence[MissionVerdicts] = ()) -> str:
         requirements=[
             _requirement(each, characteristics.get(each.quality_key or "") or "-") for each in overview.requirements
         ],
+        builds=[build.label or NO_LABEL for build in overview.builds],
+        by_build=list(overview.by_build),
         qualities=_qualities(overview),
         gaps=_gaps(overview),
         edition=overview.edition,

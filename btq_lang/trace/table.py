@@ -14,7 +14,7 @@ from btq_lang.evidence.table import VERDICT_STYLES
 from btq_lang.render.cells import broken, cells_of, cut, narrowed, printable
 from btq_lang.render.colour import Paint, painter
 from btq_lang.trace.overview import At, Overview, RequirementRow
-from btq_lang.trace.wording import GAPS, evidence_lines, remarks, shown_quality, summary
+from btq_lang.trace.wording import GAPS, NO_LABEL, evidence_lines, remarks, shown_quality, summary
 
 
 def render(overview: Overview, colour: bool = False, width: int = 120) -> str:
@@ -33,6 +33,11 @@ def _lines(overview: Overview, paint: Paint, width: int) -> Iterator[str]:
             heading.append("Evidence")
             rows = [(*row, _evidence(each)) for row, each in zip(rows, overview.requirements, strict=True)]
         yield from _table(heading, rows, paint, width)
+        yield ""
+    builds = [((each.name,), *((verdict,) for verdict in verdicts[-_BUILDS:])) for each, verdicts in overview.by_build]
+    if builds:
+        labels = [build.label or NO_LABEL for build in overview.builds[-_BUILDS:]]
+        yield from _table(("By build", *labels), builds, paint, width)
         yield ""
     nodes = {node.key: node for node in overview.nodes}
     concerns = [
@@ -132,6 +137,7 @@ def _row(cells: Sequence[str], widths: Sequence[int], numbers_from: int, paint: 
 
 
 _LEAST: Final = 60
+_BUILDS: Final = 5  # the last ones
 _BETWEEN: Final = 2  # blanks between columns
 _WAYS: Final = {
     **{"enforced": "hint", "monitored": "info", "reviewed": "warning", "not attached": "error"},

@@ -78,4 +78,5 @@ GAPS: Final = {
     "bare_trees": "Trees without any quality",
     "bare_nodes": "Custom leaf nodes without any quality",
 }
+NO_LABEL: Final = "(none)"
 _ATTACHED: Final = {"apply": "by apply", "link": "a link only"}

@@ -266,6 +266,7 @@ def test_csv() -> None:
         "defined_line": "4",
         "verdict": "",
         "result": "",
+        "build": "",
     }
 
 
@@ -698,7 +699,7 @@ BehaviorTree Main
             "csv",
             (
                 "requirement,r5,Heat safely,safety,safety,Heat,Main,Heat takes at most 40 s,enforced,,subject,",
-                "clause without node,r5,Heat safely,safety,safety,,,never force >= 50 N,,,,,,m.btq,2,,\n",
+                "clause without node,r5,Heat safely,safety,safety,,,never force >= 50 N,,,,,,m.btq,2,,,\n",
                 "hard requirement not enforced,r5,",
             ),
         ),
