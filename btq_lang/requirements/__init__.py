@@ -15,5 +15,6 @@ identified by its facts.  What they read is in workspace/inputs.py.
     attach.py    which requirement holds for which node
     durations.py, composition.py, budgets.py   how long nodes take when all that is demanded below them holds
     spans.py     the node whose time a span is
+    external/    reading the requirements that other tools have written
     resolve.py   `requirements(workspace, path)`: all of a file and what it includes
 """

@@ -9,7 +9,7 @@ One invariant: every fact is in exactly one row with a key, and the same mission
     meanings.py the meaning of quality names
     verdicts.py verdicts on the page
     run_figure.py  what the nodes of a run did
-    table.py, csv_rows.py, json_document.py, markdown.py, page.py   the writers
+    table.py, csv_rows.py, json_document.py, needs_json.py, markdown.py, page.py   the writers
 """
 
 from __future__ import annotations
@@ -21,8 +21,13 @@ if TYPE_CHECKING:
     from btq_lang.trace.overview import Overview
 
 # The command line needs them for every command, so no writer is imported here.
-FORMATS: Final = ("table", "csv", "json", "markdown", "html")
-_MODULES: Final = {"csv": "csv_rows", "json": "json_document", "html": "page"}  # named otherwise
+FORMATS: Final = ("table", "csv", "json", "markdown", "html", "needs-json")
+_MODULES: Final = {
+    "csv": "csv_rows",
+    "json": "json_document",
+    "html": "page",
+    "needs-json": "needs_json",
+}  # named otherwise
 
 
 def write(overview: Overview, form: str, *, colour: bool = False, width: int = 120) -> str:

@@ -40,7 +40,7 @@ class TraceTable(Record):
         """Write the table as text.
 
         Args:
-            form: `table`, `csv`, `json`, `markdown` or `html`.
+            form: `table`, `csv`, `json`, `markdown`, `html` or `needs-json`.
             colour: ANSI colours, for `table`.
             width: the columns of the terminal, for `table`.
 
