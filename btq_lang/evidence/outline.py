@@ -101,7 +101,7 @@ def _meaning(part: object) -> str:
 def open_reason(requirement: ResolvedRequirement) -> str:
     """Why no log can show a requirement; empty if logs can."""
     if requirement.is_verified_by_people:
-        return f"verified by {requirement.method}"
+        return requirement.verification
     return "" if requirement.claims or requirement.unread else "it has no clause that can be measured"
 
 

@@ -13,7 +13,7 @@ from btq_lang.catalog.nodes import lookup
 from btq_lang.grammar.claims import HAPPENINGS, VERB_WORDS
 from btq_lang.grammar.clauses import ACTIONS as ON_VIOLATION
 from btq_lang.grammar.clauses import EXPERIMENTS, METHODS
-from btq_lang.grammar.conditions import FUNCTIONS, HEADS
+from btq_lang.grammar.conditions import FUNCTIONS, HEADS, METADATA_HEADS
 from btq_lang.ide.legend import MODIFIERS, TYPES
 from btq_lang.syntax.tokens import (
     BRACED,
@@ -80,6 +80,7 @@ WRITTEN: Final = _appearance("variable", "modification")
 _TYPES: Final = {
     What.TREE: "class",
     What.REQUIREMENT: "interface",
+    What.HAZARD: "interface",
     What.SIGNAL: "variable",
     What.CONTEXT: "variable",
     What.PARAMETER: "parameter",
@@ -97,7 +98,19 @@ USED: Final = {what: _appearance(type_) for what, type_ in _TYPES.items()}
 DEFINED: Final = {what: _appearance(type_, "definition") for what, type_ in _TYPES.items()}
 # Every word that the grammar knows by its place; a name that looks like one has the colour of what it names.
 KEYWORDS: Final = frozenset(
-    {"BehaviorTree", "Root", "include", "signal", "context", "apply", "quality", "qualities", "QualityReq"}
+    {
+        "BehaviorTree",
+        "Root",
+        "include",
+        "signal",
+        "context",
+        "apply",
+        "quality",
+        "qualities",
+        "QualityReq",
+        "hazard",
+        "severity",
+    }
     | {"TreeNodesModel", "xml", "parameters", "metadata", "Quality", "ID", "description", "true", "false"}
     | {"and", "or", "not", "if", "else", "node", "at", "to", "except", "of", "per", "under", "tagged", "within"}
     | {"most", "least", "less", "more", "than", "between", "after", "violation", "probability", "last", "by", "fresh"}
@@ -106,6 +119,7 @@ KEYWORDS: Final = frozenset(
     | NODE_CLAUSES
     | DIRECTIONS
     | HEADS
+    | METADATA_HEADS
     | VERB_WORDS
     | HAPPENINGS
     | EXPERIMENTS

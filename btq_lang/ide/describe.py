@@ -25,7 +25,7 @@ from btq_lang.ide.meaning import own_quality as declared_quality
 from btq_lang.ide.outline import clauses_detail
 from btq_lang.ide.ports import cpp_link, ports_of_kind, ports_of_tree, signature
 from btq_lang.syntax.quantities import parse_quantity
-from btq_lang.syntax.tree import Apply, Context, Model, QualityDecl, Requirement, Signal, Tree, Word, walk
+from btq_lang.syntax.tree import Apply, Context, Hazard, Model, QualityDecl, Requirement, Signal, Tree, Word, walk
 from btq_lang.util.text import Edit, Span, counted
 from btq_lang.workspace import inputs
 from btq_lang.workspace.file import Definition
@@ -96,8 +96,9 @@ def requirement(workspace: Workspace, path: str, definition: Definition) -> str:
     assert isinstance(item, Requirement), "a requirement's symbol defines one"
     lines = [f"**{definition.symbol.name}**{_parameters(workspace, definition, item)}"]
     quality = quality_of(definition)
-    if quality is not None:
-        lines[0] += f" · {quality.text}"
+    qualities = item.qualities or (() if quality is None else (quality,))
+    if qualities:
+        lines[0] += f" · {' and '.join(one.text for one in qualities)}"
     if item.text is not None:
         lines.append(" ".join(item.text.text.split()))
     if item.clauses:
@@ -113,6 +114,19 @@ def requirement(workspace: Workspace, path: str, definition: Definition) -> str:
         enforcement = enforcement_lines(workspace, path, definition, is_attached=bool(attached))
         lines.append(f"Enforcement by `btq build`:\n{enforcement}" if enforcement else "")
     return "\n\n".join(filter(None, (*lines, attached)))
+
+
+def hazard(workspace: Workspace, definition: Definition) -> str:
+    """A hazard as it is written, and the requirements that mitigate it."""
+    item = definition.symbol.target
+    assert isinstance(item, Hazard), "a hazard's symbol defines one"
+    file = workspace.files[definition.path]
+    clauses = [file.on_one_line(definition.entry, Span(clause.start, clause.end)) for clause in item.clauses]
+    shown = "\n".join(("```btq", *clauses, "```")) if clauses else ""
+    title = " ".join(item.text.text.split()) if item.text is not None else ""
+    wanted = Subject(What.HAZARD, definition.symbol.name, home_of(definition))
+    mitigated = used(workspace, wanted, "Mitigated by")
+    return "\n\n".join(filter(None, (f"**{definition.symbol.name}** · hazard", title, shown, mitigated)))
 
 
 def _parameters(workspace: Workspace, definition: Definition, item: Requirement) -> str:
@@ -282,6 +296,9 @@ def documentation(workspace: Workspace, path: str, kind: str, name: str) -> str 
     if kind == "requirement":
         definition = _definition(workspace, path, Kind.REQUIREMENT, name)
         return requirement(workspace, path, definition) if definition else None
+    if kind == "hazard":
+        definition = _definition(workspace, path, Kind.HAZARD, name)
+        return hazard(workspace, definition) if definition else None
     if kind in ("signal", "context"):
         definition = _definition(workspace, path, Kind.SIGNAL if kind == "signal" else Kind.CONTEXT, name)
         return declared(workspace, definition) if definition else None

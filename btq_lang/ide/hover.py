@@ -84,6 +84,9 @@ def _explained(workspace: Workspace, reference: ReferenceAt, wanted: Subject) ->
     if wanted.what is What.REQUIREMENT:
         place = definition(workspace, path, wanted)
         return describe.requirement(workspace, path, place) if place else None
+    if wanted.what is What.HAZARD:
+        place = definition(workspace, path, wanted)
+        return describe.hazard(workspace, place) if place else None
     if wanted.what in (What.SIGNAL, What.CONTEXT):
         place = definition(workspace, path, wanted)
         return describe.declared(workspace, place) if place else None

@@ -177,13 +177,74 @@ class Because(Part):
     text: Word | None
 
 
+class Way(Part):
+    """`test "TC-12"` of `verified by`.  method: monitor, analysis, test or review; id: of the test case, the report."""
+
+    method: Word
+    id: Word | None = None
+
+
 class How(Part):
-    """`verified by review`.  method: monitor, analysis, test or review."""
+    """`verified by test "TC-12", review`."""
 
-    method: Word | None
+    ways: tuple[Way, ...]
 
 
-Clause: TypeAlias = Claim | ScopeClause | Odds | Confidence | Window | OnViolation | Goal | Because | How
+class Source(Part):
+    """`source "ISO 13482, 5.10.2"`: where a requirement or a hazard is from."""
+
+    text: Word | None
+
+
+class Refines(Part):
+    """`refines safe_speed, REQ-7`: the requirements of which this one is a part."""
+
+    names: tuple[Word, ...]
+
+
+class Mitigates(Part):
+    """`mitigates H1, H2`: hazards."""
+
+    names: tuple[Word, ...]
+
+
+class Priority(Part):
+    """`priority high`: a free tag."""
+
+    tag: Word | None
+
+
+class Approval(Part):
+    """`approved by "Kim" on "2026-11-29" of "1:0123456789ab"`; `of`: the fingerprint of what was approved."""
+
+    by: Word | None
+    on: Word | None
+    of: Word | None = None
+
+
+class Severity(Part):
+    """`severity high` of a hazard: a free tag."""
+
+    tag: Word | None
+
+
+Clause: TypeAlias = (
+    Claim
+    | ScopeClause
+    | Odds
+    | Confidence
+    | Window
+    | OnViolation
+    | Goal
+    | Because
+    | How
+    | Source
+    | Refines
+    | Mitigates
+    | Priority
+    | Approval
+)
+HazardClause: TypeAlias = Source | Because | Severity
 
 
 # ---- Conditions -----------------------------------------------------------------------------------------------------

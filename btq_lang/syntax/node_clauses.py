@@ -64,6 +64,7 @@ class Requirement(Part):
     Attributes:
         name: its ID; None if it is missing.
         classic: written `QualityReq ID = … description = …`.
+        further: the qualities after the first one.
         text: its title, or the classic description.
     """
 
@@ -71,8 +72,14 @@ class Requirement(Part):
     classic: bool
     parameters: tuple[Parameter, ...]
     quality: QualityPath | None
+    further: tuple[QualityPath, ...]
     text: Word | None
     clauses: tuple[Clause, ...]
+
+    @property
+    def qualities(self) -> tuple[QualityPath, ...]:
+        """All its qualities."""
+        return () if self.quality is None else (self.quality, *self.further)
 
     @property
     def is_reference(self) -> bool:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache
+from itertools import chain
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.qualities import Edition, get, qualities
@@ -20,14 +21,16 @@ from btq_lang.graph.figure import Box, MeasuredClause, Note
 from btq_lang.graph.missions import by_tree, concerns, figure, requirement_note
 from btq_lang.requirements.model import Applied, MissionRun, NodeTarget, ResolvedRequirement
 from btq_lang.requirements.resolve import Requirements, requirements
-from btq_lang.syntax.tree import QualityDecl
+from btq_lang.syntax.tree import Hazard, QualityDecl
 from btq_lang.trace.meanings import Meanings, NameMeaning
+from btq_lang.trace.metadata import hazard_row, metadata_fields, mitigated
 from btq_lang.trace.overview import (
     WAYS,
     AppliedRequirement,
     At,
     BuildVerdicts,
     ClauseEvidence,
+    HazardRow,
     NodeRow,
     Overview,
     QualityRow,
@@ -104,12 +107,13 @@ class _Collector:
         self._notes: defaultdict[int, dict[object, Note]] = defaultdict(dict)  # at them, by what they represent
         self._places: dict[int, At] = {}  # of trees
         self._requirements: dict[_Key, RequirementRow] = {}
-        self._meanings: dict[_Key, NameMeaning] = {}  # of their qualities
+        self._meanings: dict[_Key, list[NameMeaning]] = {}  # of their qualities
         self._uses: defaultdict[_Key, dict[AppliedRequirement, None]] = defaultdict(dict)
         self._loose: dict[_Key, list[str]] = {}  # without a node in every mission in which other clauses have one
         self._verdicts: defaultdict[_Key, list[ClauseEvidence]] = defaultdict(list)
         self._builds: defaultdict[str, defaultdict[_Key, list[Verdict]]] = defaultdict(lambda: defaultdict(list))
         self._qualities: dict[str, QualityRow] = {}
+        self._hazards: dict[int, HazardRow] = {}  # by `id` of the syntax
         self._concerned: defaultdict[str, dict[str, None]] = defaultdict(dict)  # the nodes that satisfice a quality
 
     def add(self, workspace: Workspace, path: str) -> None:
@@ -139,14 +143,16 @@ class _Collector:
         edition = self._edition or "2023"
         measured: defaultdict[str, dict[str, None]] = defaultdict(dict)
         for key, row in self._requirements.items():
-            meaning = self._meanings[key]
-            for id_ in (meaning.id or row.quality or "", *meaning.ancestors):
-                measured[id_][row.key] = None
+            names = (row.quality or "", *row.further_qualities)
+            for name, meaning in zip(names, self._meanings[key], strict=True):
+                for id_ in (meaning.id or name, *meaning.ancestors):
+                    measured[id_][row.key] = None
         rows = tuple(self._linked(key, row, len(files) == 1) for key, row in self._requirements.items())
         quality_rows = tuple(
             replace(row, concerns=tuple(self._concerned[row.key]), requirements=tuple(measured[id_]))
             for id_, row in self._qualities.items()
         )
+        characteristics = [frozenset(one.characteristic for one in each) for each in self._meanings.values()]
         trees = tuple(sorted(self._trees(), key=lambda tree: tree.at.path not in files))  # included trees last
         return Overview(
             edition,
@@ -155,7 +161,7 @@ class _Collector:
             quality_rows,
             tuple(self._nodes.values()),
             trees,
-            _totals(edition, rows, quality_rows, [each.characteristic for each in self._meanings.values()]),
+            _totals(edition, rows, quality_rows, characteristics),
             self._verdicts_of is not None,
             builds=tuple(
                 BuildVerdicts(
@@ -163,6 +169,7 @@ class _Collector:
                 )
                 for label, verdicts in self._builds.items()
             ),
+            hazards=tuple(mitigated(row, rows) for row in self._hazards.values()),
         )
 
     def _linked(self, key: _Key, row: RequirementRow, is_of_one_mission: bool) -> RequirementRow:
@@ -175,11 +182,15 @@ class _Collector:
         )
 
     def _declared(self, workspace: Workspace, path: str, meanings: Meanings, place: Callable[[Place], At]) -> None:
-        """Add user-defined qualities, whether used or not."""
+        """Add user-defined qualities and hazards, whether used or not."""
         for other in workspace.scope(path).paths:
             for item in workspace.files[other].of_type(QualityDecl):
                 if item.name is not None:
                     self._quality(item.name.text, meanings, place(Place(item.name.span, other, item)))
+            for hazard in workspace.files[other].of_type(Hazard):
+                if hazard.name is not None and id(hazard) not in self._hazards:
+                    key, location = f"h{len(self._hazards) + 1}", place(Place(hazard.name.span, other, hazard))
+                    self._hazards[id(hazard)] = hazard_row(key, hazard.name.text, hazard, location)
 
     def _concerns(self, resolved: Requirements, meanings: Meanings, place: Callable[[Place], At]) -> None:
         for source in resolved.nodes.all:
@@ -194,8 +205,9 @@ class _Collector:
         for requirement in resolved.all.values():
             key, name, location = _place_of(requirement), requirement.quality, place(requirement.place)
             quality = self._quality(name, meanings, location) if name is not None else None
+            further = [self._quality(each, meanings, location) for each in requirement.further_qualities]
             if key not in self._requirements:
-                self._meanings[key] = meanings.of(name) if name is not None else _NO_MEANING
+                self._meanings[key] = [meanings.of(each) for each in requirement.qualities] or [_NO_MEANING]
                 self._requirements[key] = RequirementRow(
                     f"r{len(self._requirements) + 1}",
                     requirement.name,
@@ -208,6 +220,9 @@ class _Collector:
                     loose=(),
                     is_hard=requirement.demands_enforcement and not requirement.is_verified_by_people,
                     evidence=(),
+                    further_qualities=requirement.further_qualities,
+                    further_quality_keys=tuple(further),
+                    **metadata_fields(requirement),
                 )
 
     def _evidence(self, path: str, resolved: Requirements) -> None:
@@ -388,8 +403,8 @@ def _stated(requirement: ResolvedRequirement) -> Iterator[str]:
         yield f"on violation {requirement.action}"
     if requirement.goal is not None:
         yield f"goal {requirement.goal.text}"
-    if requirement.method is not None:
-        yield f"verified by {requirement.method}"
+    if requirement.ways:
+        yield requirement.verification
     yield from (f'because "{" ".join(reason.split())}"' for reason in requirement.reasons)
 
 
@@ -397,19 +412,19 @@ def _totals(
     edition: Edition,
     rows: Sequence[RequirementRow],
     quality_rows: Sequence[QualityRow],
-    by_requirement: Sequence[str | None],
+    by_requirement: Sequence[frozenset[str | None]],
 ) -> tuple[TotalRow, ...]:
     """A total for each product characteristic, each characteristic in use that is named, and the rest.
 
     Args:
-        by_requirement: the characteristic of each requirement.
+        by_requirement: the characteristics of each requirement, None for a quality that belongs to none.
     """
     characteristics = [each.id for each in qualities(edition) if each.parent is None and each.kind == "product"]
-    named = (*by_requirement, *(each.characteristic for each in quality_rows if each.concerns))
+    named = (*chain.from_iterable(by_requirement), *(each.characteristic for each in quality_rows if each.concerns))
     characteristics += [each for each in dict.fromkeys(named) if each is not None and each not in characteristics]
     totals: list[TotalRow] = []
     for id_ in (*characteristics, None):
-        own = [row for row, characteristic in zip(rows, by_requirement, strict=True) if characteristic == id_]
+        own = [row for row, its_own in zip(rows, by_requirement, strict=True) if id_ in its_own]
         clauses = [clause for row in own for use in row.uses for clause in use.clauses]
         concerns = {key for each in quality_rows if each.characteristic == id_ for key in each.concerns}
         if id_ is None and not own and not concerns:

@@ -4,7 +4,11 @@ The document, format 1; a later btq adds keys but changes none without a new num
 
     {"format": 1, "tool": "btq", "version": VERSION, "quality_model": "iso25010-2023", "files": [PATH],
      "requirements": [{"key": KEY, "id": NAME, "title": TEXT, "quality": NAME | null, "quality_key": KEY | null,
+                       "further_qualities": [{"name": NAME, "key": KEY}],
                        "how": TEXT, "clauses": [TEXT], "at": PLACE,
+                       "sources": [TEXT], "refines": [NAME], "mitigates": [NAME], "priority": NAME | null,
+                       "verified_by": [{"method": "monitor" | "analysis" | "test" | "review", "id": TEXT | null}],
+                       "approvals": [{"by": TEXT, "on": TEXT, "of": FINGERPRINT | null}],
                        "clauses_without_nodes": [TEXT],
                        "evidence": [{"mission": PATH, "clause": TEXT, "path": PATH IN THE ENGINE,
                                      "verdict": "violated" | "unknown" | "undecided" | "satisfied" | "never exercised"
@@ -14,6 +18,8 @@ The document, format 1; a later btq adds keys but changes none without a new num
                                       "attached_by": "subject" | "satisfies" | "apply" | "link",
                                       "clauses": [{"text": TEXT, "why": TEXT,
                                                    "how": "enforced" | "monitored" | "reviewed"}]}]}],
+     "hazards": [{"key": KEY, "id": NAME, "title": TEXT, "severity": NAME | null, "sources": [TEXT], "reasons": [TEXT],
+                  "at": PLACE, "requirements": [KEY]}],
      "qualities": [{"key": KEY, "name": NAME, "id": NAME | null, "characteristic": NAME | null, "definition": TEXT,
                     "at": PLACE, "concerns": [KEY], "requirements": [KEY]}],
      "nodes": [{"key": KEY, "name": TEXT, "tree": NAME, "category": NAME | null, "skill": BOOL,
@@ -40,7 +46,7 @@ from __future__ import annotations
 import json
 from typing import TypeAlias
 
-from btq_lang.trace.overview import CharacteristicTotals, Overview, RequirementRow
+from btq_lang.trace.overview import CharacteristicTotals, HazardRow, Overview, RequirementRow
 from btq_lang.util.record import as_dict
 from btq_lang.util.version import __version__
 
@@ -56,6 +62,7 @@ def render(overview: Overview) -> str:
         "quality_model": f"iso25010-{overview.edition}",
         "files": list(overview.files),
         "requirements": [_requirement(each, overview.has_evidence) for each in overview.requirements],
+        "hazards": [_hazard(each) for each in overview.hazards],
         "qualities": [{**as_dict(each), "at": as_dict(each.at)} for each in overview.qualities],
         "nodes": [
             {
@@ -101,9 +108,19 @@ def _requirement(requirement: RequirementRow, has_evidence: bool) -> Json:
         "title": requirement.title,
         "quality": requirement.quality,
         "quality_key": requirement.quality_key,
+        "further_qualities": [
+            {"name": name, "key": key}
+            for name, key in zip(requirement.further_qualities, requirement.further_quality_keys, strict=True)
+        ],
         "how": requirement.way,
         "clauses": list(requirement.clauses),
         "at": as_dict(requirement.at),
+        "sources": list(requirement.sources),
+        "refines": list(requirement.refines),
+        "mitigates": list(requirement.mitigates),
+        "priority": requirement.priority or None,
+        "verified_by": [{"method": way.method, "id": way.id or None} for way in requirement.verification],
+        "approvals": [{"by": each.by, "on": each.on, "of": each.of or None} for each in requirement.approvals],
         "clauses_without_nodes": list(requirement.loose),
         "evidence": [as_dict(clause) for clause in requirement.evidence] if has_evidence else None,
         "holds_for": [
@@ -117,6 +134,19 @@ def _requirement(requirement: RequirementRow, has_evidence: bool) -> Json:
             }
             for use in requirement.uses
         ],
+    }
+
+
+def _hazard(hazard: HazardRow) -> Json:
+    return {
+        "key": hazard.key,
+        "id": hazard.name,
+        "title": hazard.title,
+        "severity": hazard.severity or None,
+        "sources": list(hazard.sources),
+        "reasons": list(hazard.reasons),
+        "at": as_dict(hazard.at),
+        "requirements": list(hazard.requirements),
     }
 
 

@@ -1,7 +1,7 @@
 """The contents of an overview: small frozen records that writers print without looking anything up.
 
-One invariant: rows refer to each other by keys (`n3` a node, `r1` a requirement, `q2` a quality), which are the same
-for the same missions.  Lines and columns count from 1.
+One invariant: rows refer to each other by keys (`n3` a node, `r1` a requirement, `q2` a quality, `h1` a hazard), which
+are the same for the same missions.  Lines and columns count from 1.
 """
 
 from __future__ import annotations
@@ -87,6 +87,26 @@ class ClauseEvidence(Record):
     result: str
 
 
+class ApprovalRow(Record):
+    """An approval of a requirement.
+
+    Attributes:
+        on: the date, as written.
+        of: the fingerprint of what was approved; empty if none is given.
+    """
+
+    by: str
+    on: str
+    of: str
+
+
+class VerificationRow(Record):
+    """A way to verify a requirement; id: of the test case or the report, empty if none is named."""
+
+    method: str
+    id: str
+
+
 class RequirementRow(Record):
     """A requirement.
 
@@ -98,6 +118,11 @@ class RequirementRow(Record):
         loose: the clauses without a node, if other clauses have one.
         is_hard: the engine must enforce it.
         evidence: what logs show of its clauses, the worst verdict first.
+        further_qualities: as written, after the first one; `further_quality_keys`: of their rows.
+        sources: where it is from.
+        refines: the IDs of the requirements of which it is a part; `mitigates`: those of hazards.
+        priority: empty without one.
+        verification: the ways to verify it; empty: by monitor.
     """
 
     key: str
@@ -111,6 +136,14 @@ class RequirementRow(Record):
     loose: tuple[str, ...]
     is_hard: bool
     evidence: tuple[ClauseEvidence, ...]
+    further_qualities: tuple[str, ...] = ()
+    further_quality_keys: tuple[str, ...] = ()
+    sources: tuple[str, ...] = ()
+    refines: tuple[str, ...] = ()
+    mitigates: tuple[str, ...] = ()
+    priority: str = ""
+    verification: tuple[VerificationRow, ...] = ()
+    approvals: tuple[ApprovalRow, ...] = ()
 
     @property
     def way(self) -> str:
@@ -128,6 +161,24 @@ class RequirementRow(Record):
             clause.why for use in self.uses for clause in use.clauses if clause.way == "monitored" and clause.why
         ]
         return tuple(dict.fromkeys((*reasons, *(f"`{clause}` applies to no node" for clause in self.loose))))
+
+
+class HazardRow(Record):
+    """A hazard.
+
+    Attributes:
+        title, severity: empty without one.
+        requirements: the keys of those that mitigate it.
+    """
+
+    key: str
+    name: str
+    title: str
+    severity: str
+    sources: tuple[str, ...]
+    reasons: tuple[str, ...]
+    at: At
+    requirements: tuple[str, ...]
 
 
 class QualityRow(Record):
@@ -233,6 +284,7 @@ class Overview(Record):
     has_evidence: bool = False
     errors: int = 0
     builds: tuple[BuildVerdicts, ...] = ()
+    hazards: tuple[HazardRow, ...] = ()
 
     @property
     def by_build(self) -> Iterator[tuple[RequirementRow, tuple[str, ...]]]:

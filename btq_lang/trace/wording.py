@@ -20,7 +20,8 @@ def incomplete(overview: Overview) -> str:
 
 def summary(overview: Overview) -> str:
     """All counts, in a sentence."""
-    ways: dict[str, int] = {way: sum(getattr(total, way) for total in overview.totals) for way in WAYS}
+    clauses = [clause.way for row in overview.requirements for use in row.uses for clause in use.clauses]
+    ways: dict[str, int] = {way: clauses.count(way) for way in WAYS}
     ways["without a node"] = len(overview.loose)
     covered = ", ".join(f"{number} {way}" for way, number in ways.items() if number)
     sentence = f"{counted(len(overview.requirements), 'requirement')}"

@@ -38,6 +38,7 @@ class What(Enum):
     SIGNAL = "signal"
     CONTEXT = "context"
     QUALITY = "quality"
+    HAZARD = "hazard"
     PARAMETER = "parameter"
     VALUE = "value"  # in a condition: a context, a signal, a parameter, else a node
     PLACE = "place"  # in a path: a tree, a node or an instance name
@@ -128,6 +129,8 @@ def report(item: syntax.Item, to: ReferenceListener) -> None:
     elif isinstance(item, syntax.QualityDecl):
         to.word(What.QUALITY, item.name, defines=True)
         _quality(item.parent, None, to)
+    elif isinstance(item, syntax.Hazard):
+        to.word(What.HAZARD, item.name, defines=True)
     elif isinstance(item, syntax.Qualities):
         to.word(What.EDITION, item.edition)
     elif isinstance(item, syntax.Apply):
@@ -401,7 +404,8 @@ def _requirement(
 ) -> None:
     refers = attached and requirement.is_reference
     to.word(What.REQUIREMENT, requirement.name, defines=not refers, node=node, owner=requirement)
-    _quality(requirement.quality, node, to)
+    for quality in requirement.qualities:
+        _quality(quality, node, to)
     if requirement.text is not None:
         to.value(requirement.text)
     for parameter in requirement.parameters:
@@ -409,7 +413,12 @@ def _requirement(
         to.word(What.UNIT, parameter.unit)
         _values(parameter.default, requirement, to)
     for clause in requirement.clauses:
-        _values(clause, requirement, to)
+        if isinstance(clause, syntax.Refines | syntax.Mitigates):
+            what = What.REQUIREMENT if isinstance(clause, syntax.Refines) else What.HAZARD
+            for name in clause.names:
+                to.word(what, name)
+        else:
+            _values(clause, requirement, to)
 
 
 def _quality(path: syntax.QualityPath | None, node: syntax.Node | None, to: ReferenceListener) -> None:
@@ -461,5 +470,6 @@ KIND_OF: Final = {  # of what is looked up by its name
     What.SIGNAL: Kind.SIGNAL,
     What.CONTEXT: Kind.CONTEXT,
     What.QUALITY: Kind.QUALITY,
+    What.HAZARD: Kind.HAZARD,
 }
 _NOTHING: Final = Summary((), ())

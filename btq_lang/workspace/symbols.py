@@ -18,7 +18,13 @@ from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 
 Target: TypeAlias = (
-    syntax.Tree | syntax.Model | syntax.Requirement | syntax.Signal | syntax.Context | syntax.QualityDecl
+    syntax.Tree
+    | syntax.Model
+    | syntax.Requirement
+    | syntax.Signal
+    | syntax.Context
+    | syntax.QualityDecl
+    | syntax.Hazard
 )
 
 
@@ -179,7 +185,7 @@ def _words_in(part: object) -> frozenset[str]:
 
 def _content(requirement: syntax.Requirement) -> object:
     text = " ".join(requirement.text.text.split()) if requirement.text else None
-    return text, syntax.shape((requirement.quality, requirement.parameters, requirement.clauses))
+    return text, syntax.shape((requirement.qualities, requirement.parameters, requirement.clauses))
 
 
 _WORDS: Final = re.compile(r"\w+")
