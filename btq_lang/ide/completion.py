@@ -383,6 +383,8 @@ def _clause_words(workspace: Workspace, path: str, wanted: Expected, place: Curs
         yield from offer.requirement_ids(workspace, path, place)
     if wanted.hazard:
         yield from offer.hazards(workspace, path)
+    if wanted.requirement or wanted.hazard:
+        yield from offer.external_ids(workspace, place)
     if wanted.node and place.last == "every":
         yield from offer.kinds(workspace, path)
     elif wanted.node:
