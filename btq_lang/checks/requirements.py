@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks import lookups
+from btq_lang.checks.chain import in_other_clause, is_refined
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.qualities import other_word
 from btq_lang.checks.view import (
@@ -41,11 +42,14 @@ def unknown_requirement(view: View) -> Iterator[Diagnostic]:
     for use in view.uses(Kind.REQUIREMENT):
         if view.ask(lookups.is_defined, Kind.REQUIREMENT, use.name):
             continue
+        if view.ask(lookups.is_defined, Kind.HAZARD, use.name):
+            yield in_other_clause(view, use, "unknown-requirement")
+            continue
         if not view.ask(inputs.is_complete):
             return
         elsewhere = view.ask(lookups.elsewhere, Kind.REQUIREMENT, use.name)
-        quality = view.ask(quality_named, use.name)
-        if not elsewhere and (quality is None or quality.kind != "unknown"):
+        quality = view.ask(quality_named, use.name) if not is_refined(view, use) else None
+        if not elsewhere and not is_refined(view, use) and (quality is None or quality.kind != "unknown"):
             is_exact = quality is None or quality.kind == "exact"
             yield other_word(view, use, "unknown-requirement", requirement=False, safe=is_exact)
             continue

@@ -2,6 +2,7 @@
 
     [requirements]
     import = ["needs.json", "reqs.csv", "reqs.reqif"]
+    approval = "required"
 
 One invariant: what is wrong is left out and reported, and the rest is kept.  Not known here: how the files are read.
 """
@@ -60,9 +61,11 @@ class RequirementSettings(Record):
 
     Attributes:
         imports: the files of other tools' requirements, relative to the project file.
+        requires_approval: whether a requirement without an approval is a finding.
     """
 
     imports: tuple[str, ...] = ()
+    requires_approval: bool = False
 
 
 def read_requirements(table: object) -> tuple[RequirementSettings, list[Complaint]]:
@@ -82,7 +85,12 @@ def read_requirements(table: object) -> tuple[RequirementSettings, list[Complain
         if not name.endswith(IMPORTED_SUFFIXES):
             message = f"`{name}` is of an unknown format; expected a file that ends in {', '.join(IMPORTED_SUFFIXES)}"
             complaints.append((message, ("import",), name))
-    return RequirementSettings(tuple(name for name in imports if name.endswith(IMPORTED_SUFFIXES))), complaints
+    approval = table.get("approval", APPROVALS[0])
+    if approval not in APPROVALS:
+        allowed = " or ".join(f'"{word}"' for word in APPROVALS)
+        complaints.append((f"`requirements.approval` must be {allowed}", ("approval",), None))
+    imported = tuple(name for name in imports if name.endswith(IMPORTED_SUFFIXES))
+    return RequirementSettings(imported, approval == "required"), complaints
 
 
 IMPORTED_SUFFIXES: Final = (
@@ -91,4 +99,8 @@ IMPORTED_SUFFIXES: Final = (
     ".reqif",
 )  # of sphinx-needs, of tables, of the Requirements Interchange Format
 # Each key with a line for editors.
-KEYS: Final = {"import": "the files of requirements that other tools keep: a needs.json, CSV or ReqIF"}
+KEYS: Final = {
+    "import": "the files of requirements that other tools keep: a needs.json, CSV or ReqIF",
+    "approval": "whether each requirement must be approved",
+}
+APPROVALS: Final = ("optional", "required")
