@@ -42,15 +42,20 @@ class ExternalRequirements:
 
     Attributes:
         by_id: in the order of the files.
+        is_complete: whether all files could be read, so that an id that is not here does not exist.
     """
 
-    def __init__(self, requirements: Iterable[ExternalRequirement] = ()) -> None:
+    def __init__(self, requirements: Iterable[ExternalRequirement] = (), is_complete: bool = True) -> None:
+        self.is_complete = is_complete
         self.by_id: dict[str, ExternalRequirement] = {}
         for requirement in requirements:
             self.by_id.setdefault(requirement.id, requirement)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, ExternalRequirements) and self.by_id == other.by_id
+        return isinstance(other, ExternalRequirements) and (self.is_complete, self.by_id) == (
+            other.is_complete,
+            other.by_id,
+        )
 
     def __hash__(self) -> int:
         return hash(tuple(self.by_id))
@@ -93,11 +98,7 @@ def read_requirements(table: object) -> tuple[RequirementSettings, list[Complain
     return RequirementSettings(imported, approval == "required"), complaints
 
 
-IMPORTED_SUFFIXES: Final = (
-    ".json",
-    ".csv",
-    ".reqif",
-)  # of sphinx-needs, of tables, of the Requirements Interchange Format
+IMPORTED_SUFFIXES: Final = (".json", ".csv", ".reqif")  # of sphinx-needs, tables, the Requirements Interchange Format
 # Each key with a line for editors.
 KEYS: Final = {
     "import": "the files of requirements that other tools keep: a needs.json, CSV or ReqIF",
