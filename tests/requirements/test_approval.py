@@ -151,7 +151,8 @@ QualityReq b "B"
     refines a
     approved by "K" on "2026-11-29"
 """
-    assert [state(text, name).state for name in "ab"] == ["suspect", "approved"]
+    assert [state(text, name).state for name in "ab"] == ["suspect", "suspect"]
+    assert [state(text.replace(' of "1:0"', ""), name).state for name in "ab"] == ["approved", "approved"]
 
 
 @pytest.mark.parametrize(
