@@ -29,7 +29,7 @@ def approval_outdated(view: View) -> Iterator[Diagnostic]:
 
 
 def _outdated(view: View, symbol: Symbol, requirement: Requirement, state: ApprovalState) -> Iterator[Diagnostic]:
-    again = f"if it is still right, `btq approve {written(symbol.name)}` approves it as it is now"
+    again = f"if it is still right, `btq approve {written(symbol.name)} --by NAME` approves it as it is"
     for approval in state.outdated:
         message = f"`{symbol.name}` has changed since {approval.by} approved it on {approval.on}"
         yield Diagnostic("approval-outdated", approval.place.span, message, notes=(_what_changed(view, symbol), again))

@@ -466,6 +466,23 @@ def _add_diff(parser: SuggestingParser) -> None:
 
 
 @_command(
+    "approve",
+    "write who has approved a requirement, and the fingerprint of what it means",
+    "exit codes: 0 written, or approved already; 1 a requirement that cannot be approved; 2 usage or I/O\n\n"
+    "examples:\n  btq approve slow --by Kim\n"
+    "  btq approve slow rq7 --by Kim --in missions/\n",
+)
+def _add_approve(parser: SuggestingParser) -> None:
+    parser.add("ids", nargs="+", metavar="ID", help="the IDs of requirements")
+    parser.add("--by", required=True, metavar="NAME", help="who has approved them")
+    parser.add(
+        "--in", action="append", dest="paths", metavar="PATH", help="files and folders that define them; default: ."
+    )
+    parser.add("--date", metavar="DATE", help="when, as 2026-11-29; default: today")
+    _add_config(parser)
+
+
+@_command(
     "explain",
     "explain a rule, a node, a quality or a word of the language",
     "examples:\n  btq explain unknown-port\n  btq explain '->'\n  btq explain time-behaviour\n"

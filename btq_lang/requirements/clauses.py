@@ -13,7 +13,7 @@ from typing import Final
 from btq_lang.catalog.units import Dimension, a_dimension
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements import model, nodes
-from btq_lang.requirements.metadata import METADATA, metadata_of
+from btq_lang.requirements.metadata import metadata_of
 from btq_lang.requirements.reader import Reader
 from btq_lang.requirements.terms import COUNT, DURATION, PERCENT, SORTS, TIME, Wanted, sort_of
 from btq_lang.syntax import tree as syntax
@@ -63,7 +63,7 @@ def with_clauses(
             reasons.append(clause.text.text)
         elif isinstance(clause, syntax.How) and clause.ways:
             keep("ways", tuple(_way(way) for way in clause.ways))
-        elif type(clause) in METADATA:
+        elif type(clause) in syntax.METADATA:
             metadata.append(clause)
     if goals:
         once["goal"] = reader.bounded(goals[0].value, _of_goal(claims, "odds" in once))

@@ -37,7 +37,7 @@ def requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Res
     if written.further:
         resolved = replace(resolved, further_qualities=tuple(each.text for each in written.further))
     resolved = with_clauses(reader, resolved, written.clauses)
-    if not written.clauses and written.text is not None:
+    if written.is_text and written.text is not None:
         from btq_lang.requirements.classic import with_constraints  # only requirements without clauses need it
 
         resolved = with_constraints(reader, resolved, written.text)

@@ -14,8 +14,6 @@ from btq_lang.requirements.paths import PathReader
 from btq_lang.syntax import tree as syntax
 from btq_lang.util.text import Span
 
-METADATA: Final = frozenset((syntax.Source, syntax.Refines, syntax.Mitigates, syntax.Priority, syntax.Approval))
-
 
 def metadata_of(reader: PathReader, clauses: Sequence[syntax.Clause]) -> dict[str, object]:
     """The fields of a resolved requirement that these clauses set; of several priorities the first counts."""

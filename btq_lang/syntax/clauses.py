@@ -5,7 +5,7 @@ One invariant: as in `tree`, to which these classes belong, offsets count from t
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 from btq_lang.syntax.words import Word
 from btq_lang.util.record import Part, Record
@@ -245,6 +245,8 @@ Clause: TypeAlias = (
     | Approval
 )
 HazardClause: TypeAlias = Source | Because | Severity
+# The clauses that demand nothing.
+METADATA: Final = frozenset((Source, Refines, Mitigates, Priority, Approval))
 
 
 # ---- Conditions -----------------------------------------------------------------------------------------------------

@@ -12,6 +12,7 @@ from itertools import chain
 from typing import TypeAlias
 
 from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.syntax.clauses import METADATA as METADATA
 from btq_lang.syntax.clauses import Amount as Amount
 from btq_lang.syntax.clauses import Approval as Approval
 from btq_lang.syntax.clauses import Argument as Argument

@@ -19,9 +19,10 @@ from btq_lang.evidence.sentences import result
 from btq_lang.evidence.verdicts import WORST_FIRST, RequirementVerdict, worst_of
 from btq_lang.graph.figure import Box, MeasuredClause, Note
 from btq_lang.graph.missions import by_tree, concerns, figure, requirement_note
+from btq_lang.requirements.approval import approval_state
 from btq_lang.requirements.model import Applied, MissionRun, NodeTarget, ResolvedRequirement
 from btq_lang.requirements.resolve import Requirements, requirements
-from btq_lang.syntax.tree import Hazard, QualityDecl
+from btq_lang.syntax.tree import Hazard, QualityDecl, written
 from btq_lang.trace.meanings import Meanings, NameMeaning
 from btq_lang.trace.metadata import hazard_row, metadata_fields, mitigated
 from btq_lang.trace.overview import (
@@ -194,8 +195,8 @@ class _Collector:
 
     def _concerns(self, resolved: Requirements, meanings: Meanings, place: Callable[[Place], At]) -> None:
         for source in resolved.nodes.all:
-            for name, written in concerns(source):
-                location = place(Place(written.span, source.path, source.item))
+            for name, path in concerns(source):
+                location = place(Place(path.span, source.path, source.item))
                 key = self._quality(name, meanings, location)
                 self._concerned[key][self._nodes[id(source.node)].key] = None
                 note = Note("quality", key, name, text=f"satisfices {name}", link=f"#{key}")
@@ -206,6 +207,7 @@ class _Collector:
             key, name, location = _place_of(requirement), requirement.quality, place(requirement.place)
             quality = self._quality(name, meanings, location) if name is not None else None
             further = [self._quality(each, meanings, location) for each in requirement.further_qualities]
+            approval = resolved.store.ask(approval_state, resolved.viewpoint, requirement.name)
             if key not in self._requirements:
                 self._meanings[key] = [meanings.of(each) for each in requirement.qualities] or [_NO_MEANING]
                 self._requirements[key] = RequirementRow(
@@ -222,7 +224,7 @@ class _Collector:
                     evidence=(),
                     further_qualities=requirement.further_qualities,
                     further_quality_keys=tuple(further),
-                    **metadata_fields(requirement),
+                    **metadata_fields(requirement, approval),
                 )
 
     def _evidence(self, path: str, resolved: Requirements) -> None:
@@ -406,6 +408,12 @@ def _stated(requirement: ResolvedRequirement) -> Iterator[str]:
     if requirement.ways:
         yield requirement.verification
     yield from (f'because "{" ".join(reason.split())}"' for reason in requirement.reasons)
+    yield from (f'source "{" ".join(source.split())}"' for source in requirement.sources)
+    for head, names in (("refines", requirement.refines), ("mitigates", requirement.mitigates)):
+        if names:
+            yield f"{head} {', '.join(map(written, names))}"
+    if requirement.priority is not None:
+        yield f"priority {written(requirement.priority)}"
 
 
 def _totals(

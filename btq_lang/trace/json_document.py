@@ -9,6 +9,7 @@ The document, format 1; a later btq adds keys but changes none without a new num
                        "sources": [TEXT], "refines": [NAME], "mitigates": [NAME], "priority": NAME | null,
                        "verified_by": [{"method": "monitor" | "analysis" | "test" | "review", "id": TEXT | null}],
                        "approvals": [{"by": TEXT, "on": TEXT, "of": FINGERPRINT | null}],
+                       "state": "open" | "approved" | "suspect", "fingerprint": FINGERPRINT,
                        "clauses_without_nodes": [TEXT],
                        "evidence": [{"mission": PATH, "clause": TEXT, "path": PATH IN THE ENGINE,
                                      "verdict": "violated" | "unknown" | "undecided" | "satisfied" | "never exercised"
@@ -121,6 +122,8 @@ def _requirement(requirement: RequirementRow, has_evidence: bool) -> Json:
         "priority": requirement.priority or None,
         "verified_by": [{"method": way.method, "id": way.id or None} for way in requirement.verification],
         "approvals": [{"by": each.by, "on": each.on, "of": each.of or None} for each in requirement.approvals],
+        "state": requirement.state,
+        "fingerprint": requirement.fingerprint,
         "clauses_without_nodes": list(requirement.loose),
         "evidence": [as_dict(clause) for clause in requirement.evidence] if has_evidence else None,
         "holds_for": [

@@ -7,13 +7,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+from btq_lang.requirements.approval import ApprovalState
 from btq_lang.requirements.model import ResolvedRequirement
 from btq_lang.syntax.tree import Because, Hazard, Severity, Source
 from btq_lang.trace.overview import ApprovalRow, At, HazardRow, RequirementRow, VerificationRow
 from btq_lang.util.record import replace
 
 
-def metadata_fields(requirement: ResolvedRequirement) -> dict[str, Any]:
+def metadata_fields(requirement: ResolvedRequirement, approval: ApprovalState) -> dict[str, Any]:
     """The fields of a requirement's row for these clauses."""
     return {
         "sources": tuple(map(_folded, requirement.sources)),
@@ -22,6 +23,8 @@ def metadata_fields(requirement: ResolvedRequirement) -> dict[str, Any]:
         "priority": requirement.priority or "",
         "verification": tuple(VerificationRow(way.method, way.id or "") for way in requirement.ways),
         "approvals": tuple(ApprovalRow(each.by, each.on, each.fingerprint or "") for each in requirement.approvals),
+        "state": approval.state,
+        "fingerprint": approval.fingerprint,
     }
 
 

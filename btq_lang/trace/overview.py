@@ -15,6 +15,7 @@ from btq_lang.util.record import Record
 if TYPE_CHECKING:
     from btq_lang.btcpp.enforceability import Way
     from btq_lang.evidence.verdicts import Verdict
+    from btq_lang.requirements.approval import State
 
     # Whether a node carries a quality or a requirement: itself, through a node above it, or not at all.
     Carries: TypeAlias = Literal["own", "above", "none"]
@@ -123,6 +124,7 @@ class RequirementRow(Record):
         refines: the IDs of the requirements of which it is a part; `mitigates`: those of hazards.
         priority: empty without one.
         verification: the ways to verify it; empty: by monitor.
+        state: of its approval; `fingerprint`: of what it means now.
     """
 
     key: str
@@ -144,6 +146,8 @@ class RequirementRow(Record):
     priority: str = ""
     verification: tuple[VerificationRow, ...] = ()
     approvals: tuple[ApprovalRow, ...] = ()
+    state: State = "open"
+    fingerprint: str = ""
 
     @property
     def way(self) -> str:

@@ -15,13 +15,14 @@ from btq_lang.workspace.external_requirements import (
 WHOLE = """\
 [requirements]
 import = ["docs/needs.json", "../reqs.csv", "reqs.reqif"]
+approval = "required"
 """
 
 
 def test_every_key() -> None:
     project, wrong = parse_project(WHOLE, root="/home/robot")
     assert wrong == ()
-    assert project.requirements == RequirementSettings(("docs/needs.json", "../reqs.csv", "reqs.reqif"))
+    assert project.requirements == RequirementSettings(("docs/needs.json", "../reqs.csv", "reqs.reqif"), True)
     assert project.imports == ("/home/robot/docs/needs.json", "/home/reqs.csv", "/home/robot/reqs.reqif")
 
 
@@ -36,6 +37,7 @@ def test_what_is_right_is_kept() -> None:
         ("requirements = 1", "1:1: `requirements` must be a table"),
         ("[requirements]\nimports = []", "2:1: unknown key `requirements.imports`; did you mean `import`?"),
         ('[requirements]\nimport = "a.json"', "2:1: `requirements.import` must be a list of files"),
+        ("[requirements]\napproval = true", '2:1: `requirements.approval` must be "optional" or "required"'),
         ("[requirements]\nimport = [1]", "2:1: `requirements.import` must be a list of files"),
         (
             '[requirements]\nimport = ["a.json", "b.xlsx"]',
