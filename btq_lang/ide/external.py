@@ -1,14 +1,12 @@
 """The requirements of other tools in an editor: what a name means that no file of the mission defines.
 
-One invariant: their texts are of strangers, so none of them is Markdown, and only web addresses and their files are
-links.
+One invariant: their texts are of strangers, so none of them is Markdown.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import Final
 from urllib.parse import quote
 
 from btq_lang.ide.meaning import Subject, definition
@@ -43,17 +41,12 @@ def external_links(workspace: Workspace, path: str) -> Iterator[tuple[Span, Exte
                     yield mention.span.shifted(entry.start), meant
 
 
-def web_address(requirement: ExternalRequirement) -> str:
-    """The address of its page; empty if it has none."""
-    return requirement.url if _WEB.fullmatch(requirement.url) else ""
-
-
 def described(workspace: Workspace, requirement: ExternalRequirement) -> str:
     """An imported requirement in Markdown."""
     head = f"**{escaped(requirement.id)}**" + (f" · {escaped(requirement.status)}" if requirement.status else "")
     place = f"{workspace.project.shown(requirement.path)}:{requirement.line}"
     links = [f"[{place}](file://{quote(requirement.path)}#L{requirement.line})"]
-    links += [f"<{address}>"] if (address := web_address(requirement)) else []
+    links += [f"<{requirement.url}>"] if requirement.url else []
     return "\n\n".join(filter(None, (head, escaped(requirement.title), _fenced(requirement.text), " · ".join(links))))
 
 
@@ -62,6 +55,3 @@ def _fenced(text: str) -> str:
     ticks = max((len(run) for run in re.findall("`+", text)), default=0)
     fence = "`" * max(ticks + 1, 3)
     return f"{fence}text\n{text}\n{fence}" if text else ""
-
-
-_WEB: Final = re.compile(r"https?://[^\s<>\"'`\\]+")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from btq_lang.ide.external import external_links, web_address
+from btq_lang.ide.external import external_links
 from btq_lang.ide.meaning import at, entry_at
 from btq_lang.syntax.tokens import BLANK, CLOSE, COMMENT, DEDENT, INDENT, NEWLINE, OPEN, STRING
 from btq_lang.syntax.tree import Include, Tree
@@ -137,6 +137,5 @@ def document_links(workspace: Workspace, path: str) -> tuple[FileLink, ...]:
             inside = Span(span.start + 1, max(span.end - 1, span.start + 1)) if include.path.quoted else span
             links.append(FileLink(inside, workspace.included_by(path, include)))
     for span, requirement in external_links(workspace, path):
-        address = web_address(requirement)
-        links.append(FileLink(span, address or requirement.path, 0 if address else requirement.line))
+        links.append(FileLink(span, requirement.url or requirement.path, 0 if requirement.url else requirement.line))
     return tuple(links)

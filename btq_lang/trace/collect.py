@@ -23,6 +23,7 @@ from btq_lang.requirements.approval import approval_state
 from btq_lang.requirements.model import Applied, MissionRun, NodeTarget, ResolvedRequirement
 from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.syntax.tree import Hazard, QualityDecl, written
+from btq_lang.trace.chain import chained
 from btq_lang.trace.meanings import Meanings, NameMeaning
 from btq_lang.trace.metadata import hazard_row, metadata_fields, mitigated
 from btq_lang.trace.overview import (
@@ -83,7 +84,8 @@ def collect(
         for path in [each for each in requested if each not in included] or requested:
             files.append(shown(path))
             collector.add(workspace, path)
-    return collector.overview(tuple(files))
+    overview = collector.overview(tuple(files))
+    return chained(overview, (workspace.project for workspace, _ in parts), shown)
 
 
 class _Collector:
@@ -414,6 +416,14 @@ def _stated(requirement: ResolvedRequirement) -> Iterator[str]:
             yield f"{head} {', '.join(map(written, names))}"
     if requirement.priority is not None:
         yield f"priority {written(requirement.priority)}"
+
+
+def totals_of(overview: Overview) -> tuple[TotalRow, ...]:
+    """The totals of the requirements and qualities that an overview has."""
+    characteristics = {quality.key: quality.characteristic for quality in overview.qualities}
+    keys = ((row.quality_key, *row.further_quality_keys) for row in overview.requirements)
+    by_requirement = [frozenset(characteristics.get(key or "") for key in of_row) for of_row in keys]
+    return _totals(overview.edition, overview.requirements, overview.qualities, by_requirement)
 
 
 def _totals(

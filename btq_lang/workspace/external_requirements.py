@@ -24,7 +24,7 @@ class ExternalRequirement(Record):
 
     Attributes:
         text: what it demands, if that is more than its title.
-        url: of a page about it; empty if the file names none.
+        url: of a web page about it; empty if the file names none.
         path, line: of the imported file; the line counts from 1.
     """
 
@@ -67,10 +67,12 @@ class RequirementSettings(Record):
     Attributes:
         imports: the files of other tools' requirements, relative to the project file.
         requires_approval: whether a requirement without an approval is a finding.
+        requires_source: whether one that has no source and refines none is a gap.
     """
 
     imports: tuple[str, ...] = ()
     requires_approval: bool = False
+    requires_source: bool = False
 
 
 def read_requirements(table: object) -> tuple[RequirementSettings, list[Complaint]]:
@@ -90,12 +92,13 @@ def read_requirements(table: object) -> tuple[RequirementSettings, list[Complain
         if not name.endswith(IMPORTED_SUFFIXES):
             message = f"`{name}` is of an unknown format; expected a file that ends in {', '.join(IMPORTED_SUFFIXES)}"
             complaints.append((message, ("import",), name))
-    approval = table.get("approval", APPROVALS[0])
-    if approval not in APPROVALS:
-        allowed = " or ".join(f'"{word}"' for word in APPROVALS)
-        complaints.append((f"`requirements.approval` must be {allowed}", ("approval",), None))
+    for key in ("approval", "source"):
+        if table.get(key, "optional") not in DEMANDS:
+            allowed = " or ".join(f'"{word}"' for word in DEMANDS)
+            complaints.append((f"`requirements.{key}` must be {allowed}", (key,), None))
     imported = tuple(name for name in imports if name.endswith(IMPORTED_SUFFIXES))
-    return RequirementSettings(imported, approval == "required"), complaints
+    required = (table.get(key) == "required" for key in ("approval", "source"))
+    return RequirementSettings(imported, *required), complaints
 
 
 IMPORTED_SUFFIXES: Final = (".json", ".csv", ".reqif")  # of sphinx-needs, tables, the Requirements Interchange Format
@@ -103,5 +106,6 @@ IMPORTED_SUFFIXES: Final = (".json", ".csv", ".reqif")  # of sphinx-needs, table
 KEYS: Final = {
     "import": "the files of requirements that other tools keep: a needs.json, CSV or ReqIF",
     "approval": "whether each requirement must be approved",
+    "source": "whether btq trace lists requirements that have no source and refine none",
 }
-APPROVALS: Final = ("optional", "required")
+DEMANDS: Final = ("optional", "required")

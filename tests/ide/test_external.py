@@ -25,7 +25,7 @@ IMPORTED = ExternalRequirements(
             "/r/n.json",
             7,
         ),
-        ExternalRequirement("HAZ_1", "Collision [x](command:x)", "", "", "javascript:alert(1)", "/r/h z.csv", 2),
+        ExternalRequirement("HAZ_1", "Collision [x](command:x)", "", "", "", "/r/h z.csv", 2),
         ExternalRequirement("slow", "Not ours", "", "", "", "/r/n.json", 9),
     ]
 )

@@ -267,6 +267,8 @@ def test_csv() -> None:
         "verdict": "",
         "result": "",
         "build": "",
+        **dict.fromkeys(("hazard", "severity", "external", "refines", "mitigates"), ""),
+        **{"origin": "", "priority": "", "verified_by": "", "approval": "open"},
     }
 
 
@@ -296,6 +298,9 @@ def test_json() -> None:
         "clauses_without_nodes": [],
         "nodes_without_qualities": ["n6", "n9"],
         "trees_without_qualities": ["Pause", "Bare"],
+        "hazards_without_requirements": [],
+        "requirements_without_verdicts": [],
+        "requirements_without_sources": [],
     }
     assert document["skills"] == {"own": 2, "above": 1, "none": 2}
     keys = {row["key"] for part in ("requirements", "qualities", "nodes") for row in document[part]}
@@ -699,7 +704,7 @@ BehaviorTree Main
             "csv",
             (
                 "requirement,r5,Heat safely,safety,safety,Heat,Main,Heat takes at most 40 s,enforced,,subject,",
-                "clause without node,r5,Heat safely,safety,safety,,,never force >= 50 N,,,,,,m.btq,2,,,\n",
+                "clause without node,r5,Heat safely,safety,safety,,,never force >= 50 N,,,,,,m.btq,2,,,,,,,,,,,,open\n",
                 "hard requirement not enforced,r5,",
             ),
         ),
