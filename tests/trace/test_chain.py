@@ -8,10 +8,13 @@ import json
 import re
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import pytest
 from evidence_logs import MAIN, MAIN_XML, btlog, rows
 from in_process import run_btq
+
+from btq_lang.evidence.json_document import read_verdicts
 
 MISSION = """\
 hazard H1 "Collision <b>"
@@ -206,3 +209,27 @@ def test_an_unknown_state(folder: Path) -> None:
     assert err.startswith(
         "btq trace: unknown state 'broken'; expected one of enforced, monitored, reviewed, not attached, "
     )
+
+
+def test_verdicts_name_the_links(folder: Path) -> None:
+    _, out, _ = run_btq("verify", "run.btlog", "--format", "json", cwd=folder)
+    requirements = {each.pop("id"): each for each in json.loads(out)["requirements"]}
+    named = ("sources", "refines", "mitigates", "priority", "verified_by")
+    assert {id_: {name: each[name] for name in named if name in each} for id_, each in requirements.items()} == {
+        "top": {"sources": ["ISO 13482"]},
+        "quick": {"refines": ["top", "REQ_1"], "mitigates": ["H1", "HAZ_9"], "priority": "high"},
+        "alike": {"priority": "low", "verified_by": ["test TC-1", "monitor"]},
+        "looked_at": {"verified_by": ["review R-3"]},
+        "calm": {"verified_by": ["review"]},
+    }
+    assert [each.links.refines for each in read_verdicts(out)[0].requirements] == [(), ("top", "REQ_1"), (), (), ()]
+    _, out, _ = run_btq("verify", "run.btlog", "--format", "junit", cwd=folder)
+    properties = [
+        {each.attrib["name"]: each.attrib["value"] for each in case.iterfind("properties/property")}
+        for case in ElementTree.fromstring(out).iter("testcase")
+    ]
+    assert properties[:3] == [
+        {"verifies": "top", "source": "ISO 13482"},
+        {"verifies": "quick", "refines": "top,REQ_1", "mitigates": "H1,HAZ_9", "priority": "high"},
+        {"verifies": "alike", "verified_by": "test TC-1,monitor", "priority": "low"},
+    ]
