@@ -271,9 +271,7 @@ class _Reader:
             values["title"] = AspectValue(text, f'"{text}"')
         quality = requirement.quality or quality
         if quality is not None:
-            values["quality"] = self._quality_value(quality)
-        for number, further in enumerate(requirement.further, 2):
-            values[f"quality #{number}"] = self._quality_value(further)
+            values["quality"] = self._qualities_value((quality, *requirement.further))
         for parameter in requirement.parameters:
             text = " : ".join(word.raw for word in (parameter.name, parameter.unit) if word is not None)
             default = f" = {self._text(parameter.default)}" if parameter.default is not None else ""
@@ -329,6 +327,10 @@ class _Reader:
 
     def _quality_value(self, path: syntax.QualityPath) -> AspectValue:
         return AspectValue(self._quality(path), path.text)
+
+    def _qualities_value(self, paths: tuple[syntax.QualityPath, ...]) -> AspectValue:
+        meaning = sorted(map(self._quality, paths))
+        return AspectValue(meaning[0] if len(meaning) == 1 else (*meaning,), " and ".join(path.text for path in paths))
 
     def _text(self, part: object) -> str:
         """A part of the tree as it is written, on one line."""

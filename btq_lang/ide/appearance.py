@@ -98,19 +98,7 @@ USED: Final = {what: _appearance(type_) for what, type_ in _TYPES.items()}
 DEFINED: Final = {what: _appearance(type_, "definition") for what, type_ in _TYPES.items()}
 # Every word that the grammar knows by its place; a name that looks like one has the colour of what it names.
 KEYWORDS: Final = frozenset(
-    {
-        "BehaviorTree",
-        "Root",
-        "include",
-        "signal",
-        "context",
-        "apply",
-        "quality",
-        "qualities",
-        "QualityReq",
-        "hazard",
-        "severity",
-    }
+    {"BehaviorTree", "Root", "include", "signal", "context", "apply", "quality", "qualities", "QualityReq"}
     | {"TreeNodesModel", "xml", "parameters", "metadata", "Quality", "ID", "description", "true", "false"}
     | {"and", "or", "not", "if", "else", "node", "at", "to", "except", "of", "per", "under", "tagged", "within"}
     | {"most", "least", "less", "more", "than", "between", "after", "violation", "probability", "last", "by", "fresh"}
@@ -120,6 +108,7 @@ KEYWORDS: Final = frozenset(
     | DIRECTIONS
     | HEADS
     | METADATA_HEADS
+    | {"hazard", "severity"}
     | VERB_WORDS
     | HAPPENINGS
     | EXPERIMENTS

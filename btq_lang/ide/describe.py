@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from btq_lang.catalog.language import phrases_of
 from btq_lang.catalog.name_kinds import Kind
@@ -108,13 +108,15 @@ def requirement(workspace: Workspace, path: str, definition: Definition) -> str:
             + "\n".join(_clause(workspace, definition, Span(clause.start, clause.end)) for clause in item.clauses)
             + "\n```"
         )
-    attached = used(workspace, Subject(What.REQUIREMENT, definition.symbol.name, home_of(definition)), "Attached to")
+    wanted = Subject(What.REQUIREMENT, definition.symbol.name, home_of(definition))
+    attached = used(workspace, wanted, "Attached to", lambda use: not is_refinement(use))
+    refined = used(workspace, wanted, "Refined by", is_refinement)
     if item.clauses or item.text is not None:
         from btq_lang.ide.clause_enforcement import enforcement_lines  # most hovers need no plan of a build
 
         enforcement = enforcement_lines(workspace, path, definition, is_attached=bool(attached))
         lines.append(f"Enforcement by `btq build`:\n{enforcement}" if enforcement else "")
-    return "\n\n".join(filter(None, (*lines, attached)))
+    return "\n\n".join(filter(None, (*lines, attached, refined)))
 
 
 def hazard(workspace: Workspace, definition: Definition) -> str:
@@ -157,12 +159,21 @@ def _clause(workspace: Workspace, definition: Definition, span: Span) -> str:
     return f"{text}  # {', '.join(converted)}" if converted else text
 
 
-def used(workspace: Workspace, wanted: Subject, heading: str) -> str:
+def is_refinement(use: ReferenceAt) -> bool:
+    """Whether a reference to a requirement or a hazard is in a clause of a requirement."""
+    mention = use.mention
+    is_named = mention.what in (What.REQUIREMENT, What.HAZARD) and not mention.defines
+    return is_named and isinstance(mention.owner, Requirement)
+
+
+def used(
+    workspace: Workspace, wanted: Subject, heading: str, counts: Callable[[ReferenceAt], bool] = lambda _: True
+) -> str:
     """Where something is used: a list of nodes; empty if it is not used."""
     uses = [
         reference
         for reference in everywhere(workspace, wanted)
-        if not reference.mention.defines or reference.mention.node
+        if (not reference.mention.defines or reference.mention.node) and counts(reference)
     ]
     lines = [f"- {place_of(workspace, reference)}" for reference in uses[:_MOST_USES]]
     if len(uses) > _MOST_USES:
@@ -174,6 +185,9 @@ def place_of(workspace: Workspace, reference: ReferenceAt) -> str:
     """The place of a reference: `` `MoveBase ToWard` in `Deliver` (deliver.btq) ``, or the `apply` that it is in."""
     node, entry = reference.mention.node, reference.entry
     item = entry.item if entry is not None else None
+    owner = reference.mention.owner
+    if isinstance(owner, Requirement) and is_refinement(reference):
+        item = owner
     name = item.name.text if isinstance(item, Tree | Requirement | Signal | Context) and item.name else ""
     where = f"`{node.called}`" + (f" in `{name}`" if name else "") if node is not None else f"`{name}`" if name else ""
     if isinstance(item, Apply) and entry is not None:

@@ -412,7 +412,7 @@ _COMPLETION_KINDS = {
     "node": types.CompletionItemKind.Function.value,
     "tree": types.CompletionItemKind.Class.value,
     "requirement": types.CompletionItemKind.Interface.value,
-    "hazard": types.CompletionItemKind.Interface.value,
+    "hazard": types.CompletionItemKind.Event.value,
     "external": types.CompletionItemKind.Reference.value,
     "quality": types.CompletionItemKind.EnumMember.value,
     "signal": types.CompletionItemKind.Variable.value,

@@ -10,6 +10,8 @@ identified by its facts.  What they read is in workspace/inputs.py.
     model.py     a requirement with its words resolved
     paths.py, terms.py, reader.py   reading paths, values and conditions
     clauses.py   what each verb demands
+    metadata.py   the clauses that demand nothing
+    fingerprint.py, approval.py, approving.py   whether a requirement is approved as it is, and writing that
     classic.py, constraints.py   the same in SuccessIf and FailureIf of descriptions
     definitions.py   the requirement of a name
     attach.py    which requirement holds for which node

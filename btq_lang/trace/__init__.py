@@ -4,6 +4,7 @@ One invariant: every fact is in exactly one row with a key, and the same mission
 
     overview.py    the rows
     collect.py     a workspace as an overview
+    metadata.py    hazards, and what requirements say beside their demands
     ways.py how clauses are covered
     missions.py how the built tree covers them, and all of it in one call
     meanings.py the meaning of quality names

@@ -66,7 +66,8 @@ class Mention(Record):
         word: that contains it, to see whether it is quoted.
         defines: whether the name is defined here, and not used.
         node: the node that has it, or that it replaces.
-        owner: the requirement of a parameter, the model of a port or of its own name, the tree of a key; else None.
+        owner: the requirement of a parameter, or the one that refines or mitigates what is named, the model of a port
+            or of its own name, the tree of a key; else None.
         pair: the attribute with a port or a key.
         writes: whether it is a key that a script assigns.
         root: whether it is a key of the root blackboard: `{@key}`.
@@ -416,7 +417,7 @@ def _requirement(
         if isinstance(clause, syntax.Refines | syntax.Mitigates):
             what = What.REQUIREMENT if isinstance(clause, syntax.Refines) else What.HAZARD
             for name in clause.names:
-                to.word(what, name)
+                to.word(what, name, owner=requirement)
         else:
             _values(clause, requirement, to)
 

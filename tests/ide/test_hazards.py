@@ -119,3 +119,19 @@ def test_documentation_of_a_proposal() -> None:
         Crushing
         """,
     )
+
+
+def test_hover_over_a_refined_requirement() -> None:
+    check_hover(
+        'QualityReq <hover>$0a</hover> : safety and comfort "A"\nQualityReq b "B"\n    refines a\n'
+        "BehaviorTree T\n    X satisfies QualityReq c refines a\n",
+        """
+        **a** · safety and comfort
+
+        A
+
+        Refined by:
+        - `b` (main.btq)
+        - `c` (main.btq)
+        """,
+    )
