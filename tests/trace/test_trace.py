@@ -567,7 +567,10 @@ def test_it_says_of_each_node_where_they_are_not_held_alike(tmp_path: Path, capf
         assert (out.count(monitored), out.count(enforced)) == (1, 1)
 
 
-CASES = [*(f"examples/{name}" for name in ("laboratory", "hospital", "navigation", "pick-and-place")), "worked"]
+CASES = [
+    *(f"examples/{name}" for name in ("laboratory", "hospital", "inspection", "navigation", "pick-and-place")),
+    "worked",
+]
 
 
 @pytest.mark.parametrize("case", CASES)
