@@ -295,7 +295,7 @@ def _text_below(view: View, tree: Word, port: Word | None, value: Word | None) -
         return None
     if not is_port_name(port.text):
         return None
-    return view.ask(lookups.text_below, tree.text, port.text)
+    return view.ask(lookups.text_below, tree.text, port.text, view.target)
 
 
 def _number_for_text(value: Word, text_port: tuple[Place, str, str], severity: Severity | None) -> Diagnostic:

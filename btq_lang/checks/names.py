@@ -132,7 +132,7 @@ def _tree_name(view: View, name: Word, reason: str, fixes: tuple[Fix, ...]) -> D
         notes = view.pin_note(lambda version: model_name_problem(name.text, version) is None)
         return replace(_refused("tree ID", name, reason), notes=notes)
     legal = legal_name(name.text)
-    owner = view.ask(lookups.taken_names, name.text).get(legal)
+    owner = view.ask(lookups.taken_names, name.text, view.target).get(legal)
     note = f"`btq build` writes it as `{legal}`"
     if owner is not None:
         note = f"`btq build` cannot write it as `{legal}`, which is {owner}"
@@ -152,7 +152,7 @@ def _renamed(view: View, name: Word) -> tuple[Fix, ...]:
     if declaration is None or declaration.owner is not view.facts:
         return ()
     legal = legal_name(name.text)
-    taken_names = view.ask(lookups.taken_names, name.text)
+    taken_names = view.ask(lookups.taken_names, name.text, view.target)
     while legal in taken_names:
         legal += "_"
     places = (declaration.place, *view.ask(lookups.uses_of_tree, name.text))
