@@ -134,7 +134,8 @@ def test_bare_words(nodes: str, count: int) -> None:
 GO: Final = (
     "Action Find\n    output bed : string\nAction Look\n    input at : string\n"
     "Action Go\n    input place : string\n"
-    "BehaviorTree Main\n    ->\n        Find (bed = {{bed}})\n        Look (at = {{bed}})\n        Go (place = {})\n        Go (place = {})\n"
+    "BehaviorTree Main\n    ->\n        Find (bed = {{bed}})\n        Look (at = {{bed}})\n"
+    "        Go (place = {})\n        Go (place = {})\n"
 )
 
 
