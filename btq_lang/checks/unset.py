@@ -198,10 +198,17 @@ def _not_given(view: View, tree: str, mention: EntryMention) -> Diagnostic:
 
 
 def _runs_without(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> tuple[Related, ...]:
-    """The first tree that runs one without an entry."""
+    """The first SubTree that runs a tree without an entry, with what to write there."""
     view = View(store, viewpoint)
-    caller = next((caller for caller, call in calls_of(view, tree) if call.passed(name) is None), None)
-    return view.declared_at(Kind.TREE, caller, f"runs `{tree}`") if caller is not None else ()
+    for caller in view.ask(callers, tree):
+        path, facts = view.ask(inputs.definition, Kind.TREE, caller) or ("", None)
+        for resolved in view.seen_in(path, facts).subtrees if facts is not None else ():
+            call = call_of(view, resolved)
+            if call is not None and call.tree == tree and call.passed(name) is None:
+                value = f'{name}="{{…}}"' if view.is_xml else f"{written(name)} = {{…}}"
+                place = Place(resolved.node.head.span, path, facts.item)
+                return (Related(place, f"write `{value}` at this SubTree"),)
+    return ()
 
 
 def _not_passed(view: View) -> Iterator[Diagnostic]:
