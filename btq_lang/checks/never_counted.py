@@ -16,6 +16,7 @@ from btq_lang.checks.demanded import Demanded, PlacedDiagnostic, diagnostic_at
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Related
 from btq_lang.requirements.model import NodeTarget
+from btq_lang.requirements.nodes import mission
 from btq_lang.syntax.tree import written
 from btq_lang.workspace import inputs
 from btq_lang.workspace.resolved import ResolvedNode
@@ -29,6 +30,8 @@ def never_counted(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
         if not isinstance(subject, NodeTarget) or not isinstance(per, NodeTarget) or subject.through or per.through:
             continue
         holder = per.node
+        if node is view.ask(mission):
+            continue  # it starts once in a run, which bounds.py reports
         if _is_open(view) or _reaches(view, holder, node) or _may_overlap(view, holder, node):
             continue
         counted, holding = claim.text.partition(f" {claim.verb} ")[0], claim.text.rpartition(" per ")[2]
