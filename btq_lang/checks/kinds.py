@@ -114,6 +114,8 @@ def not_an_engine_node(view: View) -> Iterator[Diagnostic]:
             yield Diagnostic("not-an-engine-node", name.span, message, notes=notes, fixes=fixes)
         elif (meant := _quoted_alias(resolved, name)) is not None and not _is_refused(view, resolved, name):
             yield _aliased(view, resolved, name, message, meant)
+        elif ":" in text:
+            continue  # `bt:Sequence`, which forbidden_name reports
         elif (foreign := _foreign(view, resolved)) is not None:
             message += did_you_mean((foreign.tag,))
             as_child, fixes = label_as_child(view, resolved, foreign.tag)

@@ -37,7 +37,8 @@ def never_counted(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
         counted, holding = claim.text.partition(f" {claim.verb} ")[0], claim.text.rpartition(" per ")[2]
         message = f"`{counted}` never starts while `{holding}` runs, so nothing is counted"
         related = (Related(holder.place, "named by `per`"),)
-        above = f", such as its tree: `per {written(node.tree)}`" if node.parent is not None else ""
+        is_below = node.tree is not None and node.parent is not None
+        above = f", such as its tree: `per {written(node.tree)}`" if is_below else ""
         notes = (f"after `per` goes a node that runs the other one{above}",)
         yield diagnostic_at(place, "impossible-bound", message, related, notes)
 
@@ -70,8 +71,11 @@ def _reaches(view: View, node: ResolvedNode, other: ResolvedNode) -> bool:
     """Whether a node is another one, or runs it."""
     if node is other or node in other.ancestors():
         return True
-    subtrees = [below for below in view.nodes_of(node.tree).subtrees if below is node or node in below.ancestors()]
-    return any(below.id is not None and view.ask(runs, below.id.text, other.tree) for below in subtrees)
+    subtrees = [
+        below for below in view.seen_in(node.path, node.facts).subtrees if below is node or node in below.ancestors()
+    ]
+    tree = other.tree or ""
+    return any(below.id is not None and view.ask(runs, below.id.text, tree) for below in subtrees)
 
 
 _ONE_BY_ONE: Final = ("sequence", "fallback", "choice", "switch", "recover", "rotate")

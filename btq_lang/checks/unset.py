@@ -201,13 +201,11 @@ def _runs_without(store: Store[Workspace], viewpoint: str, tree: str, name: str)
     """The first SubTree that runs a tree without an entry, with what to write there."""
     view = View(store, viewpoint)
     for caller in view.ask(callers, tree):
-        path, facts = view.ask(inputs.definition, Kind.TREE, caller) or ("", None)
-        for resolved in view.seen_in(path, facts).subtrees if facts is not None else ():
+        for resolved in view.nodes_of(caller).subtrees:
             call = call_of(view, resolved)
             if call is not None and call.tree == tree and call.passed(name) is None:
                 value = f'{name}="{{…}}"' if view.is_xml else f"{written(name)} = {{…}}"
-                place = Place(resolved.node.head.span, path, facts.item)
-                return (Related(place, f"write `{value}` at this SubTree"),)
+                return (Related(resolved.place, f"write `{value}` at this SubTree"),)
     return ()
 
 
