@@ -37,8 +37,8 @@ def never_counted(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
         counted, holding = claim.text.partition(f" {claim.verb} ")[0], claim.text.rpartition(" per ")[2]
         message = f"`{counted}` never starts while `{holding}` runs, so nothing is counted"
         related = (Related(holder.place, "named by `per`"),)
-        is_below = node.tree is not None and node.parent is not None
-        above = f", such as its tree: `per {written(node.tree)}`" if is_below else ""
+        tree = node.tree if node.parent is not None else None
+        above = f", such as its tree: `per {written(tree)}`" if tree is not None else ""
         notes = (f"after `per` goes a node that runs the other one{above}",)
         yield diagnostic_at(place, "impossible-bound", message, related, notes)
 

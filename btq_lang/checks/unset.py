@@ -14,7 +14,7 @@ from itertools import chain
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
-from btq_lang.checks.calls import callers, is_missed
+from btq_lang.checks.calls import callers, has_gaps, is_missed
 from btq_lang.checks.entries import EntryMention, call_of, handling
 from btq_lang.checks.entries import mentions as mentions_in
 from btq_lang.checks.flow import EntryUse, below, calls_of, of_program, uses, writes_alone
@@ -381,6 +381,8 @@ def _is_known_root(view: View, tree: str) -> bool:
     mains = view.ask(lookups.main_trees) or ((view.main_tree,) if view.main_tree is not None else ())
     if not mains or view.ask(is_missed, tree):
         return False
+    if tree not in mains and not view.ask(callers, tree) and view.ask(has_gaps):
+        return False  # the SubTree that names no known tree may mean this one
     is_alone = not view.ask(inputs.is_included) and not any(
         view.ask(lookups.is_run_elsewhere, other) for other in (*mains, tree)
     )

@@ -572,3 +572,21 @@ def test_a_pose_in_xml() -> None:
     )
     message = "expected the 9 fields of a pose for `goal`, found 3: `1.0;2.0;0.0`"
     assert found(text, "jazzy") == [f"1:77 error invalid-literal «1.0;2.0;0.0» {message}"]
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [
+        ("Pipeline", "; did you mean `PipelineSequence`?"),
+        ("Round", "; did you mean `RoundRobin`?"),
+        ("Goal", ""),  # which several begin with
+        ("Pipe", ""),  # no whole word
+    ],
+)
+def test_the_first_words_of_a_node(name: str, meant: str) -> None:
+    text = (
+        f'<root BTCPP_format="4"><BehaviorTree ID="Main"><{name}><Wait wait_duration="1.0"/><Mine/></{name}>'
+        "</BehaviorTree></root>"
+    )
+    (unknown,) = [each for each in found(text, "jazzy") if f"«{name}»" in each]
+    assert unknown == f"1:49 hint unknown-node «{name}» unknown node `{name}`{meant}"

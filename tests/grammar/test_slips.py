@@ -1115,3 +1115,31 @@ def test_a_subtree_without_its_word_is_the_only_diagnostic() -> None:
     ]
     action = text.replace("        Water\n", "        Action Water\n")
     assert [each.message for each in problems(action, "ambiguous-path")] == ["ambiguous path `Water`: 2 nodes match"]
+
+
+def test_a_signal_whose_entry_could_not_be_read_is_the_only_diagnostic() -> None:
+    """Whether its requirement is enforced is unknown."""
+    text = (
+        "Root Main\nsignal tank : L from tank_level initially 20 L\nQualityReq r\n    keeps tank >= 2 L\n"
+        "    on violation halt\nBehaviorTree Main\n    Action Go satisfies r\n"
+    )
+    assert show(text, check(workspace_of({"main.btq": text}), "main.btq")) == [
+        "2:22 error syntax-error «tank_level» expected a blackboard entry: `{key}`, found `tank_level`"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("subtree", "said"),
+    [
+        ('ID="go"', "unknown-tree «go» unknown tree `go`; did you mean `Go`?"),
+        ('name="Go"', 'unknown-tree «SubTree» missing tree of this SubTree: write `ID="Go"`'),
+    ],
+)
+def test_an_entry_of_a_tree_that_a_misspelt_subtree_may_run(subtree: str, said: str) -> None:
+    xml = (
+        f'<root BTCPP_format="4" main_tree_to_execute="M"><BehaviorTree ID="M"><SubTree {subtree} place="{{p}}"/>'
+        '</BehaviorTree><BehaviorTree ID="Go"><Drive to="{place}"/></BehaviorTree>'
+        '<TreeNodesModel><Action ID="Drive"><input_port name="to"/></Action></TreeNodesModel></root>'
+    )
+    found = [each for each in check(workspace_of({"main.xml": xml}), "main.xml") if "`p`" not in each.message]
+    assert [f"{each.rule} «{xml[each.span.start : each.span.end]}» {each.message}" for each in found] == [said]
