@@ -78,7 +78,8 @@ def _is_reported_otherwise(
     """Whether another rule reports why the engine does not enforce a claim."""
     signals = signals_in((claim.condition, *(scope.condition for scope in applied.requirement.scopes)))
     if any(
-        signal.key is None and not demanded.view.store.ask(lookups.is_read, signal.place.path) for signal in signals
+        signal.key is None and not demanded.view.store.ask(lookups.is_read, signal.place.path or demanded.view.path)
+        for signal in signals
     ):
         return True  # its entry may be on a line that could not be read
     if claim.signal is not None:

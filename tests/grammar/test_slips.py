@@ -13,6 +13,7 @@ from safe_fixes import unwanted
 from test_first_mistakes import OTHER, Case, R, S, mistakes, requirement, tree
 
 from btq_lang.checks import check
+from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.grammar.cursor import shown
 from btq_lang.parser import parse
 from btq_lang.syntax.tree import quote
@@ -1143,3 +1144,19 @@ def test_an_entry_of_a_tree_that_a_misspelt_subtree_may_run(subtree: str, said: 
     )
     found = [each for each in check(workspace_of({"main.xml": xml}), "main.xml") if "`p`" not in each.message]
     assert [f"{each.rule} «{xml[each.span.start : each.span.end]}» {each.message}" for each in found] == [said]
+
+
+def test_a_port_of_a_model_in_another_element_is_the_only_diagnostic() -> None:
+    xml = (
+        '<root BTCPP_format="4"><BehaviorTree ID="M"><Say text="hello"/></BehaviorTree>'
+        '<TreeNodesModel><Action ID="Say"><input name="text" type="std::string"/></Action></TreeNodesModel></root>'
+    )
+    (found,) = check(workspace_of({"main.xml": xml}), "main.xml")
+    message = 'the engine and its tools ignore <input> in a model; did you mean `<input_port name="text"/>`?'
+    assert (found.rule, found.message) == ("xml-ignored", message)
+    (other,) = problems_in_xml(xml.replace('Say text="hello"', 'Say word="hello"'), "unknown-port")
+    assert other.message.startswith("`Say` has no port `word`")
+
+
+def problems_in_xml(xml: str, rule: str) -> list[Diagnostic]:
+    return [each for each in check(workspace_of({"main.xml": xml}), "main.xml") if each.rule == rule]
