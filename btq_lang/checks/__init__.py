@@ -15,9 +15,10 @@ the next.  Checks do not know what an edit changed, nor how findings are printed
     engines.py, version3.py   which versions of the engine a file is for
     moving.py, target_changes.py   what another version of the engine or distribution of Nav2 changes
     statuses.py, results.py, unreachable.py, reactive.py, preconditions.py, resets.py   what nodes return, and traps
-    nav2_nodes.py, unread.py   nodes of Nav2: what they need and share, trees for goals, error codes
+    nav2_nodes.py, nav2_literals.py, unread.py   nodes of Nav2: what they need and share, poses, goals, error codes
     requirements.py, clauses.py, bounds.py, qualities.py, prose.py, wording.py   requirements by themselves
-    demanded.py, demands.py, budgets.py, limits.py, signals.py, renewals.py, enforcement.py   at their nodes
+    demanded.py, demands.py, budgets.py, limits.py, never_counted.py   at their nodes
+    signals.py, renewals.py, enforcement.py   likewise, of what the engine is to enforce
     origins.py, placeholders.py   diagnostics shown on XML; classic placeholders
     suppressions.py, silencing.py   silenced rules
 """
@@ -43,6 +44,7 @@ from btq_lang.checks import (
     mixed_types,
     moving,
     names,
+    nav2_literals,
     nav2_nodes,
     placeholders,
     port_values,
@@ -182,6 +184,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         unread.tree_of_goal,
         nav2_nodes.isolated_node,
         nav2_nodes.shared_server,
+        nav2_literals.wrong_number_of_fields,
         resets.memory_lost,
         resets.last_success_lost,
         unread.default_instead,

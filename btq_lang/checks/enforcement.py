@@ -15,7 +15,7 @@ from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements.attach import claimed_of_no_tree, uses_of_nodes
 from btq_lang.requirements.budget_parts import port_count
-from btq_lang.requirements.model import Applied, NodeTarget, ResolvedClaim
+from btq_lang.requirements.model import Applied, NodeTarget, ResolvedClaim, signals_in
 from btq_lang.requirements.nodes import callers, mission
 from btq_lang.workspace import inputs
 from btq_lang.workspace.node_names import wraps
@@ -76,6 +76,12 @@ def _is_reported_otherwise(
     demanded: Demanded, applied: Applied, claim: ResolvedClaim, node: ResolvedNode, place: Place
 ) -> bool:
     """Whether another rule reports why the engine does not enforce a claim."""
+    signals = signals_in((claim.condition, *(scope.condition for scope in applied.requirement.scopes)))
+    if any(
+        signal.key is None and not demanded.view.store.ask(lookups.is_read, signal.place.path or demanded.view.path)
+        for signal in signals
+    ):
+        return True  # its entry may be on a line that could not be read
     if claim.signal is not None:
         return claim.signal.behaviour == "gauge"
     if not applied.requirement.is_enforceable or place == node.place:

@@ -114,6 +114,8 @@ def not_an_engine_node(view: View) -> Iterator[Diagnostic]:
             yield Diagnostic("not-an-engine-node", name.span, message, notes=notes, fixes=fixes)
         elif (meant := _quoted_alias(resolved, name)) is not None and not _is_refused(view, resolved, name):
             yield _aliased(view, resolved, name, message, meant)
+        elif ":" in text:
+            continue  # `bt:Sequence`, which forbidden_name reports
         elif (foreign := _foreign(view, resolved)) is not None:
             message += did_you_mean((foreign.tag,))
             as_child, fixes = label_as_child(view, resolved, foreign.tag)
@@ -385,6 +387,8 @@ def _unknown(view: View, resolved: ResolvedNode, name: Word) -> Iterator[Diagnos
         is_parent = not (is_complete and view.ask(lookups.most_have_models))
         if not likely and is_parent and not (is_complete and _has_own_children(view, resolved, name)):
             return
+    begun = () if likely else _begun(view, resolved, name.text)
+    likely = likely or begun
     if not likely and not view.is_first_use(resolved.node, name.text):
         return  # one model is missing, however many nodes would need it
     fixes = tuple(replace_fix(f"Replace `{name.text}` with `{meant}`", name.span, written(meant)) for meant in likely)
@@ -401,11 +405,26 @@ def _unknown(view: View, resolved: ResolvedNode, name: Word) -> Iterator[Diagnos
         notes = (f"{why}; to declare {'it' if is_parent else 'this one'}, write {shortest}",)
         if moved := dedent_fixes(view, resolved, resolved.node.children):
             notes, fixes = (*notes, TOO_FAR), fixes + moved
-    severity = None if likely or has_palette else Severity.HINT
+    severity = None if (likely and not begun) or has_palette else Severity.HINT
     if has_palette and view.factory is not None and view.factory.nodes:
         severity = Severity.ERROR  # the program registers what `nodes` names, and refuses to load any other
     message = f"unknown node `{name.text}`{did_you_mean(likely)}"
     yield Diagnostic("unknown-node", name.span, message, notes=notes, fixes=fixes, severity=severity)
+
+
+def _begun(view: View, resolved: ResolvedNode, name: str) -> tuple[str, ...]:
+    """The one node of Nav2 with children of which a node's name is the first words: `Pipeline`, PipelineSequence."""
+    distribution = view.ask(lookups.distribution)
+    if distribution is None or not resolved.node.children:
+        return ()
+    longer = [other for other in view.ask(inputs.names, Kind.MODEL) if other.startswith(name) and other != name]
+    models = [(other, view.ask(lookups.meaning, Kind.MODEL, other)) for other in longer if other[len(name)].isupper()]
+    parents = [
+        other
+        for other, model in models
+        if model is not None and isinstance(model.target, Model) and model.target.category.raw in _WITH_CHILDREN
+    ]
+    return tuple(parents) if len(parents) == 1 else ()
 
 
 def _has_own_children(view: View, resolved: ResolvedNode, name: Word) -> bool:
@@ -545,6 +564,7 @@ OF_SUBTREE: Final = ("remap",)
 
 # A file with so many nodes with ports should declare them.
 _MANY: Final = 5
+_WITH_CHILDREN: Final = ("Control", "Decorator")
 
 # Words of version 3 that an import translates.
 _TRANSLATED: Final = frozenset(("SequenceStar", "RetryUntilSuccesful", "SubTreePlus"))

@@ -252,10 +252,12 @@ def clashes(workspace: Workspace, viewpoint: str) -> tuple[tuple[Facts, Declarat
 
 
 @of_viewpoint
-def text_below(workspace: Workspace, viewpoint: str, tree: str, port: str) -> tuple[Place, str, str] | None:
+def text_below(
+    workspace: Workspace, viewpoint: str, tree: str, port: str, version: str
+) -> tuple[Place, str, str] | None:
     """The first text port to which a port of a tree is assigned in that tree or below: its place, its name, its
     node."""
-    for met in meetings(workspace.scope(viewpoint), workspace.project.target, tree, port):
+    for met in meetings(workspace.scope(viewpoint), version, tree, port):
         if is_text(met.type):
             place = Place(met.pair.key.span, met.tree.path, met.tree.entry.item)
             return place, met.pair.key.text, met.node.head.text
@@ -263,7 +265,9 @@ def text_below(workspace: Workspace, viewpoint: str, tree: str, port: str) -> tu
 
 
 @of_viewpoint
-def types_below(workspace: Workspace, viewpoint: str, tree: str, port: str) -> tuple[tuple[Place, str, str, str], ...]:
+def types_below(
+    workspace: Workspace, viewpoint: str, tree: str, port: str, version: str
+) -> tuple[tuple[Place, str, str, str], ...]:
     """The ports to which a port of a tree is assigned in that tree or below: place, name, node and type of each."""
     return tuple(
         [
@@ -273,7 +277,7 @@ def types_below(workspace: Workspace, viewpoint: str, tree: str, port: str) -> t
                 met.node.head.text,
                 met.type,
             )
-            for met in meetings(workspace.scope(viewpoint), workspace.project.target, tree, port)
+            for met in meetings(workspace.scope(viewpoint), version, tree, port)
         ]
     )
 
@@ -347,16 +351,15 @@ def is_tree_of_mission(workspace: Workspace, viewpoint: str, name: str) -> bool:
 
 
 @of_viewpoint
-def taken_names(workspace: Workspace, viewpoint: str, but: str) -> dict[str, str]:
-    """The names that a tree of the mission cannot have in XML, because other trees or nodes have them, with what has
-    each."""
-    target = workspace.project.target
+def taken_names(workspace: Workspace, viewpoint: str, but: str, version: str) -> dict[str, str]:
+    """The names that a tree of the mission cannot have in XML for a version, because other trees or nodes have them,
+    with what has each."""
     taken = dict.fromkeys(BUILTINS, "a built-in node")
     trees: dict[str, str] = {}
     for path in sorted(workspace.linked(viewpoint)):
         for kind, name in sorted(workspace.files[path].defined_names, key=lambda defined: defined[1]):
             if kind is Kind.TREE and name != but:
-                is_refused = model_name_problem(name, target) is not None
+                is_refused = model_name_problem(name, version) is not None
                 trees[legal_name(name) if is_refused else name] = f"the tree `{name}`"
             elif kind is Kind.MODEL:
                 taken[name] = f"the node `{name}`"

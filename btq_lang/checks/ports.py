@@ -25,7 +25,21 @@ from btq_lang.checks.view import View, ports_beside
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related, replace_fix, write_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tokens import NUMBER, QUANTITY
-from btq_lang.syntax.tree import Include, Meta, Node, Pair, Port, Root, Tree, Word, models_in, quote, written
+from btq_lang.syntax.tree import (
+    Include,
+    Meta,
+    Model,
+    Node,
+    Pair,
+    Port,
+    Root,
+    Tree,
+    Verbatim,
+    Word,
+    models_in,
+    quote,
+    written,
+)
 from btq_lang.util.record import replace
 from btq_lang.util.spelling import did_you_mean, distance, near
 from btq_lang.util.text import Span
@@ -66,6 +80,8 @@ def unknown_port(view: View) -> Iterator[Diagnostic]:
         for key, likely in unknown_keys.items():
             if key.text in (of_nav2 or ()):
                 continue  # the model may be one of another program, or a short one
+            if _is_in_ignored_element(view, resolved, key.text):
+                continue  # which elements.py reports
             # The engine takes any port of a SubTree, a model without ports is often an unfinished one, and a program
             # may register another node than the one that another file of the project declares.
             harmless = (resolved.is_subtree and not required.intersection(likely)) or not (all_ports or resolved.kind)
@@ -90,6 +106,15 @@ def unknown_port(view: View) -> Iterator[Diagnostic]:
             yield Diagnostic("unknown-port", key.span, message, related, notes, fixes, severity=severity)
             if not all_ports and resolved.kind is None:
                 break  # all of the model's ports are missing
+
+
+def _is_in_ignored_element(view: View, resolved: ResolvedNode, key: str) -> bool:
+    """Whether the model of a node in XML has a port in an element of another name: `<input name="key"/>`."""
+    name = resolved.id.text if resolved.is_defined and resolved.id is not None else ""
+    model = view.ask(lookups.meaning, Kind.MODEL, name) if name else None
+    body = model.target.body if model is not None and isinstance(model.target, Model) else ()
+    texts = [part.text.text for part in body if isinstance(part, Verbatim) and part.text is not None]
+    return any(f'name="{key}"' in text for text in texts)
 
 
 def missing_port(view: View) -> Iterator[Diagnostic]:

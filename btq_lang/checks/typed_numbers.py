@@ -30,7 +30,7 @@ def number_of_another_type(view: View) -> Iterator[Diagnostic]:
             number = pair.value.text if pair.value is not None else ""
             if seen.id is None or pair.value is None or not _NUMBER(number) or not is_port_name(pair.key.text):
                 continue
-            met = view.ask(lookups.types_below, seen.id.text, pair.key.text)
+            met = view.ask(lookups.types_below, seen.id.text, pair.key.text, view.target)
             if any(is_text(plain_type(type_)) for *_, type_ in met):
                 continue  # which number-for-text reports
             others = [each for each in met if is_known_type(plain_type(each[3]))]

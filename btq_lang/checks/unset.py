@@ -14,7 +14,7 @@ from itertools import chain
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
-from btq_lang.checks.calls import callers, is_missed
+from btq_lang.checks.calls import callers, has_gaps, is_missed
 from btq_lang.checks.entries import EntryMention, call_of, handling
 from btq_lang.checks.entries import mentions as mentions_in
 from btq_lang.checks.flow import EntryUse, below, calls_of, of_program, uses, writes_alone
@@ -198,10 +198,15 @@ def _not_given(view: View, tree: str, mention: EntryMention) -> Diagnostic:
 
 
 def _runs_without(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> tuple[Related, ...]:
-    """The first tree that runs one without an entry."""
+    """The first SubTree that runs a tree without an entry, with what to write there."""
     view = View(store, viewpoint)
-    caller = next((caller for caller, call in calls_of(view, tree) if call.passed(name) is None), None)
-    return view.declared_at(Kind.TREE, caller, f"runs `{tree}`") if caller is not None else ()
+    for caller in view.ask(callers, tree):
+        for resolved in view.nodes_of(caller).subtrees:
+            call = call_of(view, resolved)
+            if call is not None and call.tree == tree and call.passed(name) is None:
+                value = f'{name}="{{…}}"' if view.is_xml else f"{written(name)} = {{…}}"
+                return (Related(resolved.place, f"write `{value}` at this SubTree"),)
+    return ()
 
 
 def _not_passed(view: View) -> Iterator[Diagnostic]:
@@ -376,6 +381,8 @@ def _is_known_root(view: View, tree: str) -> bool:
     mains = view.ask(lookups.main_trees) or ((view.main_tree,) if view.main_tree is not None else ())
     if not mains or view.ask(is_missed, tree):
         return False
+    if tree not in mains and not view.ask(callers, tree) and view.ask(has_gaps):
+        return False  # the SubTree that names no known tree may mean this one
     is_alone = not view.ask(inputs.is_included) and not any(
         view.ask(lookups.is_run_elsewhere, other) for other in (*mains, tree)
     )
