@@ -8,7 +8,7 @@ from btq_lang.checks.engines import engines_of
 from btq_lang.syntax.tree import Model, Node, Tree
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
-from btq_lang.workspace.node_names import meaning_of
+from btq_lang.workspace.node_names import is_own, meaning_of
 from btq_lang.workspace.port_types import as_kind
 from btq_lang.workspace.references import called
 from btq_lang.workspace.workspace import Workspace
@@ -29,7 +29,15 @@ def ports_of_kind(
     workspace: Workspace, path: str, name: str, quoted: bool = False, child_count: int | None = None
 ) -> tuple[PortKind, ...]:
     """The ports of a built-in or of a model in scope."""
-    return _ports(workspace, path, lookup(name, quoted, child_count), name)
+    return _ports(workspace, path, builtin_named(workspace, path, name, quoted, child_count), name)
+
+
+def builtin_named(
+    workspace: Workspace, path: str, name: str, quoted: bool = False, child_count: int | None = None
+) -> NodeKind | None:
+    """The built-in that a word means in a file; None for a node of the program, whatever its name."""
+    kind = lookup(name, quoted, child_count)
+    return None if kind is None or is_own(kind, workspace.store.ask(inputs.declared, path, name)) else kind
 
 
 def _ports(workspace: Workspace, path: str, kind: NodeKind | None, name: str) -> tuple[PortKind, ...]:

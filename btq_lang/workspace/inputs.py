@@ -22,6 +22,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2 import FILES, distribution_among
 from btq_lang.syntax.tree import Apply, Entry, Item, Model, Tree, Verbatim
 from btq_lang.workspace.config import Project
+from btq_lang.workspace.engine_version import written_for
 from btq_lang.workspace.file import File
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store, input_of
@@ -35,8 +36,9 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 Placed: TypeAlias = tuple[str, Facts]  # an item, and the path of its file
-# The category of a model, if there is one, and what the node does, if it is of a library that btq knows.
-Declared: TypeAlias = "tuple[str | None, NodeKind | None]"
+# The category of a model, if there is one; what the node does, if it is of a library that btq knows; and the newest
+# version of the engine that the project names: a model says nothing of a built-in that this version has.
+Declared: TypeAlias = "tuple[str | None, NodeKind | None, str]"
 
 # ---- topics: what an edit has to touch to invalidate an input ----
 
@@ -189,15 +191,16 @@ def definition(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> P
 def declared(workspace: Workspace, viewpoint: str, name: str) -> Declared:
     """The declaration of a custom node by its model; empty if it has none."""
     scope = workspace.scope(viewpoint)
+    engine = written_for(workspace.project, distribution_among(scope.node_paths), None)[-1]
     for file in scope.files(Kind.MODEL):
         if definers := file.names.definitions.get((Kind.MODEL, name)):
             model = definers[0][1].target
             category = model.category.raw if isinstance(model, Model) else None
-            return category, _of_library(scope, name) if scope.node_paths else None
+            return category, _of_library(scope, name) if scope.node_paths else None, engine
     pooled = workspace.find(viewpoint, Kind.MODEL, name)
     target = pooled.symbol.target if pooled is not None else None
     is_of_node = isinstance(target, Model) and target.category.raw != "SubTree"  # else of a tree of that name
-    return target.category.raw if isinstance(target, Model) and is_of_node else None, None
+    return target.category.raw if isinstance(target, Model) and is_of_node else None, None, engine
 
 
 def _of_library(scope: Scope, name: str) -> NodeKind | None:
