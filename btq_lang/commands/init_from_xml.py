@@ -11,14 +11,22 @@ import posixpath
 import shlex
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
-from functools import cache
+from functools import cache, partial
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2 import ENGINES, PACKAGED
 from btq_lang.catalog.versions import VERSION_3, VERSIONS, is_before_4
 from btq_lang.checks import check_each
 from btq_lang.checks.engines import declared_engines
-from btq_lang.commands.init_lines import OF_NAV2, NodesLines, free_name, navigator_tables, nodes_for, nodes_lines
+from btq_lang.commands.init_lines import (
+    OF_NAV2,
+    NodesLines,
+    Trouble,
+    free_name,
+    navigator_tables,
+    nodes_for,
+    nodes_lines,
+)
 from btq_lang.commands.packages import Packages, packages_of
 from btq_lang.projects.files import Files
 from btq_lang.projects.messages import CommandOutput
@@ -26,6 +34,7 @@ from btq_lang.projects.options import Refused
 from btq_lang.projects.xml_below import XmlBelow
 from btq_lang.syntax.tree import Tree
 from btq_lang.util.record import Record, replace
+from btq_lang.util.text import counted
 from btq_lang.workspace.file import GROOT_SUFFIX
 from btq_lang.workspace.loader import absolute, matching, shown, write_whole
 from btq_lang.workspace.workspace import Workspace
@@ -65,10 +74,16 @@ def init_from_xml(top: str, converts: bool, messages: CommandOutput) -> int:
     rest = _excluded_line(workspace, folder) if converts else ""
     rest += "".join(f"\n{factory.written(ending)}" for factory in factories)
 
-    def trouble(project: str, before: str) -> str:
-        """The first problem that one project file has and another has not."""
-        known_problems = _unknown_in(folder, before)
-        return next((what for place, what in _unknown_in(folder, project).items() if place not in known_problems), "")
+    problems_with = cache(partial(_problems_with, folder))
+
+    def trouble(project: str, before: str) -> Trouble:
+        """The problems that one project file has and another has not."""
+        unreadable, unknown = problems_with(project)
+        unreadable_before, unknown_before = problems_with(before)
+        return Trouble(
+            tuple([why for why in unreadable if why not in unreadable_before]),
+            tuple([what for place, what in unknown.items() if place not in unknown_before]),
+        )
 
     def with_engine(nodes: str) -> str:
         """A distribution of Nav2 has a version of its own."""
@@ -77,6 +92,7 @@ def init_from_xml(top: str, converts: bool, messages: CommandOutput) -> int:
     named = nodes_for(workspace, packages, lambda nodes: trouble(with_engine(nodes) + rest, engine + rest))
     nodes = nodes_lines(named)
     text = with_engine(nodes) + rest
+    unknown = len(trouble(text, engine + rest).unknown)
     navigators = navigator_tables(
         packages,
         [factory.name for factory in factories],
@@ -91,7 +107,8 @@ def init_from_xml(top: str, converts: bool, messages: CommandOutput) -> int:
         raise Refused(f"{shown(target)}: {error.strerror}") from error
     count = text.count("\n[[factory]]")
     how_many = f"{count or 'no'} factor{'y' if count == 1 else 'ies'}"
-    messages.result(f"Wrote {shown(target)} with {how_many}. Next: btq check {shlex.quote(top)}")
+    in_trees = f" With its nodes btq finds {counted(unknown, 'problem')} in the trees." if unknown else ""
+    messages.result(f"Wrote {shown(target)} with {how_many}.{in_trees} Next: btq check {shlex.quote(top)}")
     return 0
 
 
@@ -229,18 +246,19 @@ def _named_by_programs(workspace: Workspace, packages: Packages, folder: str) ->
     yield from patterns(folder, named, [path for path in trees if path not in named])
 
 
-def _unknown_in(folder: str, project: str) -> dict[tuple[str, int], str]:
-    """The unknown nodes and ports, and the files that cannot be read, if this is the project file; by place."""
+def _problems_with(folder: str, project: str) -> tuple[tuple[str, ...], dict[tuple[str, int], str]]:
+    """If this is the project file: why some files cannot be read, and the unknown nodes and ports, by place."""
     files = Files()
     files.overlay[f"{folder}/btq.toml"] = project
     groups, problems = files.groups([folder], with_xml=True, for_checks=True)
-    return {
+    unknown = {
         (path, diagnostic.span.start): f"with it btq finds in {shown(path)}: {diagnostic.message}"
         for group in groups
         for path, diagnostics in zip(group.given, check_each(group.workspace, group.given), strict=True)
         for diagnostic in diagnostics
         if diagnostic.rule in ("unknown-node", "unknown-port")
-    } | {(problem.message, 0): problem.message for problem in problems}
+    }
+    return tuple([problem.message for problem in problems]), unknown
 
 
 def _by_kind(workspace: Workspace) -> tuple[list[str], list[str]]:
