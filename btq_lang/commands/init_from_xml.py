@@ -69,7 +69,7 @@ def init_from_xml(top: str, converts: bool, messages: CommandOutput) -> int:
     packages = packages_of(folder)
     if converts and (code := _convert(workspace, target, packages, messages)):
         return code
-    engine = _engine_line(workspace, packages) if not converts else _ENGINES
+    engine = _engine_line(workspace, packages) if packages.product or not converts else _ENGINES
     ending = ".btq" if converts else ".xml"
     rest = _excluded_line(workspace, folder) if converts else ""
     rest += "".join(f"\n{factory.written(ending)}" for factory in factories)
@@ -117,7 +117,8 @@ def _convert(workspace: Workspace, target: str, packages: Packages, messages: Co
     from btq_lang.projects.import_files import ImportOptions, import_files
 
     files = [shown(path) for path in workspace.files if not path.endswith(GROOT_SUFFIX)]
-    overlay = {target: f"engine = {json.dumps(packages.engines)}\n"} if packages.engines else {}
+    engine = packages.product or packages.engines
+    overlay = {target: f"engine = {json.dumps(engine)}\n"} if engine else {}
     result = import_files(ImportOptions(files), overlay)
     messages.extend(result.messages)
     return result.code
@@ -202,6 +203,11 @@ def _factories(workspace: Workspace, folder: str, messages: CommandOutput) -> It
             files = ", ".join(shown(path) for path in paths)
             messages.remark(f"not a factory, because several define the tree `{twice}`: {files}")
             continue
+        if outside := _outside(workspace, paths, frozenset(trees)):
+            runner, tree, elsewhere = outside
+            why = f"{shown(runner)} runs the tree `{tree}`, which {' and '.join(map(shown, elsewhere))} define"
+            messages.remark(f"not a factory, because {why}: {', '.join(map(shown, paths))}")
+            continue
         paths += _beside(workspace, paths, [path for path in trees_in if path not in grouped])
         trees = [name for path in paths for name in workspace.files[path].names_of(Kind.TREE)]
         name = posixpath.basename(posixpath.commonpath([posixpath.dirname(path) for path in paths])) or "robot"
@@ -212,6 +218,19 @@ def _factories(workspace: Workspace, folder: str, messages: CommandOutput) -> It
         main = tuple(sorted(tree for tree in trees if tree not in called))
         others = [path for path in trees_in if path not in paths]
         yield _Together(name, tuple(patterns(folder, paths, others)), main, nodes)
+
+
+def _outside(
+    workspace: Workspace, paths: Sequence[str], trees: frozenset[str]
+) -> tuple[str, str, tuple[str, ...]] | None:
+    """A file of a group that runs a tree of none of them, with that tree and the several other files that define it,
+    of which the program may load any."""
+    for path in paths:
+        for name in sorted(workspace.files[path].names_used(Kind.TREE) - trees):
+            definitions = workspace.pooled(path, Kind.TREE, name)
+            if len(definitions) > 1:
+                return path, name, tuple(sorted(definition.path for definition in definitions))
+    return None
 
 
 def _beside(workspace: Workspace, paths: list[str], lone: list[str]) -> list[str]:
@@ -231,6 +250,8 @@ def _beside(workspace: Workspace, paths: list[str], lone: list[str]) -> list[str
 def _engine_line(workspace: Workspace, packages: Packages) -> str:
     """The line that names the versions of the engine: those that packages depend on, or else version 3 if some files
     are written for it, and none for version 4."""
+    if packages.product:
+        return f"engine = {json.dumps(packages.product)}  # the packages depend on {packages.depends_on}\n"
     if packages.engines:
         why, is_old = f"the packages depend on {packages.depends_on}", is_before_4(packages.engines[-1])
     else:
