@@ -600,3 +600,28 @@ def test_base_classes_of_nav2_are_known_by_the_distribution_of_the_project(
         if code
         else []
     )
+
+
+@pytest.mark.parametrize(
+    ("base", "distribution", "entries"),
+    [
+        ("BtActionNode<M>", "jazzy", "`node`, `wait_for_service_timeout`, `bt_loop_duration`"),
+        ("BtServiceNode<M>", "humble", "`node`, `wait_for_service_timeout`, `bt_loop_duration`, `server_timeout`"),
+        ("BtCancelActionNode<M>", "lyrical", "`node`, `wait_for_service_timeout`"),
+        ("Other", "jazzy", ""),
+    ],
+)
+def test_a_node_that_derives_from_nav2s_needs_what_they_need(
+    robot: Path, base: str, distribution: str, entries: str
+) -> None:
+    (robot / "src/drive.cpp").unlink()
+    write(robot, "src/scan.cpp", OF_NAV2.replace("BtActionNode<M>", base))
+    write(robot, "src/other.cpp", "namespace nav2_behavior_tree { struct Other : BT::SyncActionNode {}; }\n")
+    write(robot, "btq.toml", f'nodes = ["nav2-{distribution}", "src/*.cpp"]\n')
+    mission = "BehaviorTree M\n    SubTree Look{}\n\nBehaviorTree Look\n    Scan (area = 1)\n"
+    write(robot, "trees/m.btq", mission.format(""))
+    refused = f"error[isolated-node] `Scan` cannot be created in the tree `Look`: this SubTree does not pass {entries}"
+    assert check(robot, "trees") == ([f"trees/m.btq:2:13: {refused}"] if entries else [])
+    if distribution != "humble":
+        write(robot, "trees/m.btq", mission.format(" (_autoremap = true)"))
+        assert check(robot, "trees") == []
