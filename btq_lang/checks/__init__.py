@@ -91,6 +91,7 @@ _OF_MODELS: tuple[Check, ...] = (
     ports.duplicate_attribute,
     *_OF_PORTS,
     literals.number_for_text,
+    typed_numbers.default_of_another_type,
     names.forbidden_name,
     names.empty_text,
 )
