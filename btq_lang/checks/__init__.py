@@ -93,6 +93,7 @@ _OF_MODELS: tuple[Check, ...] = (
     ports.duplicate_attribute,
     *_OF_PORTS,
     literals.number_for_text,
+    typed_numbers.default_of_another_type,
     names.forbidden_name,
     names.empty_text,
 )
@@ -348,9 +349,11 @@ def reported_in_file(store: Store[Workspace], viewpoint: str, is_alone: bool) ->
         for facts in store.ask(lookups.items, viewpoint)
     ]
     wrong = tuple([reported for reported in by_item if reported is not None])
-    signs = store.ask(lookups.signs, viewpoint) if wrong and not View(store, viewpoint).project.written_for else None
+    if not wrong or not store.ask(is_newer_than_engine, viewpoint):
+        return wrong
+    signs = store.ask(lookups.signs, viewpoint) if not View(store, viewpoint).project.written_for else None
     is_refused = version3.refuses([diagnostic for reported in wrong for diagnostic in reported.diagnostics], signs)
-    return (_newer(store, viewpoint) if is_refused and store.ask(is_newer_than_engine, viewpoint) else ()) or wrong
+    return (_newer(store, viewpoint) if is_refused else ()) or wrong
 
 
 def _newer(store: Store[Workspace], viewpoint: str) -> tuple[Reported, ...]:

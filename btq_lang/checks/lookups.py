@@ -95,6 +95,14 @@ def ends_at_once(workspace: Workspace, viewpoint: str, kind: Kind, name: str) ->
 
 
 @of_name
+def nav2_base(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> str:
+    """The class of nav2_behavior_tree from which a node of C++ derives; empty if from none."""
+    definitions = workspace.scope(viewpoint).all(kind, name)
+    nodes = (workspace.files[definition.path].cpp_nodes.get(name) for definition in definitions)
+    return next((node.nav2_base for node in nodes if node is not None), "")
+
+
+@of_name
 def meaning(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> VisibleMeaning | None:
     """What a name means."""
     definition = workspace.find(viewpoint, kind, name)
