@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
 from collections import Counter
@@ -125,6 +126,15 @@ def test_no_circle_exists() -> None:
 def test_the_top_of_the_package_is_small() -> None:
     names = {path.name for path in PACKAGE.iterdir() if path.is_file()}
     assert names == {"__init__.py", "__main__.py", "cli.py", "lexer.py", "parser.py", "py.typed", "server.py"}
+
+
+def test_a_package_names_its_modules() -> None:
+    """In its docstring, which says what they are for; ARCHITECTURE.md does so for the rooms."""
+    for module in MODULES.keys() - {"btq_lang"}:
+        package, _, name = module.rpartition(".")
+        if package != "btq_lang":
+            docstring = ast.get_docstring(parsed(MODULES[package])) or ""
+            assert name in re.findall(r"\w+", docstring.lower()), f"{package} does not name {name}"
 
 
 def test_only_the_edges_open_files() -> None:
