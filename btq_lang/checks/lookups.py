@@ -520,7 +520,7 @@ def is_cpp(workspace: Workspace, viewpoint: str) -> bool:
 @of_viewpoint
 def is_xml(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the file is XML that the engine loads as it is, without a build."""
-    return workspace.files[viewpoint].is_foreign
+    return workspace.files[viewpoint].is_xml
 
 
 @of_viewpoint

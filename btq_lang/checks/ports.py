@@ -352,16 +352,11 @@ def _of_model_in_xml(view: View, resolved: ResolvedNode) -> str:
     """The end of a message about a port of a node whose only model is in XML: the model may be out of date."""
     name = resolved.id if resolved.is_defined and not (resolved.kind or resolved.is_subtree) else None
     declaration = view.ask(lookups.declaration, Kind.MODEL, name.text) if name is not None else None
-    if name is None or declaration is None or not _is_xml(view, declaration.path):
+    if name is None or declaration is None or not view.store.ask(lookups.is_xml, declaration.path):
         return ""
     if view.ask(lookups.is_repeated, Kind.MODEL, name.text):
         return ""
     return f": its model in {view.project.shown(declaration.path)} lacks it"
-
-
-def _is_xml(view: View, path: str) -> bool:
-    """Whether a file is XML, and not C++ that registers nodes."""
-    return view.store.ask(lookups.is_xml, path) and not view.store.ask(lookups.is_cpp, path)
 
 
 def _is_of_pool(view: View, resolved: ResolvedNode) -> bool:
@@ -386,7 +381,7 @@ def _needed(view: View, resolved: ResolvedNode, missing: list[PortKind]) -> list
     definition = view.ask(inputs.definition, Kind.MODEL, name)
     if definition is None:
         return []
-    if not _is_xml(view, definition[0]):
+    if not view.store.ask(lookups.is_xml, definition[0]):
         return missing
     _, used, uses = view.ask(lookups.custom_node, name)
     used_names = {port.name for port in used}
