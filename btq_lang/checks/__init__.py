@@ -333,7 +333,8 @@ def reported_in_file(store: Store[Workspace], viewpoint: str, is_alone: bool) ->
     # Demands depend on all files in scope: an item to which they add no finding should not.  In a target they may add
     # other findings.
     demanded = store.ask(demands.demands_by_item, viewpoint)
-    has_target = View(store, viewpoint).project.moves_to is not None
+    project = store.ask(inputs.project)
+    has_target = project.moves_to is not None
     by_item = [
         store.ask(
             _reported,
@@ -345,7 +346,7 @@ def reported_in_file(store: Store[Workspace], viewpoint: str, is_alone: bool) ->
         for facts in store.ask(lookups.items, viewpoint)
     ]
     wrong = tuple([reported for reported in by_item if reported is not None])
-    signs = store.ask(lookups.signs, viewpoint) if wrong and not View(store, viewpoint).project.written_for else None
+    signs = store.ask(lookups.signs, viewpoint) if wrong and not project.original_engines else None
     is_refused = version3.refuses([diagnostic for reported in wrong for diagnostic in reported.diagnostics], signs)
     return (_newer(store, viewpoint) if is_refused and store.ask(is_newer_than_engine, viewpoint) else ()) or wrong
 
