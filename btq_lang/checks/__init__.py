@@ -7,7 +7,8 @@ the next.  Checks do not know what an edit changed, nor how findings are printed
 
     view.py, sorted_nodes.py   what a check sees: its item, and the nodes of a tree, sorted by what checks look for
     lookups.py   what only checks look up in the files, beside workspace/inputs.py
-    kinds.py, names.py, ports.py, own_nodes.py, children.py, misplaced_children.py   what the engine would refuse
+    kinds.py, names.py, ports.py, attributes.py, children.py, misplaced_children.py   what the engine would refuse
+    known_ports.py, own_nodes.py   the ports of a node; nodes of a team with the name of one of Nav2
     trees.py, includes.py, elements.py, missing_ids.py, stale_models.py   likewise, of whole trees, models and files
     positional.py, literals.py, port_values.py, scripts.py, strings.py, typed_numbers.py   values, of ports too
     entries.py, pointers.py, writers.py, misspelt.py, meant_entries.py, mixed_types.py   blackboard entries
@@ -29,6 +30,7 @@ from typing import TypeAlias
 
 from btq_lang.checks import (
     arguments,
+    attributes,
     bounds,
     children,
     clauses,
@@ -88,7 +90,7 @@ _OF_MODELS: tuple[Check, ...] = (
     elements.ignored_element,
     kinds.duplicate_definition,
     stale_models.stale_model,
-    ports.duplicate_attribute,
+    attributes.duplicate_attribute,
     *_OF_PORTS,
     literals.number_for_text,
     names.forbidden_name,
@@ -110,7 +112,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         trees.duplicate_tree,
         kinds.duplicate_definition,
         requirements.conflicting_requirement,
-        ports.duplicate_attribute,
+        attributes.duplicate_attribute,
         moving.moving_include,
         elements.ignored_element,
     ),
@@ -118,7 +120,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
     syntax.Root: (
         trees.unknown_tree,
         names.empty_text,
-        ports.duplicate_attribute,
+        attributes.duplicate_attribute,
         version3.version_3_file,
         elements.ignored_element,
     ),
@@ -141,8 +143,8 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         kinds.clause_as_node,
         ports.unknown_port,
         ports.missing_port,
-        ports.unknown_attribute,
-        ports.duplicate_attribute,
+        attributes.unknown_attribute,
+        attributes.duplicate_attribute,
         *_OF_PORTS,
         literals.old_entry,
         literals.json_in_braces,
