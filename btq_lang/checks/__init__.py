@@ -6,7 +6,7 @@ all it needs from its view, and so from the query store (workspace/queries.py), 
 the next.  Checks do not know what an edit changed, nor how findings are printed.
 
     view.py, sorted_nodes.py   what a check sees: its item, and the nodes of a tree, sorted by what checks look for
-    lookups.py   what only checks look up in the files, beside workspace/inputs.py
+    lookups.py, cpp_lookups.py   what only checks look up in the files and in C++, beside workspace/inputs.py
     kinds.py, names.py, ports.py, attributes.py, children.py, misplaced_children.py   what the engine would refuse
     known_ports.py, own_nodes.py   the ports of a node; nodes of a team with the name of one of Nav2
     trees.py, includes.py, elements.py, missing_ids.py, stale_models.py   likewise, of whole trees, models and files
