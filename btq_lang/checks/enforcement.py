@@ -9,7 +9,7 @@ from typing import TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks import lookups
-from btq_lang.checks.demanded import Demanded, PlacedDiagnostic, diagnostic_at, judge_of, reported_at
+from btq_lang.checks.demanded import Demanded, PlacedDiagnostic, diagnostic_at, enforceability_of, reported_at
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
@@ -49,10 +49,10 @@ def not_enforced(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
 def not_enforced_between(view: View, name: str) -> Iterator[PlacedDiagnostic]:
     """A claim about no particular node that no build enforces."""
     for applied in view.ask(claimed_of_no_tree, name):
-        judge = judge_of(view)
+        enforceability = enforceability_of(view)
         for claim in applied.requirement.claims:
             place = reported_at(view, applied, claim)
-            why = judge.why_not(applied, claim) if place is not None else None
+            why = enforceability.why_not(applied, claim) if place is not None else None
             if place is not None and why is not None:
                 yield place, _diagnostic(applied, place, why, ())
 

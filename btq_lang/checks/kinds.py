@@ -14,7 +14,7 @@ from btq_lang.catalog.names import is_port_name, model_name_problem
 from btq_lang.catalog.nav2 import ports_of
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, available, lookup
 from btq_lang.catalog.versions import VERSIONS, at_least, is_before_4, last_of
-from btq_lang.checks import calls, lookups
+from btq_lang.checks import calls, cpp_lookups, lookups
 from btq_lang.checks.engines import is_for_version_3, is_for_version_4, old_words
 from btq_lang.checks.lookups import Declaration
 from btq_lang.checks.misplaced_children import TOO_FAR, dedent_fixes, has_bare_label, label_as_child
@@ -243,7 +243,7 @@ def duplicate_definition(view: View) -> Iterator[Diagnostic]:
         if (
             _is_same_model(other.symbol, symbol)
             or _is_of_node(view, other, symbol)
-            or view.store.ask(lookups.is_cpp, other.path)
+            or view.store.ask(cpp_lookups.is_cpp, other.path)
         ):
             continue
         only_one = f"Nav2 registers a node `{symbol.name}`, and a program can register only one"
@@ -376,7 +376,7 @@ def _aliased(view: View, resolved: ResolvedNode, name: Word, message: str, meant
 
 def _unknown(view: View, resolved: ResolvedNode, name: Word) -> Iterator[Diagnostic]:
     is_complete = view.ask(inputs.is_complete) and not view.project.hides_nodes
-    are_in_cpp = is_complete and view.ask(lookups.registers_all)
+    are_in_cpp = is_complete and view.ask(cpp_lookups.registers_all)
     has_palette = are_in_cpp or (is_complete and view.ask(lookups.has_palette))
     if not has_palette and resolved.node.category is not None:
         return  # written as a declaration: `Action Foo` declares such a node

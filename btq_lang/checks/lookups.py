@@ -12,7 +12,6 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name, model_name_problem
 from btq_lang.catalog.nav2 import FILES, distribution_among
 from btq_lang.catalog.nodes import BUILTINS, lookup
-from btq_lang.cpp.entries import SetEntries, set_entries
 from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.syntax.tree import Apply, Include, Item, Model, Models, Port, Root, Tree, Verbatim, models_in
@@ -84,22 +83,6 @@ def is_defined(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> b
 def is_pooled(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
     """Whether a name is defined in the pool of an XML file."""
     return bool(workspace.pooled(viewpoint, kind, name))
-
-
-@of_name
-def ends_at_once(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
-    """Whether the C++ of a node shows that it never returns RUNNING."""
-    definitions = workspace.scope(viewpoint).all(kind, name)
-    nodes = (workspace.files[definition.path].cpp_nodes.get(name) for definition in definitions)
-    return any(node.at_once for node in nodes if node is not None)
-
-
-@of_name
-def nav2_base(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> str:
-    """The class of nav2_behavior_tree from which a node of C++ derives; empty if from none."""
-    definitions = workspace.scope(viewpoint).all(kind, name)
-    nodes = (workspace.files[definition.path].cpp_nodes.get(name) for definition in definitions)
-    return next((node.nav2_base for node in nodes if node is not None), "")
 
 
 @of_name
@@ -190,13 +173,6 @@ def outside_entries(workspace: Workspace, viewpoint: str) -> tuple[OutsideEntry,
 
 
 @of_viewpoint
-def set_in_cpp(workspace: Workspace, viewpoint: str) -> SetEntries:
-    """The entries that C++ with the nodes of a file sets on a blackboard."""
-    files = [workspace.files[path] for path in workspace.scope(viewpoint).node_paths]
-    return set_entries([file.source for file in files if file.is_cpp])
-
-
-@of_viewpoint
 def node_paths(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
     """The files whose models count for a file, and nothing else in them."""
     return workspace.scope(viewpoint).node_paths
@@ -222,19 +198,6 @@ def has_palette(workspace: Workspace, viewpoint: str) -> bool:
             if path != viewpoint and _is_of_node(entry.item):
                 return True
     return False
-
-
-@of_viewpoint
-def registers_all(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether C++ that a factory names registers all of its nodes, and loads no libraries of others."""
-    factory = workspace.factory
-    if factory is None or factory.nav2 or factory.lost:
-        return False
-    files = [workspace.files[path] for path in factory.cpp_files if path in workspace.files]
-    own_packages = {_package(file.path) for file in files if file.names_of(Kind.MODEL) and not _OF_LIBRARY(file.source)}
-    return bool(own_packages) and not any(
-        _package(file.path) in own_packages and _LOADS_LIBRARIES(file.source) for file in files
-    )
 
 
 @of_viewpoint
@@ -446,13 +409,6 @@ def main_trees(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
 
 
 @of_viewpoint
-def is_in_cpp(workspace: Workspace, viewpoint: str, name: str) -> bool:
-    """Whether C++ that the project names has a string with this text: its program may create a tree of the name, or
-    replace it."""
-    return any(file.is_cpp and f'"{name}"' in file.source for file in workspace.files.values())
-
-
-@of_viewpoint
 def is_first_registered(workspace: Workspace, viewpoint: str) -> bool:
     """Whether this file is the first one in scope that has trees."""
     paths = workspace.scope(viewpoint).paths
@@ -523,15 +479,9 @@ def has_torn_tree(workspace: Workspace, viewpoint: str) -> bool:
 
 
 @of_viewpoint
-def is_cpp(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether the file is C++, which registers the nodes that it has models of."""
-    return workspace.files[viewpoint].is_cpp
-
-
-@of_viewpoint
 def is_xml(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the file is XML that the engine loads as it is, without a build."""
-    return workspace.files[viewpoint].is_foreign
+    return workspace.files[viewpoint].is_xml
 
 
 @of_viewpoint
@@ -603,14 +553,4 @@ def _distribution(workspace: Workspace, viewpoint: str) -> str | None:
 distribution = of_viewpoint(_distribution)
 
 
-def _package(path: str) -> str:
-    """The folder of a package, in which a C++ source is below `src` or `include`."""
-    return _BELOW.split(path)[0] if _BELOW.search(path) else posixpath.dirname(path)
-
-
-_BELOW = re.compile(r"/(?:src|include)/(?!.*/(?:src|include)/)")
-_OF_LIBRARY = re.compile(r"\bBT_REGISTER_(?:ROS_)?NODES\b").search
-_LOADS_LIBRARIES = re.compile(
-    r"\b(?:registerFrom\w*Plugins?|RegisterPlugins|RegisterRosNode|TreeExecutionServer)\b"
-).search
 _PALETTE = re.compile(r"\s*<\s*TreeNodesModel\b").match

@@ -13,7 +13,7 @@ from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2 import FILES
 from btq_lang.catalog.versions import is_before_4
-from btq_lang.checks import lookups
+from btq_lang.checks import cpp_lookups, lookups
 from btq_lang.checks.pointers import is_on, passed_on
 from btq_lang.checks.ports import adding_fix
 from btq_lang.checks.view import View, port_names
@@ -75,7 +75,7 @@ def _needed_in(store: Store[Workspace], viewpoint: str, tree: str) -> _InTree:
         for entry in created_with(distribution, name, ports):
             needed.setdefault(entry, name)
     for name in dict.fromkeys(resolved.id.text for resolved in nodes.all if resolved.is_defined and resolved.id):
-        if base := view.ask(lookups.nav2_base, Kind.MODEL, name):
+        if base := view.ask(cpp_lookups.nav2_base, Kind.MODEL, name):
             for entry in created_by(distribution, base):
                 needed.setdefault(entry, name)
     is_old = is_before_4(view.target)

@@ -174,7 +174,9 @@ def _passed(store: Store[Workspace], viewpoint: str, path: str, tree: Facts) -> 
 
 def count_of_nothing(view: View) -> Iterator[Diagnostic]:
     """A Repeat or a Retry that never runs its child, a Timeout that never ends, a Delay that does not wait."""
-    if (view.is_pinned or view.project.names_all) and not view.project.written_for:  # what moves on meets the change
+    if (
+        view.is_pinned or view.project.names_all
+    ) and not view.project.original_engines:  # what moves on meets the change
         yield from _delays(view)
     for resolved in view.seen.of_flow("repeat", "retry", "timeout"):
         if resolved.kind is None:

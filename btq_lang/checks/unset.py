@@ -13,7 +13,7 @@ from itertools import chain
 
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.checks import lookups
+from btq_lang.checks import cpp_lookups, lookups
 from btq_lang.checks.calls import callers, has_gaps, is_missed
 from btq_lang.checks.entries import EntryMention, call_of, handling
 from btq_lang.checks.entries import mentions as mentions_in
@@ -81,7 +81,7 @@ def _uncreated(view: View, tree: str, mentions: Sequence[EntryMention], excluded
             continue
         if use & EntryUse.OUTSIDE and by_name[name][0] is not mention:
             continue  # programs set what scripts read first
-        set_in_cpp = view.ask(lookups.set_in_cpp)
+        set_in_cpp = view.ask(cpp_lookups.set_in_cpp)
         is_in_cpp = name.removeprefix("@") in set_in_cpp.names
         if is_in_cpp and use & EntryUse.OUTSIDE:
             continue
@@ -154,7 +154,7 @@ def _unset(view: View, tree: str, mentions: Sequence[EntryMention], excluded: se
                 outside.append(mention)
         elif not use & EntryUse.STRANGE and view.ask(_needs, tree, name):
             yield _not_given(view, tree, mention)
-    set_in_cpp = view.ask(lookups.set_in_cpp).names
+    set_in_cpp = view.ask(cpp_lookups.set_in_cpp).names
     outside = [
         mention for mention in outside if mention.name not in set_in_cpp and view.ask(_needs, tree, mention.name)
     ]
@@ -232,7 +232,7 @@ def _is_expected(store: Store[Workspace], viewpoint: str, tree: str, name: str) 
     use = view.ask(below, tree).use_of(name)
     if not name.isidentifier() or use & (EntryUse.WRITTEN | EntryUse.OPEN | EntryUse.STRANGE):
         return False
-    if port_named(declared_ports(view, tree), name) is not None or name in view.ask(lookups.set_in_cpp).names:
+    if port_named(declared_ports(view, tree), name) is not None or name in view.ask(cpp_lookups.set_in_cpp).names:
         return False
     return bool(view.ask(_passing, tree, name)) and view.ask(_needs, tree, name)
 

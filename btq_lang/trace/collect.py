@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Final, TypeAlias
 
+from btq_lang.btcpp.enforceability import way_instead
 from btq_lang.catalog.qualities import Edition, get, qualities
 from btq_lang.diagnostics.model import Place
 from btq_lang.evidence.boxes import measured_by
@@ -188,7 +189,7 @@ class _Collector:
                     location,
                     uses=(),
                     loose=(),
-                    is_hard=requirement.demands_enforcement and not requirement.is_verified_by_people,
+                    is_hard=way_instead(requirement) is None,
                     evidence=(),
                 )
 
