@@ -55,7 +55,7 @@ def seed_of_the_day() -> int:
 
 def missions(nodes: int, seed: int) -> list[str]:
     """Files with as many nodes together, most of them with tens or hundreds."""
-    texts = []
+    texts: list[str] = []
     chance = Hand(seed)
     while nodes:
         size = min(nodes, chance.pick({8: 2, 20: 4, 60: 4, 150: 3, 400: 2, 900: 1}))

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from drawn_words import MEASURED, Hand, Line
 
-QUALITIES = ("safety", "reliability", "performance-efficiency.time-behaviour", "time-behaviour", "comfort")
-QUALITIES += ("safety.operational-constraint", "interaction-capability", "energy-autonomy", "pose-accuracy")
-QUALITIES += (
+QUALITIES = ["safety", "reliability", "performance-efficiency.time-behaviour", "time-behaviour", "comfort"]
+QUALITIES += ["safety.operational-constraint", "interaction-capability", "energy-autonomy", "pose-accuracy"]
+QUALITIES += [
     "performance-efficiency",
     "security.confidentiality",
     "contact-force-limit",
     "Reliability.Fault Tolerance",
-)
+]
 CLASSIC_QUALITIES = ("performance", "performance <time-behavior>", "usability", "safety", "reliability", "security")
 EVENTS = ("starts", "succeeds", "fails", "finishes", "halts")
 FUNCTIONS = ("max", "min", "mean", "p95", "stddev", "change", "count")
@@ -64,7 +66,7 @@ def _classic(hand: Hand, name: str) -> str:
 def clauses(hand: Hand) -> list[str]:
     """The clauses of a requirement: mostly one claim, then what qualifies it."""
     claims = [_claim(hand)] if hand.maybe(0.92) else []
-    others = {
+    others: dict[float, Callable[[], str]] = {
         0.20: lambda: f"{hand.pick(('while', 'when'))} {condition(hand)}",
         0.18: lambda: _odds(hand),
         0.08: lambda: f"confidence {hand.pick(('95 %', '99 %', '90%', '99.9 %'))}",

@@ -7,20 +7,20 @@ are drawn once for a file; the exceptions to them at each place.
 from __future__ import annotations
 
 import random
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TypeVar
 
 T = TypeVar("T")
 
-VERBS = ("Move", "Drive", "Pick", "Place", "Scan", "Open", "Close", "Wait", "Dock", "Charge", "Align", "Grasp", "Lift")
-VERBS += ("Release", "Inspect", "Measure", "Follow", "Clean", "Pour", "Weigh", "Localize", "Announce", "Plan", "Clear")
-THINGS = ("Base", "Arm", "Gripper", "Shelf", "Tray", "Door", "Tube", "Pallet", "Charger", "Camera", "Path", "Costmap")
-THINGS += ("Elevator", "Cup", "Box", "Valve", "Pump", "Field", "Row", "Person", "Goal", "Pose", "Recovery", "Map")
+VERBS = ["Move", "Drive", "Pick", "Place", "Scan", "Open", "Close", "Wait", "Dock", "Charge", "Align", "Grasp", "Lift"]
+VERBS += ["Release", "Inspect", "Measure", "Follow", "Clean", "Pour", "Weigh", "Localize", "Announce", "Plan", "Clear"]
+THINGS = ["Base", "Arm", "Gripper", "Shelf", "Tray", "Door", "Tube", "Pallet", "Charger", "Camera", "Path", "Costmap"]
+THINGS += ["Elevator", "Cup", "Box", "Valve", "Pump", "Field", "Row", "Person", "Goal", "Pose", "Recovery", "Map"]
 STATES = ("Low", "Full", "Ready", "Reached", "Open", "Blocked", "Empty", "Visible", "Safe", "Updated", "Stuck", "Idle")
 FOREIGN = ("Größe", "Prüfung", "Déplacer", "Łapa", "Ανοιξε", "移動", "Ход")
-KEYS = ("goal", "pose", "path", "speed", "place", "station", "target", "source", "from", "to", "error", "error_code_id")
-KEYS += (
+KEYS = ["goal", "pose", "path", "speed", "place", "station", "target", "source", "from", "to", "error", "error_code_id"]
+KEYS += [
     "planner_id",
     "controller_id",
     "max_effort",
@@ -30,8 +30,8 @@ KEYS += (
     "object",
     "result",
     "service_name",
-)
-KEYS += (
+]
+KEYS += [
     "server_timeout",
     "topic_name",
     "offset",
@@ -41,26 +41,26 @@ KEYS += (
     "count",
     "on",
     "node",
-)
+]
 CONDITIONS = ("_skipIf", "_successIf", "_failureIf", "_while")
 AFTERWARDS = ("_onSuccess", "_onFailure", "_onHalted", "_post")
-PROSE = (
+PROSE = [
     "Reach the shelf in time",
     "people are not startled",
     "keep enough for the way back",
     "see ticket 1042",
     "TODO",  # as people write in comments
-)
-PROSE += ("the camera needs a moment after a turn", "nothing is dropped", "measured on the old robot", "50 % of cases")
-PROSE += (
+]
+PROSE += ["the camera needs a moment after a turn", "nothing is dropped", "measured on the old robot", "50 % of cases"]
+PROSE += [
     "stop before the yellow line (ISO 3691-4)",
     "worst case: door closed, lift busy",
     "was 30 s; too short in winter",
-)
-TYPES = ("string", "double", "int", "bool", "uint16", "float", "geometry_msgs::msg::PoseStamped", "nav_msgs::msg::Path")
-TYPES += ("std::string", "std::vector::double", "BT::AnyTypeAllowed")
-SCRIPTS = ("@placed := 0.0", "tries += 1", "state := 'idle'; done := false", "(battery < 20.0) && (!charging)", "x > 3")
-SCRIPTS += ("mode == 'auto' || mode == 'teach'", "a := (b + 1.5) * 2; c := a; d := c", "path_ok ? 1 : 0", "!@stopped")
+]
+TYPES = ["string", "double", "int", "bool", "uint16", "float", "geometry_msgs::msg::PoseStamped", "nav_msgs::msg::Path"]
+TYPES += ["std::string", "std::vector::double", "BT::AnyTypeAllowed"]
+SCRIPTS = ["@placed := 0.0", "tries += 1", "state := 'idle'; done := false", "(battery < 20.0) && (!charging)", "x > 3"]
+SCRIPTS += ["mode == 'auto' || mode == 'teach'", "a := (b + 1.5) * 2; c := a; d := c", "path_ok ? 1 : 0", "!@stopped"]
 UNITS = {
     "time": {"s": 12, "ms": 5, "min": 4, "h": 1},
     "length": {"m": 8, "cm": 4, "mm": 2},
@@ -158,14 +158,15 @@ class Hand:
     def new(self, kind: str) -> str:
         """A name that the file did not have before."""
         known = self.names.setdefault(kind, [])
-        name = {
+        makers: dict[str, Callable[[], str]] = {
             "requirement": lambda: f"{self.pick(('rq', 'rq-', 'nfr_', 'limit'))}{len(known) + 1}",
             "tree": self._tree,
             "context": lambda: f"{self.pick(THINGS).lower()}_{self.pick(STATES).lower()}",
             "tag": lambda: self.pick(VERBS).lower() + "ing",
             "quality": lambda: f"{self.pick(THINGS).lower()}-{self.pick(('care', 'hygiene', 'autonomy'))}",
             "condition": lambda: self.pick(THINGS) + self.pick(STATES) + self.pick({"": 9, "?": 1}),
-        }.get(kind, self._action)()
+        }
+        name = makers.get(kind, self._action)()
         while name in known:
             name = f'{name[:-1]}2"' if name[0] == '"' else f"{name.rstrip('?')}2"
         known.append(name)

@@ -22,7 +22,7 @@ from pathlib import Path
 
 import duckdb
 from report import ENVIRONMENT, as_data, machine, options
-from robot_log import FETCH, SECONDS, logged_xml
+from robot_log import FETCH, SECONDS, logged_xml, skill_of
 
 # robot_log has put the tests on the path
 from engine_simulator import FAILURE, IDLE, SUCCESS  # isort: skip
@@ -73,10 +73,10 @@ class VersionRun(LoggedRun):
         self.seconds, self.fails = {**SECONDS, **seconds}, {**FAILS, **fails}
 
     def drawn(self, leaf: ResolvedNode) -> float:
-        return self.seconds[leaf.node.id.text] * self.chance.uniform(0.7, 1.3)
+        return self.seconds[skill_of(leaf)] * self.chance.uniform(0.7, 1.3)
 
     def ended(self, leaf: ResolvedNode) -> str:
-        return FAILURE if self.chance.random() < self.fails[leaf.node.id.text] else SUCCESS
+        return FAILURE if self.chance.random() < self.fails[skill_of(leaf)] else SUCCESS
 
 
 def write_logs(folder: Path, robots: int, versions: list[str], days: int, runs: int) -> None:
@@ -166,7 +166,7 @@ def measured(folder: Path, versions: list[str], jobs: int, twins: int) -> dict[s
 
 
 def activations(store: Path) -> int:
-    (row,) = duckdb.sql(f"SELECT COUNT(*) FROM read_parquet('{store}/*/activations.parquet')").fetchall()
+    (row,) = duckdb.execute(f"SELECT COUNT(*) FROM read_parquet('{store}/*/activations.parquet')").fetchall()
     return int(row[0])
 
 

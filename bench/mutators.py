@@ -78,7 +78,7 @@ def _bugs(owner: ast.AST, field: str, node: ast.AST, function: bool) -> Iterator
     """Kinds of bugs, and the node with them."""
     if isinstance(node, ast.Compare) and type(node.ops[0]) in OPPOSITE:
         yield "comparison", ast.Compare(node.left, [OPPOSITE[type(node.ops[0])](), *node.ops[1:]], node.comparators)
-    elif field in ("test", "ifs"):
+    elif field in ("test", "ifs") and isinstance(node, ast.expr):
         yield "condition", ast.UnaryOp(ast.Not(), node)
     if isinstance(node, ast.BoolOp):
         yield "and/or", ast.BoolOp(ast.And() if isinstance(node.op, ast.Or) else ast.Or(), node.values)

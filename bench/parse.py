@@ -32,7 +32,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
             with checkout_of(options.against, folder) as other:
                 both = [*own, Form(f"{options.against} interpreted", other)]
                 measured = rates.measure(both, three, options.rounds)
-            results, missing, goals = [], {}, rates.compare(measured, options.against)
+            results: list[peers.Result] = []
+            missing: dict[str, str] = {}
+            goals = rates.compare(measured, options.against)
         else:
             measured = rates.measure(own, three, options.rounds)
             sizes = [peers.SMALL, peers.MIDDLE] + ([] if options.quick else [peers.LARGE])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import platform
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 # An installed btq has its bytecode beside it; where writing it is switched off, every start would compile all modules.
@@ -33,7 +33,7 @@ def shown(goals: Sequence[Goal]) -> list[str]:
     return [f"{'met   ' if goal.met else 'MISSED'}  {goal.text}: {goal.reached:,.2f}" for goal in goals]
 
 
-def as_data(measured: dict[str, object], goals: Sequence[Goal]) -> dict[str, object]:
+def as_data(measured: Mapping[str, object], goals: Sequence[Goal]) -> dict[str, object]:
     """Everything that was measured, for machines."""
     return {
         "python": platform.python_version(),

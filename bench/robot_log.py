@@ -194,4 +194,10 @@ class _Timed(LoggedRun):
     """A run whose leaves take about as long as a robot's."""
 
     def drawn(self, leaf: ResolvedNode) -> float:
-        return SECONDS[leaf.node.id.text] * self.chance.uniform(0.7, 1.3)
+        return SECONDS[skill_of(leaf)] * self.chance.uniform(0.7, 1.3)
+
+
+def skill_of(leaf: ResolvedNode) -> str:
+    """The ID of a leaf of the mission, all of whose leaves have one."""
+    assert leaf.node.id is not None
+    return leaf.node.id.text

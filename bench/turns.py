@@ -64,7 +64,7 @@ class Worker:
         answer = self._read()
         if answer["nodes"] != nodes:
             raise SystemExit(
-                f"{self._process.args} found {answer['nodes']} nodes in {request['path']}, which has {nodes}"
+                f"{self._process.args!r} found {answer['nodes']} nodes in {request['path']}, which has {nodes}"
             )
         return answer
 
@@ -73,7 +73,7 @@ class Worker:
         assert self._process.stdout is not None
         line = self._process.stdout.readline()
         if not line:
-            raise SystemExit(f"{self._process.args} ended without an answer")
+            raise SystemExit(f"{self._process.args!r} ended without an answer")
         answer: dict[str, Any] = json.loads(line)
         return answer
 

@@ -12,7 +12,7 @@ from lark.indenter import Indenter
 VERSION = lark.__version__
 
 
-class _Indenter(Indenter):
+class _Indenter(Indenter):  # type: ignore[misc,unused-ignore]  # a class of unknown type, where Lark is missing
     NL_type = "_NL"
     OPEN_PAREN_types: ClassVar = ["LPAR"]
     CLOSE_PAREN_types: ClassVar = ["RPAR"]
@@ -23,7 +23,10 @@ class _Indenter(Indenter):
 
 def load() -> Callable[[str], object]:
     grammar = (Path(__file__).parent / "classic.lark").read_text(encoding="utf-8")
-    return lark.Lark(grammar, parser="lalr", postlex=_Indenter(), maybe_placeholders=False).parse
+    parse: Callable[[str], object] = lark.Lark(
+        grammar, parser="lalr", postlex=_Indenter(), maybe_placeholders=False
+    ).parse
+    return parse
 
 
 def count(tree: lark.Tree[lark.Token]) -> int:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import textx  # type: ignore[import-untyped]  # it ships no types
+import textx
 
 VERSION = importlib.metadata.version("textx")
 

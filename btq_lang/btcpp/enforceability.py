@@ -32,7 +32,7 @@ from btq_lang.workspace.workspace import Workspace
 Way: TypeAlias = Literal["enforced", "monitored", "reviewed"]
 
 
-def unasked(requirement: ResolvedRequirement) -> tuple[Way, str] | None:
+def way_instead(requirement: ResolvedRequirement) -> tuple[Way, str] | None:
     """The way in which the clauses of a requirement are checked instead of enforced, and why; None if the engine is to
     enforce them."""
     if requirement.is_verified_by_people:
@@ -52,8 +52,8 @@ class UnknownMission(NotEnforced):
     """The tree that is the mission is unknown."""
 
 
-class Judge:
-    """Judges the clauses that some files see."""
+class Enforceability:
+    """Which of the clauses that some files see the engine can enforce."""
 
     def __init__(
         self,
@@ -67,7 +67,7 @@ class Judge:
         """
         Args:
             viewpoint: the file whose scope counts.
-            mission: returns the mission's root, if it begins in the files that are judged; called only if it matters.
+            mission: returns the mission's root, if it begins in these files; called only if it matters.
             files: that are written together; None: all.
             is_shared: whether they are a part of several missions.
         """
@@ -81,7 +81,7 @@ class Judge:
     def why_not(self, applied: Applied, claim: ResolvedClaim) -> str | None:
         """Why the engine does not enforce a clause that it should; None if it does, or if the mission's root is
         unknown, which is reported of the mission."""
-        if (outcome := unasked(applied.requirement)) is not None:
+        if (outcome := way_instead(applied.requirement)) is not None:
             return outcome[1]
         try:
             self.needs(applied.requirement, claim, self.node(applied, claim), "_", "@_")

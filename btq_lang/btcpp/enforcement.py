@@ -19,7 +19,7 @@ from typing import Final
 
 from btq_lang.btcpp.conditions import all_of
 from btq_lang.btcpp.document import Document, Element, XmlComment
-from btq_lang.btcpp.enforceability import Elsewhere, Judge, Way, unasked, where_else
+from btq_lang.btcpp.enforceability import Elsewhere, Enforceability, Way, way_instead, where_else
 from btq_lang.btcpp.export import Export, is_mission
 from btq_lang.btcpp.guards import NotEnforced
 from btq_lang.btcpp.keys import Keys
@@ -162,7 +162,9 @@ class _Plan:
         is_shared = path in workspace.included_files
         mission = resolved.mission if _begins(workspace, resolved, path, files) else None
         store, viewpoint = resolved.store, resolved.viewpoint
-        self._judge: Final = Judge(store, viewpoint, lambda: mission, files=files, is_shared=is_shared)
+        self._enforceability: Final = Enforceability(
+            store, viewpoint, lambda: mission, files=files, is_shared=is_shared
+        )
         self.clauses: tuple[tuple[ClauseEnforcement, ...], ...] = ()
 
     def whole(self) -> _Plan:
@@ -176,7 +178,7 @@ class _Plan:
     def enforce(self, applied: Applied, claim: ResolvedClaim) -> ClauseEnforcement:
         """How a clause is enforced; records the wrappers it needs."""
         requirement = applied.requirement
-        unenforced = unasked(requirement)
+        unenforced = way_instead(requirement)
         monitored = ClauseEnforcement(
             requirement.name,
             claim.text,
@@ -189,7 +191,7 @@ class _Plan:
         if unenforced is not None:
             return monitored
         try:
-            node = self._judge.node(applied, claim)
+            node = self._enforceability.node(applied, claim)
             identity = (requirement.name, claim.text, id(node.node), applied.arguments)
             enforcement = self.enforced.get(identity)
             if enforcement is None and node.path not in self._files:
@@ -221,7 +223,7 @@ class _Plan:
             NotEnforced: the engine cannot do it.
         """
         name = self._keys.next(requirement.name)
-        guard, first = self._judge.needs(requirement, claim, node, name, self._keys.stop(requirement.name))
+        guard, first = self._enforceability.needs(requirement, claim, node, name, self._keys.stop(requirement.name))
         self._keys.take(name)
         self.initial_values.update(guard.initial_values)
         self.first.update(first)

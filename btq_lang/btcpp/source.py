@@ -1,6 +1,6 @@
 """The file that is being exported: what all parts of an export look up, and where they record remarks.
 
-One invariant: only `repair` and `problem` change it; they keep one remark for a message and a place.
+One invariant: remarks are only added, and there is one for a message and a place.
 """
 
 from __future__ import annotations

@@ -35,6 +35,7 @@ class Verb(Record):
         enforced: how the engine enforces it: a Timeout, a condition before the node that refuses its start, one that is
             evaluated while the node runs, one after it.
         why_monitored: why the engine cannot enforce its clauses.
+        is_final: whether a violation stays one, whatever the activation does next.
     """
 
     word: str
@@ -47,6 +48,7 @@ class Verb(Record):
     limits: Limits = ""
     enforced: Enforced = ""
     why_monitored: str = ""
+    is_final: bool = False
 
     @property
     def example(self) -> str:
@@ -97,6 +99,7 @@ VERBS: Final = {
             forms=(("takes at most", "takes at most ${0:30 s}"), ("takes at least", "takes at least ${0:1 s}")),
             limits="completion",
             enforced="limit",
+            is_final=True,
         ),
         Verb(
             word="succeeds",
@@ -115,6 +118,7 @@ VERBS: Final = {
             forms=(("succeeds", None), ("succeeds within", "succeeds within ${0:30 s}")),
             limits="success",
             enforced="limit",
+            is_final=True,
         ),
         Verb(
             word="needs",
@@ -131,6 +135,7 @@ VERBS: Final = {
                 ),
             ),
             enforced="refusal",
+            is_final=True,
         ),
         Verb(
             word="keeps",
@@ -146,6 +151,7 @@ VERBS: Final = {
                 ),
             ),
             enforced="guard",
+            is_final=True,
         ),
         Verb(
             word="never",
@@ -161,6 +167,7 @@ VERBS: Final = {
                 ),
             ),
             enforced="guard",
+            is_final=True,
         ),
         Verb(
             word="leaves",

@@ -20,8 +20,9 @@ DEFAULT_VERSION: Final = VERSIONS[-1]
 # The last line before the present syntax of XML.  Its files are checked, and `btq import` translates them; none is
 # written for it.
 VERSION_3: Final = "3.8"
+MOVEIT_PRO: Final = "moveit-pro"
 # Programs that provide a version of the engine and trees of their own, by the name that a project has for them.
-PRODUCTS: Final = {"moveit-pro": "4.6"}
+PRODUCTS: Final = {MOVEIT_PRO: "4.6"}
 
 
 class VersionChange(Record):

@@ -6,8 +6,9 @@ all it needs from its view, and so from the query store (workspace/queries.py), 
 the next.  Checks do not know what an edit changed, nor how findings are printed.
 
     view.py, sorted_nodes.py   what a check sees: its item, and the nodes of a tree, sorted by what checks look for
-    lookups.py   what only checks look up in the files, beside workspace/inputs.py
-    kinds.py, names.py, ports.py, own_nodes.py, children.py, misplaced_children.py   what the engine would refuse
+    lookups.py, cpp_lookups.py   what only checks look up in the files and in C++, beside workspace/inputs.py
+    kinds.py, names.py, ports.py, attributes.py, children.py, misplaced_children.py   what the engine would refuse
+    known_ports.py, own_nodes.py   the ports of a node; nodes of a team with the name of one of Nav2
     trees.py, includes.py, elements.py, missing_ids.py, stale_models.py   likewise, of whole trees, models and files
     positional.py, literals.py, port_values.py, scripts.py, strings.py, typed_numbers.py   values, of ports too
     entries.py, pointers.py, writers.py, misspelt.py, meant_entries.py, mixed_types.py   blackboard entries
@@ -15,9 +16,10 @@ the next.  Checks do not know what an edit changed, nor how findings are printed
     engines.py, version3.py   which versions of the engine a file is for
     moving.py, target_changes.py   what another version of the engine or distribution of Nav2 changes
     statuses.py, results.py, unreachable.py, reactive.py, preconditions.py, resets.py   what nodes return, and traps
-    nav2_nodes.py, unread.py   nodes of Nav2: what they need and share, trees for goals, error codes
+    nav2_nodes.py, nav2_literals.py, unread.py   nodes of Nav2: what they need and share, poses, goals, error codes
     requirements.py, clauses.py, bounds.py, qualities.py, prose.py, wording.py   requirements by themselves
-    demanded.py, demands.py, budgets.py, limits.py, signals.py, renewals.py, enforcement.py   at their nodes
+    demanded.py, demands.py, budgets.py, limits.py, never_counted.py   at their nodes
+    signals.py, renewals.py, enforcement.py   likewise, of what the engine is to enforce
     origins.py, placeholders.py   diagnostics shown on XML; classic placeholders
     suppressions.py, silencing.py   silenced rules
 """
@@ -30,6 +32,7 @@ from typing import TypeAlias
 from btq_lang.checks import (
     approvals,
     arguments,
+    attributes,
     bounds,
     chain,
     children,
@@ -45,6 +48,7 @@ from btq_lang.checks import (
     mixed_types,
     moving,
     names,
+    nav2_literals,
     nav2_nodes,
     placeholders,
     port_values,
@@ -90,9 +94,10 @@ _OF_MODELS: tuple[Check, ...] = (
     elements.ignored_element,
     kinds.duplicate_definition,
     stale_models.stale_model,
-    ports.duplicate_attribute,
+    attributes.duplicate_attribute,
     *_OF_PORTS,
     literals.number_for_text,
+    typed_numbers.default_of_another_type,
     names.forbidden_name,
     names.empty_text,
 )
@@ -116,7 +121,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         trees.duplicate_tree,
         kinds.duplicate_definition,
         requirements.conflicting_requirement,
-        ports.duplicate_attribute,
+        attributes.duplicate_attribute,
         moving.moving_include,
         elements.ignored_element,
     ),
@@ -124,7 +129,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
     syntax.Root: (
         trees.unknown_tree,
         names.empty_text,
-        ports.duplicate_attribute,
+        attributes.duplicate_attribute,
         version3.version_3_file,
         elements.ignored_element,
     ),
@@ -147,8 +152,8 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         kinds.clause_as_node,
         ports.unknown_port,
         ports.missing_port,
-        ports.unknown_attribute,
-        ports.duplicate_attribute,
+        attributes.unknown_attribute,
+        attributes.duplicate_attribute,
         *_OF_PORTS,
         literals.old_entry,
         literals.json_in_braces,
@@ -188,6 +193,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         unread.tree_of_goal,
         nav2_nodes.isolated_node,
         nav2_nodes.shared_server,
+        nav2_literals.wrong_number_of_fields,
         resets.memory_lost,
         resets.last_success_lost,
         unread.default_instead,
@@ -341,7 +347,8 @@ def reported_in_file(store: Store[Workspace], viewpoint: str, is_alone: bool) ->
     # Demands depend on all files in scope: an item to which they add no finding should not.  In a target they may add
     # other findings.
     demanded = store.ask(demands.demands_by_item, viewpoint)
-    has_target = View(store, viewpoint).project.moves_to is not None
+    project = store.ask(inputs.project)
+    has_target = project.moves_to is not None
     by_item = [
         store.ask(
             _reported,
@@ -353,9 +360,11 @@ def reported_in_file(store: Store[Workspace], viewpoint: str, is_alone: bool) ->
         for facts in store.ask(lookups.items, viewpoint)
     ]
     wrong = tuple([reported for reported in by_item if reported is not None])
-    signs = store.ask(lookups.signs, viewpoint) if wrong and not View(store, viewpoint).project.written_for else None
+    if not wrong or not store.ask(is_newer_than_engine, viewpoint):
+        return wrong
+    signs = store.ask(lookups.signs, viewpoint) if not View(store, viewpoint).project.original_engines else None
     is_refused = version3.refuses([diagnostic for reported in wrong for diagnostic in reported.diagnostics], signs)
-    return (_newer(store, viewpoint) if is_refused and store.ask(is_newer_than_engine, viewpoint) else ()) or wrong
+    return (_newer(store, viewpoint) if is_refused else ()) or wrong
 
 
 def _newer(store: Store[Workspace], viewpoint: str) -> tuple[Reported, ...]:

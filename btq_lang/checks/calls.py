@@ -62,6 +62,11 @@ def has_gaps(store: Store[Workspace], viewpoint: str) -> bool:
     return not view.ask(inputs.is_complete) or any(name not in graph for called, _ in graph.values() for name in called)
 
 
+def has_meant(store: Store[Workspace], viewpoint: str) -> bool:
+    """Whether a node probably means to run a tree, or has it run for a goal."""
+    return any(meant for _, (_, meant) in store.ask(_graph, viewpoint))
+
+
 @of_scope
 def _graph(store: Store[Workspace], viewpoint: str) -> tuple[tuple[str, Runs], ...]:
     """All trees in scope."""

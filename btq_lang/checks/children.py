@@ -10,6 +10,7 @@ from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.nodes import is_by_children
 from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks.kinds import OF_SUBTREE, declared_category, model_related
+from btq_lang.checks.known_ports import is_case
 from btq_lang.checks.misplaced_children import (
     TOO_FAR,
     dedent_fixes,
@@ -17,7 +18,6 @@ from btq_lang.checks.misplaced_children import (
     label_as_child,
     wrap_in_sequence_fixes,
 )
-from btq_lang.checks.ports import is_case
 from btq_lang.checks.view import View, misspelt_clause
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity

@@ -10,6 +10,7 @@ from btq_lang.checks import lookups
 from btq_lang.checks.view import View, quality_named
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.syntax import tree as syntax
+from btq_lang.syntax.tokens import QUANTITY
 from btq_lang.util.text import Span
 
 _ONCE: dict[type, str] = {
@@ -28,10 +29,16 @@ def duplicate_clause(view: View) -> Iterator[Diagnostic]:
     for symbol, requirement in view.requirements:
         first: dict[type, syntax.Clause] = {}
         for clause in requirement.clauses:
+            if isinstance(clause, syntax.Odds) and not _is_share(clause):
+                continue  # `succeeds in 45 s`, which the parser reports
             if type(clause) in _ONCE and (counts := first.setdefault(type(clause), clause)) is not clause:
                 # If one of several equal definitions lacked it, it would contradict the others.
                 is_alone = not view.ask(lookups.is_repeated, symbol.kind, symbol.name)
                 yield _duplicate(view, counts, clause, is_alone)
+
+
+def _is_share(odds: syntax.Odds) -> bool:
+    return odds.value is None or odds.value.kind != QUANTITY or odds.value.raw.endswith("%")
 
 
 def clause_without_odds(view: View) -> Iterator[Diagnostic]:

@@ -19,7 +19,7 @@ from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.resolved import ResolvedNode, tree_nodes
 
 if TYPE_CHECKING:
-    from btq_lang.btcpp.enforceability import Judge
+    from btq_lang.btcpp.enforceability import Enforceability
 
 PlacedDiagnostic: TypeAlias = tuple[Place, Diagnostic]
 Guard: TypeAlias = tuple[tuple[ResolvedSignal, ...], tuple[str, ...], Place]
@@ -44,24 +44,25 @@ class Demanded:
         self.budgets: Final = Budgets(view.store, view.path)
         self.claims: Final[list[tuple[Applied, ResolvedClaim, ResolvedNode, Place]]] = []
         self.hard: Final[list[tuple[Applied, ResolvedClaim, ResolvedNode, Place | None, str | None]]] = []
-        judge: Judge | None = None
+        enforceability: Enforceability | None = None
         for applied in view.ask(applied_in, path, facts).applied:
             for claim in applied.requirement.claims:
                 node, place = _node(applied, claim, self.budgets), reported_at(view, applied, claim)
                 if node is not None and place is not None:
                     self.claims.append((applied, claim, node, place))
                 if applied.requirement.demands_enforcement:
-                    judge = judge or judge_of(view)
+                    enforceability = enforceability or enforceability_of(view)
                     node = node or applied.nodes[0]
                     shown = node.place if place is None and node.path == view.path else place
-                    self.hard.append((applied, claim, node, shown, judge.why_not(applied, claim)))
+                    self.hard.append((applied, claim, node, shown, enforceability.why_not(applied, claim)))
 
 
-def judge_of(view: View) -> Judge:
-    """The judge of enforceability, as if all files were written into one."""
-    from btq_lang.btcpp.enforceability import Judge  # few missions have a claim that is to be enforced
+def enforceability_of(view: View) -> Enforceability:
+    """What decides which clauses the engine can enforce, as if all files were written into one."""
+    from btq_lang.btcpp.enforceability import Enforceability  # few missions have a claim that is to be enforced
 
-    return Judge(view.store, view.path, lambda: view.ask(mission), files=None, is_shared=view.ask(inputs.is_included))
+    is_shared = view.ask(inputs.is_included)
+    return Enforceability(view.store, view.path, lambda: view.ask(mission), files=None, is_shared=is_shared)
 
 
 def _node(applied: Applied, claim: ResolvedClaim, budgets: Budgets) -> ResolvedNode | None:

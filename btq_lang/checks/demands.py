@@ -64,7 +64,7 @@ def _of_tree(
     store: Store[Workspace], viewpoint: str, path: str, facts: Facts
 ) -> tuple[tuple[PlacedDiagnostic, ...], tuple[Guard, ...]]:
     """The findings about the nodes of a tree, and the claims about them for which the engine reads signals."""
-    from btq_lang.checks import budgets, enforcement, limits, renewals, signals  # few files need them
+    from btq_lang.checks import budgets, enforcement, limits, never_counted, renewals, signals  # few files need them
     from btq_lang.checks.demanded import Demanded
 
     demanded = Demanded(View(store, viewpoint), path, facts)
@@ -74,6 +74,7 @@ def _of_tree(
         limits.dead_bound,
         limits.outbid_bound,
         limits.attempts_mismatch,
+        never_counted.never_counted,
         limits.contradicting_bounds,
         budgets.budget_exceeded,
         budgets.timeout_never_succeeds,

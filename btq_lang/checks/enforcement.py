@@ -9,13 +9,13 @@ from typing import TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks import lookups
-from btq_lang.checks.demanded import Demanded, PlacedDiagnostic, diagnostic_at, judge_of, reported_at
+from btq_lang.checks.demanded import Demanded, PlacedDiagnostic, diagnostic_at, enforceability_of, reported_at
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements.attach import claimed_of_no_tree, uses_of_nodes
 from btq_lang.requirements.budget_parts import port_count
-from btq_lang.requirements.model import Applied, NodeTarget, ResolvedClaim
+from btq_lang.requirements.model import Applied, NodeTarget, ResolvedClaim, signals_in
 from btq_lang.requirements.nodes import callers, mission
 from btq_lang.workspace import inputs
 from btq_lang.workspace.node_names import wraps
@@ -49,10 +49,10 @@ def not_enforced(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
 def not_enforced_between(view: View, name: str) -> Iterator[PlacedDiagnostic]:
     """A claim about no particular node that no build enforces."""
     for applied in view.ask(claimed_of_no_tree, name):
-        judge = judge_of(view)
+        enforceability = enforceability_of(view)
         for claim in applied.requirement.claims:
             place = reported_at(view, applied, claim)
-            why = judge.why_not(applied, claim) if place is not None else None
+            why = enforceability.why_not(applied, claim) if place is not None else None
             if place is not None and why is not None:
                 yield place, _diagnostic(applied, place, why, ())
 
@@ -76,6 +76,12 @@ def _is_reported_otherwise(
     demanded: Demanded, applied: Applied, claim: ResolvedClaim, node: ResolvedNode, place: Place
 ) -> bool:
     """Whether another rule reports why the engine does not enforce a claim."""
+    signals = signals_in((claim.condition, *(scope.condition for scope in applied.requirement.scopes)))
+    if any(
+        signal.key is None and not demanded.view.store.ask(lookups.is_read, signal.place.path or demanded.view.path)
+        for signal in signals
+    ):
+        return True  # its entry may be on a line that could not be read
     if claim.signal is not None:
         return claim.signal.behaviour == "gauge"
     if not applied.requirement.is_enforceable or place == node.place:

@@ -13,7 +13,7 @@ from btq_lang.workspace.workspace import Workspace
 def engines_of(store: Store[Workspace], viewpoint: str) -> tuple[str, ...]:
     """The versions that a file must hold for, oldest first."""
     project = store.ask(inputs.project)
-    return project.engines if project.written_for else store.ask(declared_engines, viewpoint) or VERSIONS
+    return project.engines if project.original_engines else store.ask(declared_engines, viewpoint) or VERSIONS
 
 
 def declared_engines(store: Store[Workspace], viewpoint: str) -> tuple[str, ...]:

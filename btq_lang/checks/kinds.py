@@ -14,7 +14,7 @@ from btq_lang.catalog.names import is_port_name, model_name_problem
 from btq_lang.catalog.nav2 import ports_of
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, available, lookup
 from btq_lang.catalog.versions import VERSIONS, at_least, is_before_4, last_of
-from btq_lang.checks import calls, lookups
+from btq_lang.checks import calls, cpp_lookups, lookups
 from btq_lang.checks.engines import is_for_version_3, is_for_version_4, old_words
 from btq_lang.checks.lookups import Declaration
 from btq_lang.checks.misplaced_children import TOO_FAR, dedent_fixes, has_bare_label, label_as_child
@@ -114,6 +114,8 @@ def not_an_engine_node(view: View) -> Iterator[Diagnostic]:
             yield Diagnostic("not-an-engine-node", name.span, message, notes=notes, fixes=fixes)
         elif (meant := _quoted_alias(resolved, name)) is not None and not _is_refused(view, resolved, name):
             yield _aliased(view, resolved, name, message, meant)
+        elif ":" in text:
+            continue  # `bt:Sequence`, which forbidden_name reports
         elif (foreign := _foreign(view, resolved)) is not None:
             message += did_you_mean((foreign.tag,))
             as_child, fixes = label_as_child(view, resolved, foreign.tag)
@@ -241,7 +243,7 @@ def duplicate_definition(view: View) -> Iterator[Diagnostic]:
         if (
             _is_same_model(other.symbol, symbol)
             or _is_of_node(view, other, symbol)
-            or view.store.ask(lookups.is_cpp, other.path)
+            or view.store.ask(cpp_lookups.is_cpp, other.path)
         ):
             continue
         only_one = f"Nav2 registers a node `{symbol.name}`, and a program can register only one"
@@ -374,7 +376,7 @@ def _aliased(view: View, resolved: ResolvedNode, name: Word, message: str, meant
 
 def _unknown(view: View, resolved: ResolvedNode, name: Word) -> Iterator[Diagnostic]:
     is_complete = view.ask(inputs.is_complete) and not view.project.hides_nodes
-    are_in_cpp = is_complete and view.ask(lookups.registers_all)
+    are_in_cpp = is_complete and view.ask(cpp_lookups.registers_all)
     has_palette = are_in_cpp or (is_complete and view.ask(lookups.has_palette))
     if not has_palette and resolved.node.category is not None:
         return  # written as a declaration: `Action Foo` declares such a node
@@ -385,6 +387,8 @@ def _unknown(view: View, resolved: ResolvedNode, name: Word) -> Iterator[Diagnos
         is_parent = not (is_complete and view.ask(lookups.most_have_models))
         if not likely and is_parent and not (is_complete and _has_own_children(view, resolved, name)):
             return
+    begun = () if likely else _begun(view, resolved, name.text)
+    likely = likely or begun
     if not likely and not view.is_first_use(resolved.node, name.text):
         return  # one model is missing, however many nodes would need it
     fixes = tuple(replace_fix(f"Replace `{name.text}` with `{meant}`", name.span, written(meant)) for meant in likely)
@@ -401,11 +405,26 @@ def _unknown(view: View, resolved: ResolvedNode, name: Word) -> Iterator[Diagnos
         notes = (f"{why}; to declare {'it' if is_parent else 'this one'}, write {shortest}",)
         if moved := dedent_fixes(view, resolved, resolved.node.children):
             notes, fixes = (*notes, TOO_FAR), fixes + moved
-    severity = None if likely or has_palette else Severity.HINT
+    severity = None if (likely and not begun) or has_palette else Severity.HINT
     if has_palette and view.factory is not None and view.factory.nodes:
         severity = Severity.ERROR  # the program registers what `nodes` names, and refuses to load any other
     message = f"unknown node `{name.text}`{did_you_mean(likely)}"
     yield Diagnostic("unknown-node", name.span, message, notes=notes, fixes=fixes, severity=severity)
+
+
+def _begun(view: View, resolved: ResolvedNode, name: str) -> tuple[str, ...]:
+    """The one node of Nav2 with children of which a node's name is the first words: `Pipeline`, PipelineSequence."""
+    distribution = view.ask(lookups.distribution)
+    if distribution is None or not resolved.node.children:
+        return ()
+    longer = [other for other in view.ask(inputs.names, Kind.MODEL) if other.startswith(name) and other != name]
+    models = [(other, view.ask(lookups.meaning, Kind.MODEL, other)) for other in longer if other[len(name)].isupper()]
+    parents = [
+        other
+        for other, model in models
+        if model is not None and isinstance(model.target, Model) and model.target.category.raw in _WITH_CHILDREN
+    ]
+    return tuple(parents) if len(parents) == 1 else ()
 
 
 def _has_own_children(view: View, resolved: ResolvedNode, name: Word) -> bool:
@@ -545,6 +564,7 @@ OF_SUBTREE: Final = ("remap",)
 
 # A file with so many nodes with ports should declare them.
 _MANY: Final = 5
+_WITH_CHILDREN: Final = ("Control", "Decorator")
 
 # Words of version 3 that an import translates.
 _TRANSLATED: Final = frozenset(("SequenceStar", "RetryUntilSuccesful", "SubTreePlus"))

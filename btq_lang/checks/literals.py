@@ -58,6 +58,7 @@ class _Target(Record):
         converts: whether the engine reads a literal as the type; for a tree's port it keeps the text or number.
         is_output: whether it is an output; another rule reports every literal for one.
         is_count: whether it says how often a child runs, and -1 means endless.
+        is_number_of_children: whether it says how many of them must succeed or fail.
     """
 
     port: str
@@ -66,6 +67,7 @@ class _Target(Record):
     converts: bool = True
     is_output: bool = False
     is_count: bool = False
+    is_number_of_children: bool = False
 
 
 def old_entry(view: View) -> Iterator[Diagnostic]:
@@ -128,8 +130,14 @@ def invalid_literal(view: View) -> Iterator[Diagnostic]:
             message = f"the engine reads `{text}` as {problem.reads} and silently drops the rest"
             fixes = _as_quantity(value, target, problem.reads, is_xml=view.is_xml)
             in_unit = (f"`{target.port}` is in ms",) if _is_in_seconds(target, text) else ()
-            if not target.unit and parse_quantity(text.strip()) is not None:
+            if target.is_number_of_children and text.endswith("%"):
+                in_unit = (f"`{target.port}` is a number of children, of which -1 means all",)
+                fixes = (replace_fix("Write `-1` for all children", value.span, "-1"),) * (problem.reads == "100")
+            elif not target.unit and (quantity := parse_quantity(text.strip())) is not None:
                 in_unit = ("write the number in the unit that the node expects",)
+                # In SI units, which ROS has everywhere: another number would be another value.
+                if (quantity[1].factor, quantity[1].offset) == (1.0, 0.0) and problem.reads is not None:
+                    fixes = (replace_fix(f"Write what the engine reads: `{problem.reads}`", value.span, problem.reads),)
             severity = Severity.HINT if _WHOLE.fullmatch(text) else None
             yield Diagnostic(
                 "trailing-text-in-number", value.span, message, notes=in_unit, fixes=fixes, severity=severity
@@ -189,7 +197,12 @@ def _quantity(target: _Target, value: Word, version: str) -> Iterator[Diagnostic
     unit = quantity[1]
     if unit.dimension != port_unit.dimension:
         message = f"expected {a_dimension(port_unit)} for `{target.port}`, found `{value.raw}` ({a_dimension(unit)})"
-        yield Diagnostic("quantity-on-unitless-port", value.span, message)
+        fixes: tuple[Fix, ...] = ()
+        if unit.symbol == "m" and port_unit.symbol in ("ms", "s"):
+            minutes = f"{_plain(quantity[0])} min"
+            message += f"; did you mean `{minutes}`?"
+            fixes = (replace_fix(f"Replace `{value.raw}` with `{minutes}`", value.span, minutes),)
+        yield Diagnostic("quantity-on-unitless-port", value.span, message, fixes=fixes)
         return
     number = convert(quantity[0], unit, port_unit)
     notes = (f"`{target.port}` has the type {target.type} and the unit {target.unit}",)
@@ -233,7 +246,9 @@ def _target(view: View, resolved: ResolvedNode, pair: Pair, value: Word) -> _Tar
     is_count = (
         resolved.kind is not None and resolved.kind.port_for("count") is port and resolved.flow in ("repeat", "retry")
     )
-    return _Target(key, port.literal or port.type, port.unit, converts, port.direction == "output", is_count)
+    is_number_of_children = port.role in ("successes", "failures")
+    type_, is_output = port.literal or port.type, port.direction == "output"
+    return _Target(key, type_, port.unit, converts, is_output, is_count, is_number_of_children)
 
 
 def _accepted(target: _Target, value: Word, version: str) -> tuple[Fix, ...]:
@@ -295,7 +310,7 @@ def _text_below(view: View, tree: Word, port: Word | None, value: Word | None) -
         return None
     if not is_port_name(port.text):
         return None
-    return view.ask(lookups.text_below, tree.text, port.text)
+    return view.ask(lookups.text_below, tree.text, port.text, view.target)
 
 
 def _number_for_text(value: Word, text_port: tuple[Place, str, str], severity: Severity | None) -> Diagnostic:

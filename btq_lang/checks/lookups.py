@@ -12,7 +12,6 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name, model_name_problem
 from btq_lang.catalog.nav2 import FILES, distribution_among
 from btq_lang.catalog.nodes import BUILTINS, lookup
-from btq_lang.cpp.entries import SetEntries, set_entries
 from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.syntax.tree import Apply, Include, Item, Model, Models, Port, Root, Tree, Verbatim, models_in
@@ -84,14 +83,6 @@ def is_defined(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> b
 def is_pooled(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
     """Whether a name is defined in the pool of an XML file."""
     return bool(workspace.pooled(viewpoint, kind, name))
-
-
-@of_name
-def ends_at_once(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
-    """Whether the C++ of a node shows that it never returns RUNNING."""
-    definitions = workspace.scope(viewpoint).all(kind, name)
-    nodes = (workspace.files[definition.path].cpp_nodes.get(name) for definition in definitions)
-    return any(node.at_once for node in nodes if node is not None)
 
 
 @of_name
@@ -182,13 +173,6 @@ def outside_entries(workspace: Workspace, viewpoint: str) -> tuple[OutsideEntry,
 
 
 @of_viewpoint
-def set_in_cpp(workspace: Workspace, viewpoint: str) -> SetEntries:
-    """The entries that C++ with the nodes of a file sets on a blackboard."""
-    files = [workspace.files[path] for path in workspace.scope(viewpoint).node_paths]
-    return set_entries([file.source for file in files if file.is_cpp])
-
-
-@of_viewpoint
 def node_paths(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
     """The files whose models count for a file, and nothing else in them."""
     return workspace.scope(viewpoint).node_paths
@@ -217,19 +201,6 @@ def has_palette(workspace: Workspace, viewpoint: str) -> bool:
 
 
 @of_viewpoint
-def registers_all(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether C++ that a factory names registers all of its nodes, and loads no libraries of others."""
-    factory = workspace.factory
-    if factory is None or factory.nav2 or factory.lost:
-        return False
-    files = [workspace.files[path] for path in factory.cpp_files if path in workspace.files]
-    own_packages = {_package(file.path) for file in files if file.names_of(Kind.MODEL) and not _OF_LIBRARY(file.source)}
-    return bool(own_packages) and not any(
-        _package(file.path) in own_packages and _LOADS_LIBRARIES(file.source) for file in files
-    )
-
-
-@of_viewpoint
 def clashes(workspace: Workspace, viewpoint: str) -> tuple[tuple[Facts, Declaration, Declaration], ...]:
     """The names that an included file and one included before it both define: the include, the definition that counts
     and the other one.  The two files do not see each other, so no check of theirs reports it, except in a factory."""
@@ -252,10 +223,12 @@ def clashes(workspace: Workspace, viewpoint: str) -> tuple[tuple[Facts, Declarat
 
 
 @of_viewpoint
-def text_below(workspace: Workspace, viewpoint: str, tree: str, port: str) -> tuple[Place, str, str] | None:
+def text_below(
+    workspace: Workspace, viewpoint: str, tree: str, port: str, version: str
+) -> tuple[Place, str, str] | None:
     """The first text port to which a port of a tree is assigned in that tree or below: its place, its name, its
     node."""
-    for met in meetings(workspace.scope(viewpoint), workspace.project.target, tree, port):
+    for met in meetings(workspace.scope(viewpoint), version, tree, port):
         if is_text(met.type):
             place = Place(met.pair.key.span, met.tree.path, met.tree.entry.item)
             return place, met.pair.key.text, met.node.head.text
@@ -263,7 +236,9 @@ def text_below(workspace: Workspace, viewpoint: str, tree: str, port: str) -> tu
 
 
 @of_viewpoint
-def types_below(workspace: Workspace, viewpoint: str, tree: str, port: str) -> tuple[tuple[Place, str, str, str], ...]:
+def types_below(
+    workspace: Workspace, viewpoint: str, tree: str, port: str, version: str
+) -> tuple[tuple[Place, str, str, str], ...]:
     """The ports to which a port of a tree is assigned in that tree or below: place, name, node and type of each."""
     return tuple(
         [
@@ -273,7 +248,7 @@ def types_below(workspace: Workspace, viewpoint: str, tree: str, port: str) -> t
                 met.node.head.text,
                 met.type,
             )
-            for met in meetings(workspace.scope(viewpoint), workspace.project.target, tree, port)
+            for met in meetings(workspace.scope(viewpoint), version, tree, port)
         ]
     )
 
@@ -347,16 +322,15 @@ def is_tree_of_mission(workspace: Workspace, viewpoint: str, name: str) -> bool:
 
 
 @of_viewpoint
-def taken_names(workspace: Workspace, viewpoint: str, but: str) -> dict[str, str]:
-    """The names that a tree of the mission cannot have in XML, because other trees or nodes have them, with what has
-    each."""
-    target = workspace.project.target
+def taken_names(workspace: Workspace, viewpoint: str, but: str, version: str) -> dict[str, str]:
+    """The names that a tree of the mission cannot have in XML for a version, because other trees or nodes have them,
+    with what has each."""
     taken = dict.fromkeys(BUILTINS, "a built-in node")
     trees: dict[str, str] = {}
     for path in sorted(workspace.linked(viewpoint)):
         for kind, name in sorted(workspace.files[path].defined_names, key=lambda defined: defined[1]):
             if kind is Kind.TREE and name != but:
-                is_refused = model_name_problem(name, target) is not None
+                is_refused = model_name_problem(name, version) is not None
                 trees[legal_name(name) if is_refused else name] = f"the tree `{name}`"
             elif kind is Kind.MODEL:
                 taken[name] = f"the node `{name}`"
@@ -435,13 +409,6 @@ def main_trees(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
 
 
 @of_viewpoint
-def is_in_cpp(workspace: Workspace, viewpoint: str, name: str) -> bool:
-    """Whether C++ that the project names has a string with this text: its program may create a tree of the name, or
-    replace it."""
-    return any(file.is_cpp and f'"{name}"' in file.source for file in workspace.files.values())
-
-
-@of_viewpoint
 def is_first_registered(workspace: Workspace, viewpoint: str) -> bool:
     """Whether this file is the first one in scope that has trees."""
     paths = workspace.scope(viewpoint).paths
@@ -512,15 +479,9 @@ def has_torn_tree(workspace: Workspace, viewpoint: str) -> bool:
 
 
 @of_viewpoint
-def is_cpp(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether the file is C++, which registers the nodes that it has models of."""
-    return workspace.files[viewpoint].is_cpp
-
-
-@of_viewpoint
 def is_xml(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the file is XML that the engine loads as it is, without a build."""
-    return workspace.files[viewpoint].is_foreign
+    return workspace.files[viewpoint].is_xml
 
 
 @of_viewpoint
@@ -592,14 +553,4 @@ def _distribution(workspace: Workspace, viewpoint: str) -> str | None:
 distribution = of_viewpoint(_distribution)
 
 
-def _package(path: str) -> str:
-    """The folder of a package, in which a C++ source is below `src` or `include`."""
-    return _BELOW.split(path)[0] if _BELOW.search(path) else posixpath.dirname(path)
-
-
-_BELOW = re.compile(r"/(?:src|include)/(?!.*/(?:src|include)/)")
-_OF_LIBRARY = re.compile(r"\bBT_REGISTER_(?:ROS_)?NODES\b").search
-_LOADS_LIBRARIES = re.compile(
-    r"\b(?:registerFrom\w*Plugins?|RegisterPlugins|RegisterRosNode|TreeExecutionServer)\b"
-).search
 _PALETTE = re.compile(r"\s*<\s*TreeNodesModel\b").match

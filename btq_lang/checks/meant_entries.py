@@ -2,7 +2,7 @@
 `@{goal}`, `{ goal }`, `{goal.x}`.
 
 One invariant: a bare word is reported only if its port makes a text unlikely, for a text may equal the name of an
-entry; never a literal of any type, nor the default of its port.
+entry, or in a tree that has all its texts in quotes; never a literal of any type, nor the default of its port.
 Sources: isBlackboardPointer and stripBlackboardPointer in src/tree_node.cpp of 4.6.2 and 4.10.0.
 """
 
@@ -23,7 +23,8 @@ from btq_lang.checks.flow import calls_of
 from btq_lang.checks.pointers import pointed_at
 from btq_lang.checks.view import View, port_of
 from btq_lang.diagnostics.model import Diagnostic, replace_fix, write_fix
-from btq_lang.syntax.tree import Pair, Word
+from btq_lang.diagnostics.rules import Severity
+from btq_lang.syntax.tree import Pair, Tree, Word, port_named, quote
 from btq_lang.util.record import replace
 from btq_lang.workspace.inputs import of_scope
 from btq_lang.workspace.item_index import Facts
@@ -62,6 +63,8 @@ def meant_entry(view: View) -> Iterator[Diagnostic]:
         meant = _bare_entry(view, resolved, pair, value) if text.isidentifier() else entry_in(view, value)
         if meant is not None:
             yield _diagnostic(value, meant)
+        elif port is not None and text.isidentifier() and _is_bare_among_texts(view, resolved, pair, value, port):
+            yield _ambiguous(value)
 
 
 def _of_launch(view: View, seen: ResolvedNode, pair: Pair, value: Word) -> Diagnostic | None:
@@ -131,6 +134,15 @@ def _diagnostic(value: Word, meant: str) -> Diagnostic:
     return Diagnostic("misspelt-entry", value.span, message, fixes=(fix,))
 
 
+def _ambiguous(value: Word) -> Diagnostic:
+    """A bare word that is either."""
+    text, entry = quote(value.text), f"{{{value.text}}}"
+    message = f"`{value.raw}` is a text here, not the entry `{entry}`"
+    notes = (f"write `{entry}` for the entry, `{text}` for the text",)
+    fixes = tuple(replace_fix(f"Write `{meant}`", value.span, meant) for meant in (entry, text))
+    return Diagnostic("misspelt-entry", value.span, message, notes=notes, fixes=fixes, severity=Severity.HINT)
+
+
 def _is_literal_for_output(view: View, port: PortKind, text: str) -> bool:
     """Whether another rule reports the value, as one for an output."""
     return port.direction == "output" and not is_pointer(text) and OUTPUT_IN_BRACES.holds(view.target)
@@ -149,6 +161,27 @@ def _bare_entry(view: View, resolved: ResolvedNode, pair: Pair, value: Word) -> 
     else:
         is_certain = view.ask(_is_likely, view.facts, name, key)
     return f"{{{name}}}" if is_certain else None
+
+
+def _is_bare_among_texts(view: View, resolved: ResolvedNode, pair: Pair, value: Word, port: PortKind) -> bool:
+    """Whether a word without quotes names an entry that is set before, at a port for texts, where all other texts of
+    the tree have quotes."""
+    if view.is_xml or value.quoted or resolved.kind is not None or port.default == value.text:
+        return False
+    if plain_type(port.type) not in _TEXTS or port.direction != "input" or _FOR_NAMES.search(pair.key.text):
+        return False
+    is_declared = isinstance(view.item, Tree) and port_named(view.item.ports, value.text) is not None
+    writers = (mention for mention in _mentions_of(view, value.text) if mention.creates and not mention.reads)
+    if not is_declared and all(mention.span.start > value.start for mention in writers):
+        return False
+    return not any(_is_same_text_or_bare(view, other, value.text) for _, _, other in view.seen.values())
+
+
+def _is_same_text_or_bare(view: View, value: Word, text: str) -> bool:
+    """Whether a value is this text in quotes, or another word without quotes that can only be a text."""
+    if value.quoted:
+        return value.text == text
+    return value.text.isidentifier() and not is_own_value(value.text) and value.text not in _names(view)
 
 
 @of_scope

@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
 
-from btq_lang.checks import lookups
+from btq_lang.checks import cpp_lookups, lookups
 from btq_lang.checks.calls import callers
 from btq_lang.checks.entries import EntryMention, blackboards
 from btq_lang.checks.entries import mentions as mentions_in
@@ -45,7 +45,7 @@ def misspelt_entry(view: View) -> Iterator[Diagnostic]:
     names = dict.fromkeys((*counts, *(port.name.text for port in tree.ports if port.name is not None)))
     if (outside := view.ask(lookups.outside_entries)) and not view.ask(callers, tree.name.text):
         names |= dict.fromkeys(name for name, _ in outside)
-    names_set_in_cpp = view.ask(lookups.set_in_cpp).names
+    names_set_in_cpp = view.ask(cpp_lookups.set_in_cpp).names
     if names_set_in_cpp and not view.ask(callers, tree.name.text):
         names |= dict.fromkeys(sorted(names_set_in_cpp))
     if any(mention.name[:1] == "@" for mention in mentions):
@@ -153,7 +153,7 @@ def _is_meant(store: Store[Workspace], viewpoint: str, tree: str, name: str, mea
         return False
     uses, other_uses = boards.uses_of(tree, name), boards.uses_of(tree, meant)
     is_port = boards.is_port(tree, meant)
-    names_set_in_cpp = store.ask(lookups.set_in_cpp, viewpoint).names
+    names_set_in_cpp = store.ask(cpp_lookups.set_in_cpp, viewpoint).names
     if name.removeprefix("@") in names_set_in_cpp:
         return False
     if not any(use.writes for use in uses):  # read only

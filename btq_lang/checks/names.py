@@ -7,6 +7,7 @@ from typing import Final
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import instance_name_problem, legal_name, model_name_problem, port_name_problem
+from btq_lang.catalog.nodes import lookup
 from btq_lang.catalog.versions import ID_OF_EACH_TREE, UNIQUE_SUBTREES
 from btq_lang.checks import lookups
 from btq_lang.checks.kinds import likely_category
@@ -17,6 +18,7 @@ from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.tree import Include, Model, Models, Tree, Verbatim, Word, is_name, models_in, written
 from btq_lang.util.record import replace
+from btq_lang.util.spelling import did_you_mean
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
 from btq_lang.workspace.resolved import ResolvedNode
@@ -89,6 +91,11 @@ def _of_id(view: View, resolved: ResolvedNode, name: Word, reason: str) -> Itera
         older: tuple[str, ...] = ()
         if _is_prefixed(name.text):
             older = _NO_NAMESPACES
+            bare = name.text.partition(":")[2]
+            if lookup(bare) is not None or view.ask(lookups.is_defined, Kind.MODEL, bare):
+                fix = replace_fix(f"Replace `{name.text}` with `{bare}`", name.span, bare)
+                message = f"{refused.message}{did_you_mean((bare,))}"
+                refused = replace(refused, message=message, fixes=(fix, *refused.fixes))
         elif name.text.casefold() == "root":
             older = ("<BehaviorTree> is the root: put its node directly into it, or several into a <Sequence>",)
         elif resolved.is_defined:  # else no version knows it
@@ -132,7 +139,7 @@ def _tree_name(view: View, name: Word, reason: str, fixes: tuple[Fix, ...]) -> D
         notes = view.pin_note(lambda version: model_name_problem(name.text, version) is None)
         return replace(_refused("tree ID", name, reason), notes=notes)
     legal = legal_name(name.text)
-    owner = view.ask(lookups.taken_names, name.text).get(legal)
+    owner = view.ask(lookups.taken_names, name.text, view.target).get(legal)
     note = f"`btq build` writes it as `{legal}`"
     if owner is not None:
         note = f"`btq build` cannot write it as `{legal}`, which is {owner}"
@@ -152,7 +159,7 @@ def _renamed(view: View, name: Word) -> tuple[Fix, ...]:
     if declaration is None or declaration.owner is not view.facts:
         return ()
     legal = legal_name(name.text)
-    taken_names = view.ask(lookups.taken_names, name.text)
+    taken_names = view.ask(lookups.taken_names, name.text, view.target)
     while legal in taken_names:
         legal += "_"
     places = (declaration.place, *view.ask(lookups.uses_of_tree, name.text))
@@ -191,7 +198,7 @@ def _is_without_content(part: object, what: str) -> bool:
 
 
 _EMPTY: Final = ('""', "''", "{}")
-_TITLE, _REASON = "this title", "this reason"
+_TITLE, _REASON, _VERIFIED = "this title", "this reason", "the ID of the test or report"
 _FOR_PEOPLE: Final = (_TITLE, _REASON)
 # Which fields of the syntax are names or such texts.
 _NAMES: Final[dict[type, dict[str, str]]] = {
@@ -202,7 +209,8 @@ _NAMES: Final[dict[type, dict[str, str]]] = {
     syntax.Because: {"text": _REASON},
     syntax.Source: {"text": "this source"},
     syntax.Approval: {"by": "the name of who approved it"},
-    syntax.Way: {"id": "the ID of the test or report"},
+    syntax.How: {"id": _VERIFIED},
+    syntax.Way: {"id": _VERIFIED},
     syntax.Hazard: {"name": "the hazard's ID", "text": _TITLE},
     syntax.Model: {"name": "the node's ID"},
     syntax.Port: {"type": "the port's type"},

@@ -13,7 +13,7 @@ from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2 import FILES
 from btq_lang.catalog.versions import is_before_4
-from btq_lang.checks import lookups
+from btq_lang.checks import cpp_lookups, lookups
 from btq_lang.checks.pointers import is_on, passed_on
 from btq_lang.checks.ports import adding_fix
 from btq_lang.checks.view import View, port_names
@@ -62,7 +62,7 @@ def _needed_below(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[t
 @hub
 def _needed_in(store: Store[Workspace], viewpoint: str, tree: str) -> _InTree:
     """What the nodes of a tree itself take, and the trees that it runs, each with the entries that it renames."""
-    from btq_lang.catalog.nav2.creation import created_with  # only for Nav2
+    from btq_lang.catalog.nav2.creation import created_by, created_with  # only for Nav2
 
     view = View(store, viewpoint)
     distribution = view.ask(lookups.distribution)
@@ -74,6 +74,10 @@ def _needed_in(store: Store[Workspace], viewpoint: str, tree: str) -> _InTree:
         ports = port_names(view, resolved)
         for entry in created_with(distribution, name, ports):
             needed.setdefault(entry, name)
+    for name in dict.fromkeys(resolved.id.text for resolved in nodes.all if resolved.is_defined and resolved.id):
+        if base := view.ask(cpp_lookups.nav2_base, Kind.MODEL, name):
+            for entry in created_by(distribution, base):
+                needed.setdefault(entry, name)
     is_old = is_before_4(view.target)
     below = [
         (resolved.id.text, tuple(_renamed(resolved, is_old))) for resolved in nodes.subtrees if resolved.id is not None

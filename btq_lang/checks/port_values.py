@@ -174,7 +174,9 @@ def _passed(store: Store[Workspace], viewpoint: str, path: str, tree: Facts) -> 
 
 def count_of_nothing(view: View) -> Iterator[Diagnostic]:
     """A Repeat or a Retry that never runs its child, a Timeout that never ends, a Delay that does not wait."""
-    if view.is_pinned and not view.project.written_for:  # what moves on meets the change itself
+    if (
+        view.is_pinned or view.project.names_all
+    ) and not view.project.original_engines:  # what moves on meets the change
         yield from _delays(view)
     for resolved in view.seen.of_flow("repeat", "retry", "timeout"):
         if resolved.kind is None:
@@ -199,9 +201,12 @@ def _delays(view: View) -> Iterator[Diagnostic]:
     from btq_lang.catalog.engine_changes import NO_DELAY  # few files have a Delay and are for one line
 
     if any(at_least(last_of(line), NO_DELAY.since) and not at_least(line, NO_DELAY.until) for line in view.engines):
+        pin = f'if you run {view.target}, set `engine = "{view.target}"` in btq.toml'
+        notes = (NO_DELAY.instead, *(() if view.is_pinned else (pin,)))
+        severity = None if view.is_pinned else Severity.HINT  # `btq init` names all versions, so nobody may run it
         for resolved in delays:
             message = f"{resolved.shown_kind} {NO_DELAY.what}"
-            yield Diagnostic("count-of-nothing", resolved.node.head.span, message, notes=(NO_DELAY.instead,))
+            yield Diagnostic("count-of-nothing", resolved.node.head.span, message, notes=notes, severity=severity)
 
 
 def _loop(resolved: ResolvedNode, value: Word, number: float) -> Diagnostic:

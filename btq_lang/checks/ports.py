@@ -1,57 +1,42 @@
-"""Ports and attributes: unknown, missing, given twice, or silently ignored by the engine."""
+"""Ports: unknown, missing, declared twice, or with a type that is misspelt."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from functools import cache
-from itertools import chain
 
-from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.foreign_names import NAME, of_other_engines
 from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.names import is_port_name, port_name_problem
+from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.nav2 import ports_of
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS, PortKind
 from btq_lang.catalog.units import Unit, convert, dimension_name, parse_unit
-from btq_lang.catalog.versions import ID_IN_COMPACT_FORM, PORTS_OF_SUBTREE, UNDERSCORES, is_before_4
+from btq_lang.catalog.versions import ID_IN_COMPACT_FORM
 from btq_lang.checks import lookups
+from btq_lang.checks.attributes import NAMES_OF_NODES, attribute_meant, may_remap_all
 from btq_lang.checks.entries import handling
 from btq_lang.checks.kinds import model_related, way_in
+from btq_lang.checks.known_ports import KnownPorts, is_case, known_ports, throwing
 from btq_lang.checks.own_nodes import OWN, WHY, may_be_own
-from btq_lang.checks.pointers import pointed_at, remaps_all
-from btq_lang.checks.view import View, ports_beside
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related, replace_fix, write_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tokens import NUMBER, QUANTITY
-from btq_lang.syntax.tree import Include, Meta, Node, Pair, Port, Root, Tree, Word, models_in, quote, written
-from btq_lang.util.record import replace
+from btq_lang.syntax.tree import Model, Node, Verbatim, Word, quote, written
 from btq_lang.util.spelling import did_you_mean, distance, near
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
-from btq_lang.workspace.port_types import as_kind
-from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode
-from btq_lang.workspace.workspace import Workspace
 
-_OWN = frozenset(("ID", "name"))
 _ASSIGNABLE = re.compile(r"-?[0-9.]+|true|false|\{@?\w+\}")
-_REFERRED = re.compile('[<&"]')
-# Attributes that people miss, in small letters, and whether `_skipIf` says the opposite.
-_WISHED = {
-    **dict.fromkeys(
-        ("_onlyif", "_runif", "_executeif", "_tickif", "_doif", "_if", "_when", "_enableif", "_enabledif"), True
-    ),
-    **dict.fromkeys(("_unless", "_notif", "_ignoreif", "_disableif", "_disabledif"), False),
-}
 
 
 def unknown_port(view: View) -> Iterator[Diagnostic]:
     """A port that the built-in, the model or the tree of a SubTree does not have."""
     for resolved in view.seen.given:
         yield from _forbidden_id(resolved) if ID_IN_COMPACT_FORM.holds(view.target) else ()
-        ports = _ports(view, resolved)
+        ports = known_ports(view, resolved)
         if (
             ports is None
             or not (unknown_keys := _unknown_keys(view, resolved, ports))
@@ -66,6 +51,8 @@ def unknown_port(view: View) -> Iterator[Diagnostic]:
         for key, likely in unknown_keys.items():
             if key.text in (of_nav2 or ()):
                 continue  # the model may be one of another program, or a short one
+            if _is_in_ignored_element(view, resolved, key.text):
+                continue  # which elements.py reports
             # The engine takes any port of a SubTree, a model without ports is often an unfinished one, and a program
             # may register another node than the one that another file of the project declares.
             harmless = (resolved.is_subtree and not required.intersection(likely)) or not (all_ports or resolved.kind)
@@ -92,10 +79,19 @@ def unknown_port(view: View) -> Iterator[Diagnostic]:
                 break  # all of the model's ports are missing
 
 
+def _is_in_ignored_element(view: View, resolved: ResolvedNode, key: str) -> bool:
+    """Whether the model of a node in XML has a port in an element of another name: `<input name="key"/>`."""
+    name = resolved.id.text if resolved.is_defined and resolved.id is not None else ""
+    model = view.ask(lookups.meaning, Kind.MODEL, name) if name else None
+    body = model.target.body if model is not None and isinstance(model.target, Model) else ()
+    texts = [part.text.text for part in body if isinstance(part, Verbatim) and part.text is not None]
+    return any(f'name="{key}"' in text for text in texts)
+
+
 def missing_port(view: View) -> Iterator[Diagnostic]:
     """A port without a value: one the engine requires, or an input without default of a model."""
     for resolved in view.nodes:
-        ports = _ports(view, resolved)
+        ports = known_ports(view, resolved)
         if ports is None or not ports.required:
             continue
         keys = {pair.key.text for pair in resolved.node.attributes}
@@ -104,7 +100,7 @@ def missing_port(view: View) -> Iterator[Diagnostic]:
         missing = _needed(view, resolved, [port for port in ports.required if port.name not in keys])
         if (
             not missing
-            or (resolved.is_subtree and _remaps_all(resolved))
+            or (resolved.is_subtree and may_remap_all(resolved))
             or view.is_torn(resolved.node.start, resolved.node.end)
         ):
             continue  # a value may be on a line that could not be read
@@ -119,7 +115,7 @@ def missing_port(view: View) -> Iterator[Diagnostic]:
         names = " and ".join(f"`{port.name}`" for port in missing)
         as_value, to_port = _label_as_value(view, resolved, missing)
         is_own = may_be_own(view, resolved, ports.names)
-        is_severe = not is_own and bool(resolved.kind or resolved.is_subtree or _throwing(resolved))
+        is_severe = not is_own and bool(resolved.kind or resolved.is_subtree or throwing(resolved))
         yield Diagnostic(
             "missing-port",
             resolved.node.head.span,
@@ -140,106 +136,6 @@ def missing_port(view: View) -> Iterator[Diagnostic]:
             # Only the robot's program knows whether it requires an input, except for the nodes of Nav2.
             severity=None if is_severe else Severity.WARNING,
         )
-
-
-def unknown_attribute(view: View) -> Iterator[Diagnostic]:
-    """`_skipif`: neither a port nor anything the engine reads, which it does not report."""
-    if isinstance(view.item, Tree):
-        for pair in view.item.attributes:
-            kind = RESERVED_ATTRIBUTES.get(pair.key.text)
-            if kind is not None and kind.is_script:
-                message = f"`{pair.key.text}` has no effect on a BehaviorTree: move it to the tree's node"
-                yield Diagnostic("unknown-attribute", pair.key.span, message)
-    for resolved in view.seen.given:
-        for pair in resolved.node.attributes:
-            key = pair.key.text
-            if is_port_name(key) or key in _OWN:
-                meant = _ATTRIBUTES.get(_plain(key)) if UNDERSCORES.holds(view.target) else None
-                if meant is not None and _ports(view, resolved) is None:
-                    yield from _without_underscore(resolved, pair.key, meant)
-                continue
-            if not UNDERSCORES.holds(view.target):
-                if resolved.category != "SubTree" and key != "_description":
-                    message = f"{view.target} takes `{key}` for a port, and refuses {resolved.shown_kind}"
-                    yield Diagnostic("unknown-attribute", pair.key.span, message, severity=Severity.ERROR)
-                continue
-            if key in _KEPT:
-                continue
-            if resolved.is_subtree and key[:1] != "_":
-                yield from _dropped(view, resolved, pair)
-                continue
-            if key.casefold() in _WISHED and pair.value is not None:
-                yield _wished(view, pair, pair.value)
-                continue
-            likely = (_OF_TODAY[key],) if key in _OF_TODAY else near(key, _KEPT)
-            if not likely:
-                kept = "from 4.7 on the engine keeps it for the node's own code"
-                refused = f"{view.target} reads it as a port, and refuses a node without a port of that name"
-                is_port = is_port_name(key, view.target)
-                note, severity = (refused, Severity.WARNING) if is_port else (kept, Severity.HINT)
-                message = f"the engine does not read `{key}`"
-                yield Diagnostic("unknown-attribute", pair.key.span, message, notes=(note,), severity=severity)
-            elif not (key in _OF_TODAY and _is_off(pair.value)):
-                fixes = tuple(replace_fix(f"Replace `{key}` with `{name}`", pair.key.span, name) for name in likely)
-                message = f"the engine silently ignores `{key}`{did_you_mean(likely)}"
-                yield Diagnostic("unknown-attribute", pair.key.span, message, fixes=fixes)
-
-
-def _dropped(view: View, seen: ResolvedNode, pair: Pair) -> Iterator[Diagnostic]:
-    """An argument of a SubTree that does not reach its tree, because of its name."""
-    key = pair.key.text
-    is_same = pair.value is not None and pointed_at(key, pair.value.text) == key
-    if is_port_name(key, view.target) or (is_same and remaps_all(seen)):
-        return
-    reason = port_name_problem(key, view.target) or "it does not begin with a letter"
-    notes = (
-        "rename it here and in its tree",
-        *(("releases before 4.8.4 pass it on",) if is_port_name(key, "4.6") else ()),
-    )
-    message = f"the engine drops the argument `{key}` because of its name: {reason}"
-    yield Diagnostic("unknown-attribute", pair.key.span, message, notes=tuple(notes))
-
-
-def _wished(view: View, pair: Pair, value: Word) -> Diagnostic:
-    """An attribute that no version has, with the one that does what it says."""
-    key, is_negated = pair.key.text, _WISHED[pair.key.text.casefold()]
-    script = f"!({value.text})" if is_negated else value.text
-    changes = [FixEdit(Place(pair.key.span), "_skipIf")]
-    inner = Span(value.start + 1, value.end - 1)
-    if is_negated and not value.quoted:
-        changes.append(FixEdit(Place(value.span), written(script)))
-    elif is_negated and _REFERRED.search(value.text[1:-1]):  # XML spells it in pieces: change the first and the last
-        changes.append(FixEdit(Place(Span(inner.start, inner.start + 1)), f"!({value.text[0]}"))
-        changes.append(FixEdit(Place(Span(inner.end - 1, inner.end)), f"{value.text[-1]})"))
-    elif is_negated:
-        changes.append(FixEdit(Place(inner), script))
-    fix = Fix(f'Write `_skipIf="{script}"`', tuple(changes))
-    message = f"no version of the engine has `{key}`, and it ignores it silently; did you mean `_skipIf`?"
-    return Diagnostic("unknown-attribute", pair.key.span, message, notes=(f'write `_skipIf="{script}"`',), fixes=(fix,))
-
-
-def _without_underscore(resolved: ResolvedNode, key: Word, meant: str) -> Iterator[Diagnostic]:
-    """`skipIf` on a node whose ports are unknown; elsewhere it is an unknown port."""
-    if key.text.islower() and "_" not in key.text and not resolved.is_subtree:
-        return  # `while` and `post` may be ports
-    message = f"the engine takes `{key.text}` for a port; did you mean `{meant}`?"
-    fix = replace_fix(f"Replace `{key.text}` with `{meant}`", key.span, meant)
-    yield Diagnostic("unknown-attribute", key.span, message, fixes=(fix,))
-
-
-def duplicate_attribute(view: View) -> Iterator[Diagnostic]:
-    """Two values for one attribute: the first counts."""
-    for pairs, before_brackets in _attribute_lists(view):
-        keys = {pair.key.text for pair in pairs}
-        if len(keys) == len(pairs) and keys.isdisjoint(before_brackets):
-            continue
-        first: dict[str, Word | Pair] = {key: word for key, word in before_brackets.items() if word is not None}
-        for pair in pairs:
-            key = pair.key.text
-            if key in first:
-                related = (Related(Place(first[key].span), "first value, which takes effect"),)
-                yield Diagnostic("duplicate-attribute", pair.key.span, f"duplicate value for `{key}`", related=related)
-            first.setdefault(key, pair)
 
 
 def duplicate_port(view: View) -> Iterator[Diagnostic]:
@@ -271,56 +167,6 @@ def misspelt_type(view: View) -> Iterator[Diagnostic]:
             yield Diagnostic("misspelt-type", port.type.span, message, fixes=(fix,))
 
 
-def first_port(view: View, resolved: ResolvedNode) -> PortKind | None:
-    """The likely port of a value without a name: the first that needs a value, or else the first."""
-    ports = _ports(view, resolved)
-    return next(iter((*ports.required, *ports.all)), None) if ports is not None else None
-
-
-def is_case(resolved: ResolvedNode, key: str) -> bool:
-    """Whether an attribute is a case of a Switch; which ones exist depends on the number of its children."""
-    return resolved.flow == "switch" and key.startswith("case_") and key[5:].isdecimal()
-
-
-class KnownPorts:
-    """The ports of a node: their names and those that need a value."""
-
-    __slots__ = ("all", "names", "required")
-
-    def __init__(self, ports: tuple[PortKind, ...]) -> None:
-        self.all = ports
-        self.names = frozenset([port.name for port in ports])
-        self.required = tuple([port for port in ports if port.required])
-
-    def named(self, name: str) -> PortKind | None:
-        return next((port for port in self.all if port.name == name), None)
-
-
-def _ports(view: View, resolved: ResolvedNode) -> KnownPorts | None:
-    """The ports of a node; None if unknown."""
-    if resolved.is_placeholder or (resolved.is_subtree and not PORTS_OF_SUBTREE.holds(view.target)):
-        return None
-    if resolved.is_subtree:
-        # The engine reads `default = ""` as none, requires outputs too, and adds up the models of a tree.
-        name = resolved.id
-        others = view.ask(lookups.ports_of_models, Kind.MODEL, name.text) if name is not None else ()
-        declared = {port.id.text: port for port in chain(ports_beside(view, resolved), *others) if port.id is not None}
-        ports = [replace(port, required=not port.default) for port in map(as_kind, declared.values())]
-        return KnownPorts(tuple(ports)) if ports else None
-    if resolved.kind is not None:
-        return _builtin_ports(resolved.kind.tag, is_before_4(view.target))
-    model_ports = view.ask(_model_ports, resolved.id.text) if resolved.is_defined and resolved.id is not None else None
-    if model_ports is None or not (throws := _throwing(resolved)):
-        return model_ports
-    return KnownPorts(tuple([replace(port, required=port.required or port.name in throws) for port in model_ports.all]))
-
-
-def _throwing(resolved: ResolvedNode) -> tuple[str, ...]:
-    """The ports without which a node of Nav2 throws."""
-    behavior = resolved.behavior if resolved.kind is None else None
-    return tuple([port.name for port in behavior.ports if port.required]) if behavior is not None else ()
-
-
 def _may_have_more(view: View, resolved: ResolvedNode) -> bool:
     """Whether a port may be declared on a line that could not be read."""
     name = resolved.id
@@ -328,17 +174,6 @@ def _may_have_more(view: View, resolved: ResolvedNode) -> bool:
         return False
     kinds = (Kind.TREE, Kind.MODEL) if resolved.is_subtree else (Kind.MODEL,)
     return any(view.ask(lookups.is_torn, kind, name.text) for kind in kinds)
-
-
-def _model_ports(store: Store[Workspace], viewpoint: str, name: str) -> KnownPorts | None:
-    """The ports of a node with a model.  Of several models a port of any counts, and is required if all require it."""
-    models = [[*map(as_kind, ports)] for ports in store.ask(lookups.ports_of_models, viewpoint, Kind.MODEL, name)]
-    needed = [{port.name for port in ports if port.required} for ports in models]
-    first: dict[str, PortKind] = {}
-    for port in chain(*models):
-        first.setdefault(port.name, port)
-    ports = [replace(port, required=all(port.name in names for names in needed)) for port in first.values()]
-    return KnownPorts(tuple(ports))
 
 
 def _of_version_3(view: View, resolved: ResolvedNode, key: str) -> tuple[str, ...]:
@@ -352,16 +187,11 @@ def _of_model_in_xml(view: View, resolved: ResolvedNode) -> str:
     """The end of a message about a port of a node whose only model is in XML: the model may be out of date."""
     name = resolved.id if resolved.is_defined and not (resolved.kind or resolved.is_subtree) else None
     declaration = view.ask(lookups.declaration, Kind.MODEL, name.text) if name is not None else None
-    if name is None or declaration is None or not _is_xml(view, declaration.path):
+    if name is None or declaration is None or not view.store.ask(lookups.is_xml, declaration.path):
         return ""
     if view.ask(lookups.is_repeated, Kind.MODEL, name.text):
         return ""
     return f": its model in {view.project.shown(declaration.path)} lacks it"
-
-
-def _is_xml(view: View, path: str) -> bool:
-    """Whether a file is XML, and not C++ that registers nodes."""
-    return view.store.ask(lookups.is_xml, path) and not view.store.ask(lookups.is_cpp, path)
 
 
 def _is_of_pool(view: View, resolved: ResolvedNode) -> bool:
@@ -386,18 +216,11 @@ def _needed(view: View, resolved: ResolvedNode, missing: list[PortKind]) -> list
     definition = view.ask(inputs.definition, Kind.MODEL, name)
     if definition is None:
         return []
-    if not _is_xml(view, definition[0]):
+    if not view.store.ask(lookups.is_xml, definition[0]):
         return missing
     _, used, uses = view.ask(lookups.custom_node, name)
     used_names = {port.name for port in used}
     return missing if uses == 1 else [port for port in missing if port.name in used_names]
-
-
-@cache
-def _builtin_ports(tag: str, has_old_names: bool) -> KnownPorts:
-    old = {today: name for (owner, name), today in OLD_PORTS.items() if owner == tag and has_old_names}
-    named = [replace(port, name=old.get(port.name, port.name)) for port in BUILTINS[tag].ports]
-    return KnownPorts(tuple([replace(port, doc=f"{port.doc[0].lower()}{port.doc[1:]}") for port in named]))
 
 
 def _is_used_in(view: View, tree: str, entry: str) -> bool:
@@ -416,12 +239,12 @@ def _unknown_keys(view: View, resolved: ResolvedNode, ports: KnownPorts) -> dict
     unknown: dict[Word, tuple[str, ...]] = {}
     for pair in resolved.node.attributes:
         key = pair.key.text
-        if key in names or key in _OWN or not is_port_name(key) or is_case(resolved, key):
+        if key in names or key in NAMES_OF_NODES or not is_port_name(key) or is_case(resolved, key):
             continue
         if resolved.is_subtree and resolved.id is not None and _is_used_in(view, resolved.id.text, key):
             continue  # the tree gets the entry, whatever its model declares
         old = OLD_PORTS.get((resolved.kind.tag, key)) if resolved.kind else None
-        old = old or (_ATTRIBUTES.get(_plain(key)) if UNDERSCORES.holds(view.target) else None)
+        old = old or attribute_meant(key, view.target)
         likely = near(key, (port.name for port in free)) if len(unknown) * len(free) < _MOST_COMPARED else ()
         unknown[pair.key] = (old,) if old else likely
     strange = [key for key, likely in unknown.items() if not likely]
@@ -491,10 +314,6 @@ def _assigned(
     return (shown,), (Fix(f"Write `{shown}`", changes),)
 
 
-def _plain(key: str) -> str:
-    return key.replace("_", "").casefold()
-
-
 def _forbidden_id(resolved: ResolvedNode) -> Iterator[Diagnostic]:
     """`-> (ID = x)`: the engine accepts an ID in the explicit form only."""
     node = resolved.node
@@ -506,16 +325,6 @@ def _forbidden_id(resolved: ResolvedNode) -> Iterator[Diagnostic]:
             fix = replace_fix("Replace `ID` with `name`", pair.key.span, "name")
             fixes, notes = ((), ()) if node.name is not None else ((fix,), (NAME,))
             yield Diagnostic("unknown-port", pair.key.span, message, notes=notes, fixes=fixes)
-
-
-def _remaps_all(resolved: ResolvedNode) -> bool:
-    """Whether a SubTree gets every entry under its own name, or has an attribute of version 3 that means it."""
-    values = [resolved.node.attribute(key) for key in ("_autoremap", *_OF_TODAY)]
-    return any(value is not None and not _is_off(value) for value in values)
-
-
-def _is_off(value: Word | None) -> bool:
-    return value is not None and value.text in ("false", "False", "FALSE", "0")
 
 
 def _declared(view: View, resolved: ResolvedNode) -> tuple[Related, ...]:
@@ -561,36 +370,6 @@ def adding_fix(view: View, node: Node, title: str, pairs: str) -> tuple[Fix, ...
     return () if behind.startswith("(") else (replace_fix(title, Span(end, end), f" ({pairs})"),)
 
 
-def _attribute_lists(view: View) -> Iterator[tuple[tuple[Pair, ...], dict[str, Word | None]]]:
-    """Every list of attributes in an item, with the attributes that are written before the brackets."""
-    item = view.item
-    if isinstance(item, Tree):
-        yield item.attributes, {"ID": item.name}
-        for port in item.ports:
-            if port.attributes:
-                yield port.attributes, _before_brackets(port)
-        for resolved in view.seen.given:
-            node = resolved.node
-            if len(node.attributes) > 1 or node.label is not None or node.category is not None:
-                yield node.attributes, {"name": node.label, "ID": node.kind if node.category else None}
-    elif isinstance(item, Include):
-        yield item.attributes, {"path": item.path}
-    elif isinstance(item, Root):
-        yield item.attributes, {"main_tree_to_execute": item.name}
-    for model in models_in(item):
-        if model.attributes:
-            yield model.attributes, {"ID": model.name}
-        for part in model.body:
-            if isinstance(part, Port) and part.attributes:
-                yield part.attributes, _before_brackets(part)
-            elif isinstance(part, Meta):
-                yield part.attributes, {}
-
-
-def _before_brackets(port: Port) -> dict[str, Word | None]:
-    return {"name": port.name, "type": port.type, "default": port.default}
-
-
 _DECLARED = "ports declared here"
 _TYPES = (
     "string",
@@ -609,9 +388,4 @@ _TYPES = (
 # For a node with hundreds of ports and as many mistakes suggestions are of no use.
 _MOST_COMPARED = 2_000
 
-# Version 3's attributes of a SubTree, and their successors.
-_OF_TODAY = {"__shared_blackboard": "_autoremap", "__autoremap": "_autoremap"}
-_KEPT = frozenset(RESERVED_ATTRIBUTES) - frozenset(_OF_TODAY)
-# The attributes that the engine reads, as one writes them who forgets the `_`.
-_ATTRIBUTES = {_plain(name): name for name in _KEPT if RESERVED_ATTRIBUTES[name].group != "tool"}
 _WORDS_IN_KEY = re.compile(r"[A-Z]?[a-z]+")

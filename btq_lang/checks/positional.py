@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from typing import Final
 
 from btq_lang.catalog.nodes import PortKind, lookup
-from btq_lang.checks.ports import first_port
+from btq_lang.checks.known_ports import first_port
 from btq_lang.checks.scripts import is_script
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, write_fix

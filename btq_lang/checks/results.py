@@ -14,7 +14,7 @@ from typing import Final
 from btq_lang.catalog.kinds import NodeKind
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import lookup
-from btq_lang.checks import lookups
+from btq_lang.checks import cpp_lookups
 from btq_lang.checks.statuses import ANYTHING, FAILURE, RUNNING, SKIPPED, SUCCESS, of_kind
 from btq_lang.checks.view import View
 from btq_lang.syntax.tree import Node, Tree
@@ -70,7 +70,7 @@ def _is_filled_in(view: View, name: str, tree: Tree) -> bool:
     """Whether a tree does nothing because the program replaces it: its name is like `__BringUp__`, or C++ of the
     project has that name."""
     is_stub = len(tree.children) < 2 and all(isinstance(child, Node) and _succeeds(child) for child in tree.children)
-    return is_stub and (_TEMPLATE(name) is not None or view.ask(lookups.is_in_cpp, name))
+    return is_stub and (_TEMPLATE(name) is not None or view.ask(cpp_lookups.is_in_cpp, name))
 
 
 def _succeeds(node: Node) -> bool:
@@ -101,7 +101,7 @@ def _of_node(view: View, resolved: ResolvedNode, by_node: dict[int, Results]) ->
             if resolved.id is not None and resolved.is_defined and resolved.stated_category == "Action"
             else None
         )
-        at_once = name is not None and view.ask(lookups.ends_at_once, Kind.MODEL, name)
+        at_once = name is not None and view.ask(cpp_lookups.ends_at_once, Kind.MODEL, name)
         possible = _AT_ONCE if at_once else _CUSTOM.get(resolved.stated_category or "", _UNKNOWN_LEAF)
     added = 0
     for pair in resolved.node.attributes:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.verbs import words
+from btq_lang.checks import lookups
 from btq_lang.checks.demanded import Demanded, Guard, PlacedDiagnostic, diagnostic_at
 from btq_lang.checks.view import View, port_of
 from btq_lang.checks.writers import all_entries, isolated, written_keys
@@ -60,28 +61,35 @@ def _never_written(
     view: View, own_signals: list[ResolvedSignal], guards: Sequence[Guard]
 ) -> Iterator[PlacedDiagnostic]:
     """A signal whose blackboard entry no port and no script of the mission writes, if another entry has nearly the same
-    name, or if a guard reads it.  The latter is a hint, as the robot's program may write the entry.  A guard reads the
-    root blackboard: an entry in a tree's own blackboard is another one."""
+    name, or if a guard reads it.  The latter is a hint, as the robot's program may write the entry.  A signal reads the
+    root blackboard: an entry in a tree's own blackboard is another one; without a guard that is a hint, for what a log
+    has under the entry's name may come from elsewhere."""
     if not view.ask(has_nodes) or not view.ask(inputs.is_complete) or not view.is_read:
         return
     if view.ask(inputs.is_included):
         return  # it may be written in the files that include this one
     keys = view.ask(written_keys)
-    writes = [write for of_tree in view.ask(all_entries) for write in of_tree.writes] if guards else []
+    entries = view.ask(all_entries)
+    writes = [write for of_tree in entries for write in of_tree.writes]
+    is_closed = not any(of_tree.is_open for of_tree in entries)
+    sure = {node for of_tree in entries for node, _ in of_tree.sure} if is_closed else set()
     guarding = {signal.name for signals, *_ in guards for signal in signals}
     related: tuple[Related, ...]
     for signal in own_signals:
         key = signal.entry
-        if key in keys and signal.name in guarding and (writer := isolated(view, writes, key)) is not None:
+        is_guarding = signal.name in guarding
+        writer = isolated(view, writes, key) if key in keys else None
+        if writer is not None and (is_guarding or (writer in sure and view.ask(lookups.is_asked_for, signal.name))):
             message = f"`{signal.name}` reads the root's `{key}`, but the tree `{writer.tree}` writes its own `{key}`"
             notes = (f"write `{{@{key}}}`, or pass the entry on to the tree: `{key} = {{{key}}}`",)
             related = (Related(writer.place, "written here"),)
-            yield diagnostic_at(signal.place, "signal-never-written", message, related, notes)
+            severity = None if is_guarding else Severity.HINT
+            yield diagnostic_at(signal.place, "signal-never-written", message, related, notes, severity=severity)
             continue
         if key in keys:
             continue
         likely = view.ask(_near_keys, key)
-        if not (likely or signal.name in guarding):
+        if not (likely or is_guarding):
             continue
         message = f"no port and no script writes `{key}`, the entry of `{signal.name}`"
         notes = (f"did you mean `{likely[0]}`?" if likely else "ignore this if the robot's program writes it",)

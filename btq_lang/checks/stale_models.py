@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.checks import lookups
+from btq_lang.checks import cpp_lookups, lookups
 from btq_lang.checks.clauses import with_blanks
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
@@ -18,7 +18,7 @@ def stale_model(view: View) -> Iterator[Diagnostic]:
     """A model with another category than in C++, or with a port that the C++ lacks or declares differently."""
     for symbol, other, _ in view.repeated(Kind.MODEL):
         model, of_code = symbol.target, other.symbol.target
-        is_cpp = view.store.ask(lookups.is_cpp, other.path)
+        is_cpp = view.store.ask(cpp_lookups.is_cpp, other.path)
         if not (is_cpp and isinstance(model, Model) and isinstance(of_code, Model)):
             continue
         node = f"`{symbol.name}`"

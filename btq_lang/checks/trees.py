@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.catalog.versions import DEEP_TREES
-from btq_lang.checks import calls, lookups
+from btq_lang.checks import calls, cpp_lookups, lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.lookups import VisibleMeaning
 from btq_lang.checks.misplaced_children import indent_below_fixes, wrap_in_sequence_fixes
@@ -170,7 +170,7 @@ def unknown_main_tree(view: View) -> Iterator[Diagnostic]:
     way = '`main_tree_to_execute="…"` of <root>' if view.is_xml else "a line `Root <tree>`"
     message = f"ambiguous main tree: no other tree refers to {names}"
     notes: tuple[str, ...] = (f"name the main tree with {way}",)
-    created = [name for name in tops if name in view.project.created or view.ask(lookups.is_in_cpp, name)]
+    created = [name for name in tops if name in view.project.created or view.ask(cpp_lookups.is_in_cpp, name)]
     if len(created) == 1:
         return
     if created:

@@ -1,4 +1,4 @@
-"""Numbers that SubTrees of XML give to ports of other types of numbers.
+"""Numbers that SubTrees of XML give to ports of other types of numbers, or that are defaults of these ports.
 
 One invariant: only known types are compared; `btq build` spells numbers as the nodes below read them, so only XML has
 such ones.  Source: instantiateTreeFromXML in src/xml_parsing.cpp of 4.9.1 and 4.10.0.
@@ -14,10 +14,11 @@ from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.versions import TYPED_CONSTANTS
 from btq_lang.checks import lookups
+from btq_lang.checks.pointers import remaps_all
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Word, written
+from btq_lang.syntax.tree import Model, Word, written
 from btq_lang.workspace.port_types import is_text
 
 
@@ -27,16 +28,41 @@ def number_of_another_type(view: View) -> Iterator[Diagnostic]:
         return
     for seen in view.seen.subtrees:
         for pair in seen.node.attributes if seen.id is not None else ():
-            number = pair.value.text if pair.value is not None else ""
-            if seen.id is None or pair.value is None or not _NUMBER(number) or not is_port_name(pair.key.text):
-                continue
-            met = view.ask(lookups.types_below, seen.id.text, pair.key.text)
-            if any(is_text(plain_type(type_)) for *_, type_ in met):
-                continue  # which number-for-text reports
-            others = [each for each in met if is_known_type(plain_type(each[3]))]
-            others = [each for each in others if plain_type(each[3]) != _type(number)]
-            if others:
-                yield _diagnostic(view, pair.value, others[0], {plain_type(type_) for *_, type_ in met})
+            if seen.id is not None and pair.value is not None:
+                yield from _refused(view, seen.id.text, pair.key.text, pair.value)
+
+
+def default_of_another_type(view: View) -> Iterator[Diagnostic]:
+    """A number that is the default of a port in the model of a tree, as above, if a SubTree gives the port no value."""
+    if not view.is_xml or not TYPED_CONSTANTS.holds(view.target):
+        return
+    for owner in view.owners:
+        if owner.name is None or not isinstance(owner, Model) or owner.category.raw != "SubTree":
+            continue
+        for port in owner.ports:
+            if port.id is not None and port.initial is not None:
+                refused = tuple(_refused(view, owner.name.text, port.id.text, port.initial))
+                yield from refused if refused and _is_left_out(view, owner.name.text, port.id.text) else ()
+
+
+def _is_left_out(view: View, tree: str, port: str) -> bool:
+    from btq_lang.requirements.nodes import callers  # few files have such a default
+
+    runs = callers(view.store, view.path, tree)
+    return any(resolved.node.attribute(port) is None and not remaps_all(resolved) for resolved in runs)
+
+
+def _refused(view: View, tree: str, port: str, value: Word) -> Iterator[Diagnostic]:
+    """The diagnostic if the value of a port of a tree is a number of another type than a node below expects."""
+    if not _NUMBER(value.text) or not is_port_name(port):
+        return
+    met = view.ask(lookups.types_below, tree, port, view.target)
+    if any(is_text(plain_type(type_)) for *_, type_ in met):
+        return  # which number-for-text reports
+    others = [each for each in met if is_known_type(plain_type(each[3]))]
+    others = [each for each in others if plain_type(each[3]) != _type(value.text)]
+    if others:
+        yield _diagnostic(view, value, others[0], {plain_type(type_) for *_, type_ in met})
 
 
 def _diagnostic(view: View, value: Word, other: tuple[Place, str, str, str], types: set[str]) -> Diagnostic:

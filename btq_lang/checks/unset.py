@@ -13,8 +13,8 @@ from itertools import chain
 
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.checks import lookups
-from btq_lang.checks.calls import callers, is_missed
+from btq_lang.checks import cpp_lookups, lookups
+from btq_lang.checks.calls import callers, has_gaps, is_missed
 from btq_lang.checks.entries import EntryMention, call_of, handling
 from btq_lang.checks.entries import mentions as mentions_in
 from btq_lang.checks.flow import EntryUse, below, calls_of, of_program, uses, writes_alone
@@ -81,7 +81,7 @@ def _uncreated(view: View, tree: str, mentions: Sequence[EntryMention], excluded
             continue
         if use & EntryUse.OUTSIDE and by_name[name][0] is not mention:
             continue  # programs set what scripts read first
-        set_in_cpp = view.ask(lookups.set_in_cpp)
+        set_in_cpp = view.ask(cpp_lookups.set_in_cpp)
         is_in_cpp = name.removeprefix("@") in set_in_cpp.names
         if is_in_cpp and use & EntryUse.OUTSIDE:
             continue
@@ -154,7 +154,7 @@ def _unset(view: View, tree: str, mentions: Sequence[EntryMention], excluded: se
                 outside.append(mention)
         elif not use & EntryUse.STRANGE and view.ask(_needs, tree, name):
             yield _not_given(view, tree, mention)
-    set_in_cpp = view.ask(lookups.set_in_cpp).names
+    set_in_cpp = view.ask(cpp_lookups.set_in_cpp).names
     outside = [
         mention for mention in outside if mention.name not in set_in_cpp and view.ask(_needs, tree, mention.name)
     ]
@@ -198,10 +198,15 @@ def _not_given(view: View, tree: str, mention: EntryMention) -> Diagnostic:
 
 
 def _runs_without(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> tuple[Related, ...]:
-    """The first tree that runs one without an entry."""
+    """The first SubTree that runs a tree without an entry, with what to write there."""
     view = View(store, viewpoint)
-    caller = next((caller for caller, call in calls_of(view, tree) if call.passed(name) is None), None)
-    return view.declared_at(Kind.TREE, caller, f"runs `{tree}`") if caller is not None else ()
+    for caller in view.ask(callers, tree):
+        for resolved in view.nodes_of(caller).subtrees:
+            call = call_of(view, resolved)
+            if call is not None and call.tree == tree and call.passed(name) is None:
+                value = f'{name}="{{…}}"' if view.is_xml else f"{written(name)} = {{…}}"
+                return (Related(resolved.place, f"write `{value}` at this SubTree"),)
+    return ()
 
 
 def _not_passed(view: View) -> Iterator[Diagnostic]:
@@ -227,7 +232,7 @@ def _is_expected(store: Store[Workspace], viewpoint: str, tree: str, name: str) 
     use = view.ask(below, tree).use_of(name)
     if not name.isidentifier() or use & (EntryUse.WRITTEN | EntryUse.OPEN | EntryUse.STRANGE):
         return False
-    if port_named(declared_ports(view, tree), name) is not None or name in view.ask(lookups.set_in_cpp).names:
+    if port_named(declared_ports(view, tree), name) is not None or name in view.ask(cpp_lookups.set_in_cpp).names:
         return False
     return bool(view.ask(_passing, tree, name)) and view.ask(_needs, tree, name)
 
@@ -376,6 +381,8 @@ def _is_known_root(view: View, tree: str) -> bool:
     mains = view.ask(lookups.main_trees) or ((view.main_tree,) if view.main_tree is not None else ())
     if not mains or view.ask(is_missed, tree):
         return False
+    if tree not in mains and not view.ask(callers, tree) and view.ask(has_gaps):
+        return False  # the SubTree that names no known tree may mean this one
     is_alone = not view.ask(inputs.is_included) and not any(
         view.ask(lookups.is_run_elsewhere, other) for other in (*mains, tree)
     )

@@ -19,7 +19,7 @@ def version_3_file(view: View) -> Iterator[Diagnostic]:
     """A file for version 3, reported once with its words of that version; what version 4 refuses in it follows from
     that."""
     words, project = view.ask(old_words), view.project
-    if not words or project.written_for:
+    if not words or project.original_engines:
         return
     shown = ", ".join(f"`{word}`" for word in words[:_SHOWN]) + (" …" if len(words) > _SHOWN else "")
     distribution = view.ask(lookups.distribution)
@@ -63,7 +63,7 @@ def version_4_file(view: View) -> Diagnostic:
     if distribution is not None and not view.project.pinned:
         declared = f"{distribution.title()} has {ENGINES[distribution]}"
     signs = view.ask(lookups.signs)
-    if not view.project.written_for and signs is not None and signs.format == VERSION_3[:1]:
+    if not view.project.original_engines and signs is not None and signs.format == VERSION_3[:1]:
         message = "this file is for version 4 of the engine, but declares version 3"
         notes: tuple[str, ...] = ('write `BTCPP_format="4"`',)
         return Diagnostic("version-4-file", _root(view), message, notes=notes)

@@ -11,14 +11,22 @@ import posixpath
 import shlex
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
-from functools import cache
+from functools import cache, partial
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2 import ENGINES, PACKAGED
 from btq_lang.catalog.versions import VERSION_3, VERSIONS, is_before_4
 from btq_lang.checks import check_each
 from btq_lang.checks.engines import declared_engines
-from btq_lang.commands.init_lines import OF_NAV2, NodesLines, free_name, navigator_tables, nodes_for, nodes_lines
+from btq_lang.commands.init_lines import (
+    OF_NAV2,
+    NodesLines,
+    Trouble,
+    free_name,
+    navigator_tables,
+    nodes_for,
+    nodes_lines,
+)
 from btq_lang.commands.packages import Packages, packages_of
 from btq_lang.projects.files import Files
 from btq_lang.projects.messages import CommandOutput
@@ -26,6 +34,7 @@ from btq_lang.projects.options import Refused
 from btq_lang.projects.xml_below import XmlBelow
 from btq_lang.syntax.tree import Tree
 from btq_lang.util.record import Record, replace
+from btq_lang.util.text import counted
 from btq_lang.workspace.file import GROOT_SUFFIX
 from btq_lang.workspace.loader import absolute, matching, shown, write_whole
 from btq_lang.workspace.workspace import Workspace
@@ -60,15 +69,21 @@ def init_from_xml(top: str, converts: bool, messages: CommandOutput) -> int:
     packages = packages_of(folder)
     if converts and (code := _convert(workspace, target, packages, messages)):
         return code
-    engine = _engine_line(workspace, packages) if not converts else _ENGINES
+    engine = _engine_line(workspace, packages) if packages.product or not converts else _ENGINES
     ending = ".btq" if converts else ".xml"
     rest = _excluded_line(workspace, folder) if converts else ""
     rest += "".join(f"\n{factory.written(ending)}" for factory in factories)
 
-    def trouble(project: str, before: str) -> str:
-        """The first problem that one project file has and another has not."""
-        known_problems = _unknown_in(folder, before)
-        return next((what for place, what in _unknown_in(folder, project).items() if place not in known_problems), "")
+    problems_with = cache(partial(_problems_with, folder))
+
+    def trouble(project: str, before: str) -> Trouble:
+        """The problems that one project file has and another has not."""
+        unreadable, unknown = problems_with(project)
+        unreadable_before, unknown_before = problems_with(before)
+        return Trouble(
+            tuple([why for why in unreadable if why not in unreadable_before]),
+            tuple([what for place, what in unknown.items() if place not in unknown_before]),
+        )
 
     def with_engine(nodes: str) -> str:
         """A distribution of Nav2 has a version of its own."""
@@ -77,6 +92,7 @@ def init_from_xml(top: str, converts: bool, messages: CommandOutput) -> int:
     named = nodes_for(workspace, packages, lambda nodes: trouble(with_engine(nodes) + rest, engine + rest))
     nodes = nodes_lines(named)
     text = with_engine(nodes) + rest
+    unknown = len(trouble(text, engine + rest).unknown)
     navigators = navigator_tables(
         packages,
         [factory.name for factory in factories],
@@ -91,7 +107,8 @@ def init_from_xml(top: str, converts: bool, messages: CommandOutput) -> int:
         raise Refused(f"{shown(target)}: {error.strerror}") from error
     count = text.count("\n[[factory]]")
     how_many = f"{count or 'no'} factor{'y' if count == 1 else 'ies'}"
-    messages.result(f"Wrote {shown(target)} with {how_many}. Next: btq check {shlex.quote(top)}")
+    in_trees = f" With its nodes btq finds {counted(unknown, 'problem')} in the trees." if unknown else ""
+    messages.result(f"Wrote {shown(target)} with {how_many}.{in_trees} Next: btq check {shlex.quote(top)}")
     return 0
 
 
@@ -100,7 +117,8 @@ def _convert(workspace: Workspace, target: str, packages: Packages, messages: Co
     from btq_lang.projects.import_files import ImportOptions, import_files
 
     files = [shown(path) for path in workspace.files if not path.endswith(GROOT_SUFFIX)]
-    overlay = {target: f"engine = {json.dumps(packages.engines)}\n"} if packages.engines else {}
+    engine = packages.product or packages.engines
+    overlay = {target: f"engine = {json.dumps(engine)}\n"} if engine else {}
     result = import_files(ImportOptions(files), overlay)
     messages.extend(result.messages)
     return result.code
@@ -185,6 +203,11 @@ def _factories(workspace: Workspace, folder: str, messages: CommandOutput) -> It
             files = ", ".join(shown(path) for path in paths)
             messages.remark(f"not a factory, because several define the tree `{twice}`: {files}")
             continue
+        if outside := _outside(workspace, paths, frozenset(trees)):
+            runner, tree, elsewhere = outside
+            why = f"{shown(runner)} runs the tree `{tree}`, which {' and '.join(map(shown, elsewhere))} define"
+            messages.remark(f"not a factory, because {why}: {', '.join(map(shown, paths))}")
+            continue
         paths += _beside(workspace, paths, [path for path in trees_in if path not in grouped])
         trees = [name for path in paths for name in workspace.files[path].names_of(Kind.TREE)]
         name = posixpath.basename(posixpath.commonpath([posixpath.dirname(path) for path in paths])) or "robot"
@@ -195,6 +218,19 @@ def _factories(workspace: Workspace, folder: str, messages: CommandOutput) -> It
         main = tuple(sorted(tree for tree in trees if tree not in called))
         others = [path for path in trees_in if path not in paths]
         yield _Together(name, tuple(patterns(folder, paths, others)), main, nodes)
+
+
+def _outside(
+    workspace: Workspace, paths: Sequence[str], trees: frozenset[str]
+) -> tuple[str, str, tuple[str, ...]] | None:
+    """A file of a group that runs a tree of none of them, with that tree and the several other files that define it,
+    of which the program may load any."""
+    for path in paths:
+        for name in sorted(workspace.files[path].names_used(Kind.TREE) - trees):
+            definitions = workspace.pooled(path, Kind.TREE, name)
+            if len(definitions) > 1:
+                return path, name, tuple(sorted(definition.path for definition in definitions))
+    return None
 
 
 def _beside(workspace: Workspace, paths: list[str], lone: list[str]) -> list[str]:
@@ -214,6 +250,8 @@ def _beside(workspace: Workspace, paths: list[str], lone: list[str]) -> list[str
 def _engine_line(workspace: Workspace, packages: Packages) -> str:
     """The line that names the versions of the engine: those that packages depend on, or else version 3 if some files
     are written for it, and none for version 4."""
+    if packages.product:
+        return f"engine = {json.dumps(packages.product)}  # the packages depend on {packages.depends_on}\n"
     if packages.engines:
         why, is_old = f"the packages depend on {packages.depends_on}", is_before_4(packages.engines[-1])
     else:
@@ -229,18 +267,19 @@ def _named_by_programs(workspace: Workspace, packages: Packages, folder: str) ->
     yield from patterns(folder, named, [path for path in trees if path not in named])
 
 
-def _unknown_in(folder: str, project: str) -> dict[tuple[str, int], str]:
-    """The unknown nodes and ports, and the files that cannot be read, if this is the project file; by place."""
+def _problems_with(folder: str, project: str) -> tuple[tuple[str, ...], dict[tuple[str, int], str]]:
+    """If this is the project file: why some files cannot be read, and the unknown nodes and ports, by place."""
     files = Files()
     files.overlay[f"{folder}/btq.toml"] = project
     groups, problems = files.groups([folder], with_xml=True, for_checks=True)
-    return {
+    unknown = {
         (path, diagnostic.span.start): f"with it btq finds in {shown(path)}: {diagnostic.message}"
         for group in groups
         for path, diagnostics in zip(group.given, check_each(group.workspace, group.given), strict=True)
         for diagnostic in diagnostics
         if diagnostic.rule in ("unknown-node", "unknown-port")
-    } | {(problem.message, 0): problem.message for problem in problems}
+    }
+    return tuple([problem.message for problem in problems]), unknown
 
 
 def _by_kind(workspace: Workspace) -> tuple[list[str], list[str]]:

@@ -1,7 +1,7 @@
 """The parts of a first project file that name nodes and what loads them: the nodes of Nav2 by distribution, C++ that
 registers others, and factories for the parameter files of Nav2.
 
-One invariant: what makes something unknown, or needs a distribution that is not known, is a comment that says why.
+One invariant: what cannot be read, or needs a distribution that is not known, is a comment that says why.
 """
 
 from __future__ import annotations
@@ -37,24 +37,42 @@ class NodesLines(Record):
     obstacle: str = ""
 
 
-def nodes_for(workspace: Workspace, packages: Packages, trouble: Callable[[str], str]) -> tuple[NodesLines, ...]:
+class Trouble(Record):
+    """The problems that only some lines in a project file cause.
+
+    Attributes:
+        unreadable: why something that they name cannot be read.
+        unknown: the nodes and ports that are unknown with them.
+    """
+
+    unreadable: tuple[str, ...] = ()
+    unknown: tuple[str, ...] = ()
+
+    @property
+    def first(self) -> str:
+        """The first one; empty if there are none."""
+        return next(iter(self.unreadable + self.unknown), "")
+
+
+def nodes_for(workspace: Workspace, packages: Packages, trouble: Callable[[str], Trouble]) -> tuple[NodesLines, ...]:
     """The patterns that a project file may name.
 
     Args:
         packages: their engine, their sources and their parameter files.
-        trouble: the first problem that only a line in the project file causes; empty: none.
+        trouble: the problems that only a line in the project file causes.
     """
     of_nav2 = _of_nav2(workspace, packages)
     is_read = find_spec("tree_sitter_cpp") is not None
     sources = NodesLines(packages.sources, "C++ that registers nodes", "" if is_read else _WITHOUT_GRAMMAR)
     named = () if of_nav2 is None else (of_nav2,)
     both = (*named, sources) if sources.patterns else named
-    if not trouble(nodes_lines(both)):
+    if not trouble(nodes_lines(both)).first:
         return both
-    if of_nav2 is not None and not of_nav2.obstacle and (unfit := trouble(nodes_lines(named))):
+    if of_nav2 is not None and not of_nav2.obstacle and (unfit := trouble(nodes_lines(named)).first):
         named = (_of_unknown_distribution(f"{of_nav2.patterns[0]} does not fit, {unfit}"),)
-    obstacle = sources.obstacle or trouble(nodes_lines((*named, sources)))
-    if obstacle and not sources.obstacle and named and named[0].obstacle:
+    with_sources = trouble(nodes_lines((*named, sources)))
+    obstacle = sources.obstacle or next(iter(with_sources.unreadable), "")
+    if with_sources.first and not sources.obstacle and named and named[0].obstacle:
         obstacle = "name the distribution first"
     return (*named, replace(sources, obstacle=obstacle)) if sources.patterns else named
 
@@ -141,7 +159,7 @@ def navigator_tables(
     taken: Collection[str],
     goals: Sequence[str],
     fits: Callable[[str | None], bool],
-    trouble: Callable[[str], str],
+    trouble: Callable[[str], Trouble],
 ) -> str:
     """The tables, one for each parameter file.
 
@@ -149,7 +167,7 @@ def navigator_tables(
         taken: the names of other factories.
         goals: patterns of trees that programs name, which may be for goals.
         fits: whether the distribution that a file is for is known and that of the project.
-        trouble: the first problem that only some tables in the project file cause; empty: none.
+        trouble: the problems that only some tables in the project file cause.
     """
     written = comments = ""
     names: list[str] = []
@@ -159,7 +177,7 @@ def navigator_tables(
         heading = "[[factory]]  # what bt_navigator loads"
         load = f"# load = {json.dumps(goals, ensure_ascii=False)}  # {_FOR_GOALS}\n" if goals else ""
         obstacle = "" if fits(distribution) else "name its distribution in `nodes` first"
-        obstacle = obstacle or trouble(f"{written}\n{heading}\n{table}")
+        obstacle = obstacle or trouble(f"{written}\n{heading}\n{table}").first
         if obstacle:
             comments += f"\n# {heading}; {obstacle}\n" + "".join(f"# {line}\n" for line in table.splitlines()) + load
         else:

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from types import MappingProxyType
 from typing import Final
 
-from btq_lang.catalog.versions import VERSION_3, VERSIONS
+from btq_lang.catalog.versions import MOVEIT_PRO, PRODUCTS, VERSION_3, VERSIONS
 from btq_lang.nav2.parameters import read_parameters
 from btq_lang.nav2.yaml_reader import YamlMissing, YamlProblem
 from btq_lang.util.record import Record
@@ -27,7 +27,8 @@ class Packages(Record):
 
     Attributes:
         engines: the versions of the engine that they depend on; empty if none or several do.
-        depends_on: the package of the engine on which they depend.
+        depends_on: the package of the engine, or of a product that has it, on which they depend.
+        product: the product, as the key `engine` names it; empty if they depend on none.
         sources: folders with C++ that registers nodes or declares their ports, as patterns.
         registered: the names of nodes that the C++ shows to be registered.
         parameters: files with the parameters of a bt_navigator, each with the distribution of Nav2 that it is for, if
@@ -37,6 +38,7 @@ class Packages(Record):
 
     engines: tuple[str, ...] = ()
     depends_on: str = ""
+    product: str = ""
     sources: tuple[str, ...] = ()
     registered: frozenset[str] = frozenset()
     parameters: Mapping[str, str | None] = MappingProxyType({})
@@ -46,9 +48,11 @@ class Packages(Record):
 def packages_of(folder: str) -> Packages:
     """The facts in the packages below a folder; if they name no engine, that of the package around it."""
     texts = _texts_below(folder, (*_MANIFESTS, *CPP_SUFFIXES, *YAML_SUFFIXES, *_PROGRAMS))
-    depends_on = _engine_among(texts)
-    if not depends_on and (above := pool_of(folder, folder)) != folder:
-        depends_on = _engine_among(_texts_below(above, _MANIFESTS))
+    above = pool_of(folder, folder)
+    around = _texts_below(above, _MANIFESTS) if above != folder else {}
+    of_product = _product_among(texts) or _product_among(around)
+    depends_on = of_product or _engine_among(texts) or _engine_among(around)
+    product = MOVEIT_PRO if of_product else ""
     below = {posixpath.relpath(path, folder): text for path, text in texts.items()}
     cpp = {path: text for path, text in below.items() if path.endswith(CPP_SUFFIXES) and not _is_of_tests(path)}
     sources = [path for path, text in cpp.items() if _REGISTERS(text) or _PORTS(text)]
@@ -56,9 +60,9 @@ def packages_of(folder: str) -> Packages:
     settings = {path: text for path, text in below.items() if path.endswith(YAML_SUFFIXES) and _NAVIGATOR(text)}
     parameters = {path: _distribution(text) for path, text in settings.items()}
     named = {name for path, text in below.items() if path.endswith(_PROGRAMS) for name in _XML(text)}
-    engines = _ENGINES.get(depends_on, ())
+    engines = (PRODUCTS[product],) if product else _ENGINES.get(depends_on, ())
     registered = frozenset([name for path in sources for name in _REGISTERED(cpp[path])])
-    return Packages(engines, depends_on, tuple(_patterns(sources)), registered, parameters, frozenset(named))
+    return Packages(engines, depends_on, product, tuple(_patterns(sources)), registered, parameters, frozenset(named))
 
 
 def _distribution(text: str) -> str | None:
@@ -73,6 +77,12 @@ def _texts_below(folder: str, suffixes: tuple[str, ...]) -> dict[str, str]:
     """The files below a folder whose names end with one of the suffixes, with their texts."""
     paths, _ = collect((folder,), Project(), suffixes)
     return {path: read(path)[0] or "" for path in paths}
+
+
+def _product_among(texts: Mapping[str, str]) -> str:
+    """The first package of MoveIt Pro that manifests depend on; empty if they depend on none."""
+    manifests = (_COMMENT_IN_XML.sub("", texts[path]) for path in sorted(texts) if path.endswith(_MANIFESTS[0]))
+    return next((match.group(1) for match in map(_OF_MOVEIT_PRO.search, manifests) if match is not None), "")
 
 
 def _engine_among(texts: Mapping[str, str]) -> str:
@@ -105,12 +115,16 @@ _NEW: Final = "behaviortree_cpp"
 _ENGINES: Final = {_OLD: (VERSION_3,), _NEW: VERSIONS}
 _NAMES: Final = f"{_OLD}|{_NEW}|behaviortree_ros2"
 _MANIFESTS: Final = ("package.xml", "CMakeLists.txt")
+_COMMENT_IN_XML: Final = re.compile("<!--.*?-->", re.DOTALL)
+_DEPENDS: Final = r"<(?:build_|exec_|run_|build_export_)?depend\b[^>]*>\s*({})\s*</"
+# What runs and registers nodes there; it was called MoveIt Studio.
+_OF_MOVEIT_PRO: Final = re.compile(_DEPENDS.format(r"moveit_(?:pro|studio)_(?:agent|behavior)(?:_interface)?"))
 # How paths end, what is a comment in such a file, and how it names the engine.
 _MENTIONS: Final = (
     (
         _MANIFESTS[0],
-        re.compile("<!--.*?-->", re.DOTALL),
-        re.compile(rf"<(?:build_|exec_|run_|build_export_)?depend\b[^>]*>\s*({_NAMES})\s*</"),
+        _COMMENT_IN_XML,
+        re.compile(_DEPENDS.format(_NAMES)),
     ),
     (_MANIFESTS[1], re.compile("#.*"), re.compile(rf"\b({_NAMES}|BehaviorTreeV3)\b")),
     (

@@ -77,7 +77,7 @@ def _write_xsd(options: SchemaOptions, messages: CommandOutput) -> int:
 
 
 def _of_version_4(workspace: Workspace) -> Workspace:
-    return workspace.with_project(replace(workspace.project, written_for=workspace.project.engines))
+    return workspace.with_project(replace(workspace.project, original_engines=workspace.project.engines))
 
 
 def _target(groups: Iterable[FileGroup], paths: Sequence[str]) -> str:

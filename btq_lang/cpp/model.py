@@ -78,6 +78,7 @@ class CppNode(Record):
         undeclared: reads and writes of ports that it does not provide.
         without: what its code does without an input that has no default: see `PortUse.without`.
         at_once: whether it is seen to end within the tick that starts it.
+        nav2_base: the class of nav2_behavior_tree from which its class derives; empty if from none.
     """
 
     name: str
@@ -91,6 +92,7 @@ class CppNode(Record):
     undeclared: tuple[PortUse, ...] = ()
     without: tuple[tuple[str, str], ...] = ()
     at_once: bool = False
+    nav2_base: str = ""
 
     def goes_on_without(self, port: CppPort) -> bool:
         """Whether the code is seen to go on if an input is not given."""

@@ -149,6 +149,7 @@ class _Reader:
             uses.undeclared(ports) if complete else (),
             uses.without_each(ports),
             ends_within_tick(self.sources, bound),
+            self.sources.nav2_base(bound),
         )
 
     def _name(self, call: RegistrationCall, body: Body, node: Node) -> str | None:

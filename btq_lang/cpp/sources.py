@@ -111,6 +111,14 @@ class CppSources:
                 return LIBRARIES[name]
         return next(filter(None, map(_mixed_in, self.ancestry(bound))), None)
 
+    def nav2_base(self, bound: BoundClass) -> str:
+        """The class of Nav2 that creates what a class needs, from which it derives; empty if there is none."""
+        for ancestor in self.ancestry(bound):
+            scope, _, name = ancestor.name.rpartition("::")
+            if name in BASES and (scope == NAMESPACE or (ancestor.class_ is None and not scope)):
+                return name
+        return ""
+
     def methods(self, bound: BoundClass, name: str) -> list[tuple[Node, str]]:
         """The bodies of a class's own methods of a name, in the class or outside, each with its file."""
         class_ = bound.class_

@@ -4,7 +4,8 @@ contents    the contents of a mission, whatever their spelling, in a form that c
 matching    which nodes of the two missions correspond
 nodes       the changes of the trees, given that
 items       the changes of all else
-changes     changes as data
+changes     changes as data; `wording`: in words
+comparison  two compared missions, with what shows where a change is
 as_text, as_markdown, as_json   for a terminal, a pull request, a program
 
 One invariant: the result is empty if and only if the missions mean the same.  Where the missions come from (two files,

@@ -113,9 +113,10 @@ class JudgedClause:
         measures_time = VERBS[claim.verb].operand not in ("condition", "use")
         self._bounds_time: Final = VERBS[claim.verb].operand in _OF_TIME and not isinstance(subject, DurationSum)
         self._reads: Final = None if measures_time else [*signals_in((parts, claim.signal))]
-        is_whole = any(scope.word == "while" for scope in requirement.scopes) and claim.verb not in _AT_ANY_TIME
+        self._is_at_any_time: Final = VERBS[claim.verb].judged == "while it runs"
+        is_whole = any(scope.word == "while" for scope in requirement.scopes) and not self._is_at_any_time
         is_of_all = any(isinstance(part, Aggregate) for part in parts_in(parts))
-        self._is_final: Final = claim.verb in _FINAL and not (self._running or is_whole or is_of_all)
+        self._is_final: Final = VERBS[claim.verb].is_final and not (self._running or is_whole or is_of_all)
         self.findings.missing = self._why_not()
         self._is_judged: Final = not self.findings.missing
         self._nodes: Final[list[int]] = []  # of the current log, as are these:
@@ -212,7 +213,7 @@ class JudgedClause:
         if in_scope(starts, verb, observed) is not True:
             return False
         started, until = self._looked.get(uid, (None, activation.started))
-        if verb in _AT_ANY_TIME and started == activation.started:
+        if self._is_at_any_time and started == activation.started:
             observed = observed.between(until, activation.ended)
         self._looked[uid] = activation.started, activation.ended
         judgement = self._judge(self.judged, activation, observed)
@@ -577,5 +578,3 @@ def _clocked(judgement: Judgement | None, root: Activation | None) -> Judgement 
 
 _WITHOUT_SUCCESS: Final[dict[Outcome, str]] = {"F": "failed", "H": "halted"}
 _OF_TIME: Final = ("duration", "deadline", "reaction")  # operands that bound the time since something began
-_AT_ANY_TIME: Final = ("keeps", "never")
-_FINAL: Final = ("takes", "succeeds", "needs", *_AT_ANY_TIME)  # verbs whose violation stays one, whatever follows

@@ -12,8 +12,10 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.catalog.units import Unit
 from btq_lang.evidence.tally import Tally
 from btq_lang.evidence.verdicts import OPEN, UNKNOWN, ClauseVerdict
+from btq_lang.requirements import model
 from btq_lang.requirements.model import Applied, NodeTarget, ResolvedClaim, ResolvedRequirement
 from btq_lang.util.record import Record, fields_of
 from btq_lang.workspace.resolved import ResolvedNode, ResolvedTree
@@ -94,8 +96,34 @@ def _meaning(part: object) -> str:
         return f"{part.tree} {part.shown}"
     if hasattr(part, "__match_args__"):  # it is a record
         fields = [getattr(part, name) for name in fields_of(part) if name != "place"]
-        return f"{type(part).__name__}{_meaning(fields)}"
+        return f"{_WORDS[type(part)]}{_meaning(fields)}"
     return f"({' '.join(map(_meaning, part))})" if isinstance(part, tuple | list) else repr(part)
+
+
+# Verdicts that are kept on the disk have the digest of these words: they stay, whatever the classes are called.
+_WORDS: Final[dict[type, str]] = {
+    Unit: "Unit",
+    model.Aggregate: "Aggregate",
+    model.All: "All",
+    model.Any: "Any",
+    model.Arithmetic: "Arithmetic",
+    model.ClassicScript: "ClassicScript",
+    model.Compare: "Compare",
+    model.Flag: "Flag",
+    model.InContext: "InContext",
+    model.Minus: "Minus",
+    model.Negation: "Negation",
+    model.NodeTarget: "NodeTarget",
+    model.Quantity: "Quantity",
+    model.ResolvedCase: "ResolvedCase",
+    model.ResolvedParameter: "ResolvedParameter",
+    model.ResolvedScope: "ResolvedScope",
+    model.ResolvedSignal: "ResolvedSignal",
+    model.ResolvedTable: "ResolvedTable",
+    model.Running: "Running",
+    model.SignalRead: "SignalRead",
+    model.TextValue: "TextValue",
+}
 
 
 def open_reason(requirement: ResolvedRequirement) -> str:

@@ -4,6 +4,11 @@ One invariant: the meaning of a file does not change.  The formatted text has th
 and the order of clauses in the blocks of requirements, and every comment at the element where it was; formatting it
 again changes nothing.  Spelling is the author's: the formatter knows the positions of words, not their meaning.
 
+    lines.py     the logical lines of a file and the comments between them
+    clauses.py   the blocks of requirements, in their order
+    layout.py    one logical line: gaps and physical lines; aligned comments
+    marks.py     what only the tree says of a token
+
 A text with a syntax error is refused as a whole and returned unchanged.  Indentation is structure, and brackets join
 lines: the parser's recovery guesses what the lines around a mistake belong to, and formatting would write that guess
 into the file.

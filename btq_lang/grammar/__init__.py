@@ -6,7 +6,8 @@ meaning of names are unknown here.
 
     cursor.py        the position of the parser: the next token, what is expected, recovery
     items.py         the items of a file
-    nodes.py         trees' blocks: nodes, their children, ports
+    nodes.py         trees' blocks: nodes, their children
+    ports.py         the ports of trees and models
     attributes.py    attributes in brackets, and what is attached to nodes
     requirements.py  requirements, their parameters and units
     clauses.py       the clauses of a requirement

@@ -121,6 +121,8 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
     ),
     (rf"(?:(?:max(?:imum)? )?{_TIMES}|timeout|time limit)(?: *[:=]| of)? *TIME", ("takes at most {time}",), ""),
     ("deadline(?: *[:=]| of)? *TIME", ("succeeds within {time}",), ""),
+    # what then
+    ("on-?violation:? *(?P<action>fail|halt|warn|log)", ("on violation {action}",), ""),
     # how often
     (f"SUBJECT{_RATE} BOUNDNUMBER *Hz", ("{subject}runs {bound} {number} per 1 s",), ""),
     (f"SUBJECT{_RATE}(?: (?:at|with|every))? NUMBER *Hz", ("{subject}runs at least {number} per 1 s",), ""),

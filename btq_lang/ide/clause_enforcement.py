@@ -5,7 +5,7 @@ One invariant: it reports the plan of the build itself, in its words.
 
 from __future__ import annotations
 
-from btq_lang.btcpp.enforceability import unasked
+from btq_lang.btcpp.enforceability import way_instead
 from btq_lang.btcpp.enforcement import ClauseEnforcement, clause_enforcements
 from btq_lang.requirements.definitions import requirement
 from btq_lang.syntax.tree import Claim, Requirement
@@ -26,7 +26,7 @@ def enforcement_lines(workspace: Workspace, path: str, definition: Definition, *
     assert isinstance(item, Requirement), "a requirement's symbol defines one"
     ways: dict[str, dict[tuple[str, str], dict[str, None]]] = {}
     resolved, _ = workspace.store.ask(requirement, definition.path, definition.symbol.name)
-    outcome = unasked(resolved) if resolved is not None and not resolved.classic else None
+    outcome = way_instead(resolved) if resolved is not None and not resolved.classic else None
     if outcome is not None:  # and for a large mission that takes long
         file = workspace.files[definition.path]
         for claim in item.clauses:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 
 from btq_lang.catalog.language import phrases_of
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nodes import KNOWN_WORDS, NodeKind, PortKind, lookup, spellings
+from btq_lang.catalog.nodes import KNOWN_WORDS, NodeKind, PortKind, spellings
 from btq_lang.catalog.qualities import EDITIONS, Quality, parts, siblings
 from btq_lang.catalog.units import BASES, Unit, convert, dimension_name, parse_unit, to_si
 from btq_lang.checks.includes import include_line
@@ -24,7 +24,7 @@ from btq_lang.ide.meaning import (
 )
 from btq_lang.ide.meaning import own_quality as declared_quality
 from btq_lang.ide.outline import clauses_detail
-from btq_lang.ide.ports import cpp_link, ports_of_kind, ports_of_tree, signature
+from btq_lang.ide.ports import builtin_named, cpp_link, ports_of_kind, ports_of_tree, signature
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tree import Apply, Context, Hazard, Model, QualityDecl, Requirement, Signal, Tree, Word, walk
 from btq_lang.util.text import Edit, Span, counted
@@ -38,7 +38,7 @@ _MOST_USES = 12
 
 def node_kind(workspace: Workspace, path: str, name: str, quoted: bool = False, children: int | None = None) -> str:
     """A built-in node, a model in scope, or what is known of any other node kind."""
-    kind = lookup(name, quoted, children)
+    kind = builtin_named(workspace, path, name, quoted, children)
     if kind is not None:
         ports = ports_of_kind(workspace, path, name, quoted, children)
         return "\n\n".join(filter(None, (_head(kind), kind.doc, kind.semantics, _ports(ports))))
@@ -46,7 +46,7 @@ def node_kind(workspace: Workspace, path: str, name: str, quoted: bool = False, 
     if isinstance(target, Model):
         text = target.text.text if target.text else ""
         shown = f"```btq\n{target.category.raw} {name}\n```"
-        _, behavior = workspace.store.ask(inputs.declared, path, name)
+        _, behavior, _ = workspace.store.ask(inputs.declared, path, name)
         semantics = behavior.semantics if behavior is not None else ""
         shown_ports = _ports(ports_of_kind(workspace, path, name))
         return "\n\n".join(filter(None, (shown, text, semantics, shown_ports, cpp_link(workspace, path, name))))

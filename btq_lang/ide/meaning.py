@@ -13,6 +13,7 @@ from functools import lru_cache
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
+from btq_lang.ide.ports import builtin_named
 from btq_lang.syntax.tokens import COMMENT, NAME
 from btq_lang.syntax.tree import Entry, Model, QualityPath, Requirement, Root, Satisfices, Tree, Word
 from btq_lang.util.record import Record
@@ -213,7 +214,7 @@ def _node(workspace: Workspace, path: str, mention: Mention) -> Subject:
     is_kind = node is not None and node.kind is not None and mention.word == node.kind
     quoted = mention.word.quoted
     if is_kind or (mention.defines and not quoted):
-        builtin = lookup(mention.name, quoted, len(node.nodes) if node else None)
+        builtin = builtin_named(workspace, path, mention.name, quoted, len(node.nodes) if node else None)
         if builtin is not None:
             return Subject(What.NODE, builtin.tag, ENGINE)
     return _defined(workspace, path, What.NODE, mention.name)
@@ -261,7 +262,7 @@ def _value(workspace: Workspace, path: str, entry: Entry, mention: Mention) -> S
 
 
 def _place(workspace: Workspace, path: str, name: str) -> Subject:
-    builtin = lookup(name)
+    builtin = builtin_named(workspace, path, name)
     if builtin is not None:
         return Subject(What.NODE, builtin.tag, ENGINE)
     for what in (What.NODE, What.TREE):

@@ -29,7 +29,15 @@ def ports_of_kind(
     workspace: Workspace, path: str, name: str, quoted: bool = False, child_count: int | None = None
 ) -> tuple[PortKind, ...]:
     """The ports of a built-in or of a model in scope."""
-    return _ports(workspace, path, lookup(name, quoted, child_count), name)
+    return _ports(workspace, path, builtin_named(workspace, path, name, quoted, child_count), name)
+
+
+def builtin_named(
+    workspace: Workspace, path: str, name: str, quoted: bool = False, child_count: int | None = None
+) -> NodeKind | None:
+    """The built-in that a word means in a file; None for a node of the program, whatever its name."""
+    kind = lookup(name, quoted, child_count)
+    return None if kind is None or workspace.store.ask(inputs.declared, path, name)[2] else kind
 
 
 def _ports(workspace: Workspace, path: str, kind: NodeKind | None, name: str) -> tuple[PortKind, ...]:

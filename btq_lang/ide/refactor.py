@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import PLACEHOLDERS, lookup
+from btq_lang.checks.engines import engines_of
 from btq_lang.checks.lookups import taken_names
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.ide.block import STEP, blanks_before, block_of, deeper, moved, nodes_at, shifts
@@ -134,7 +135,7 @@ def _free_name(workspace: Workspace, path: str, node: Node) -> str:
     own = node.name.text if node.name is not None and not is_placeholder(node) else ""
     base = legal_name(own) if is_name(own) else "Extracted"
     taken = {
-        *workspace.store.ask(taken_names, path, ""),
+        *workspace.store.ask(taken_names, path, "", workspace.store.ask(engines_of, path)[-1]),
         *NODE_CLAUSES,
     }  # a clause after SubTree is not taken for a name
     taken.update(*(names_of_nodes(workspace.files[each]) for each in workspace.linked(path)))

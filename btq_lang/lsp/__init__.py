@@ -4,12 +4,14 @@ One invariant: only this package and `server` import pygls and lsprotocol.  Hand
 offsets and paths, call `ide`, and convert the result back.  Features are implemented elsewhere.
 
     convert.py       positions, ranges, edits: between the protocol and btq
-    protocol.py messages serialised by hand, for speed
-    session.py the open files, and whose diagnostics an edit may have changed
-    editor.py one client: its session, its capabilities, and what is published
-    schedule.py when files are checked
-    logs.py            the process that judges a project's logs, and its summary
-    lifecycle.py, documents.py, commands.py, progress.py … the handlers, most of a few lines
+    protocol.py      messages serialised by hand, for speed
+    session.py       the open files, and whose diagnostics an edit may have changed
+    editor.py        one client: its session, its capabilities, and what is published
+    schedule.py      when files are checked
+    logs.py          the process that judges a project's logs, and its summary
+    progress.py      progress of work on many files
+    lifecycle.py, documents.py, navigation.py, hints.py, colours.py, acting.py, commands.py
+                     the handlers, most of a few lines
 """
 
 from __future__ import annotations

@@ -146,7 +146,7 @@ class Server(LanguageServer):
         from btq_lang.lsp.session import Session
 
         session = Session()
-        session.settle(self.initial_settings)
+        session.configure(self.initial_settings)
         return session
 
     def start_io(self, stdin: BinaryIO | None = None, stdout: BinaryIO | None = None) -> None:

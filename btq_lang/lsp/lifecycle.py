@@ -45,7 +45,7 @@ async def did_change_configuration(server: Server, params: types.DidChangeConfig
         await _ask_settings(server)
     else:
         settings = params.settings
-        server.session.settle(settings.get("btq", settings) if isinstance(settings, dict) else None)
+        server.session.configure(settings.get("btq", settings) if isinstance(settings, dict) else None)
     server.reload()
 
 
@@ -84,7 +84,7 @@ async def _register_watchers(server: Server) -> None:
 async def _ask_settings(server: Server) -> None:
     params = types.ConfigurationParams([types.ConfigurationItem(section="btq")])
     answer = await server.workspace_configuration_async(params)
-    server.session.settle(answer[0] if answer else None)
+    server.session.configure(answer[0] if answer else None)
 
 
 async def _first_check(server: Server) -> None:

@@ -84,7 +84,7 @@ class Session:
         self.folders = folders
         work_in(folders[0] if folders else "")
 
-    def settle(self, settings: object) -> None:
+    def configure(self, settings: object) -> None:
         """Set what the editor's user has set, if it is a table."""
         if isinstance(settings, dict):
             self.settings = {str(name): value for name, value in settings.items()}

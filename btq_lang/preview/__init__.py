@@ -1,7 +1,7 @@
 """The page that shows a mission's trees beside its text, and a local server for editors that cannot show it themselves.
 
 One invariant: the page is one file, `page.html`, that loads nothing and runs one script; VS Code's extension shows the
-same.  It does not know how to draw: callers supply pictures.
+same; `server.py` serves it.  It does not know how to draw: callers supply pictures.
 """
 
 from __future__ import annotations

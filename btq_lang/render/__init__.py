@@ -3,6 +3,13 @@
 One invariant: a renderer accepts every report, whatever characters its texts and messages contain and wherever its
 spans point; its output is safe for a terminal and well formed for a program.  Lines and columns count from 1, columns
 in code points.  Unknown here: which findings to show, where the output goes and what the exit code is.
+
+    report.py       the findings of a run: what each format is given
+    full.py, concise.py, json_format.py, junit.py, sarif.py, github.py, gitlab.py   the formats
+    frame.py        lines of a file around a span; `colour`, `cells`: styles and columns of a terminal
+    fingerprint.py  what identifies a finding in later runs
+    summary.py      the findings as counts; `rule_counts`: of each rule
+    pages.py        pages from templates; `chart`, a drawing of values; `gfm`, `spreadsheet`: tables in Markdown and CSV
 """
 
 from __future__ import annotations

@@ -135,6 +135,9 @@ class PathReader:
         """The one node that a path names; `notes` are for a path that names none."""
         names = tuple(name.text for name in path.names)
         targets = self.find(names)
+        if len(targets) > 1 and names[-1] in self.store.ask(inputs.names, self.viewpoint, Kind.TREE):
+            # A node `Water` beside the tree `Water` lacks its `SubTree`, which is reported there.
+            targets = tuple([target for target in targets if not _lacks_word(target.node, names[-1])]) or targets
         if len(targets) == 1:
             return targets[0]
         shown = "/".join(name.raw for name in path.names)
@@ -216,6 +219,13 @@ class PathReader:
             if len(targets) == 1 and targets[0].node is node:
                 return "/".join(map(written, names))
         return None
+
+
+def _lacks_word(node: ResolvedNode, tree: str) -> bool:
+    """Whether a node that nothing declares has the name of a tree as its kind, without `SubTree`."""
+    is_declared = node.kind is not None or node.of_model is not None or node.node.category is not None
+    kind = node.node.kind
+    return not (is_declared or node.is_subtree or node.is_placeholder) and kind is not None and kind.text == tree
 
 
 def _too_many_to_compare(store: Store[Workspace], viewpoint: str) -> bool:

@@ -259,6 +259,9 @@ class Reader(PathReader):
             likely = self._sharing_a_word(word.text)
         title = f"Replace `{word.text}` with"
         fixes = tuple(replace_fix(f"{title} `{name}`", word.span, syntax.written(name)) for name in likely)
+        if not likely and word.text.casefold() in _WORDS_FOR_NUMBERS:
+            number = str(_WORDS_FOR_NUMBERS.index(word.text.casefold()) + 1)
+            likely, fixes = (number,), (replace_fix(f"{title} `{number}`", word.span, number),)
         if word.text[-1] in "²³":
             power = "^2" if word.text[-1] == "²" else "^3"
             message = f"unknown unit `{word.text}`; write the power as `{power}`"
@@ -567,3 +570,4 @@ class Reader(PathReader):
 
 
 _DEEPEST: Final = 50  # nested contexts: a condition is a tree that is walked recursively
+_WORDS_FOR_NUMBERS: Final = ("one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")

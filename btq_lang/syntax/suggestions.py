@@ -128,14 +128,17 @@ def _square_brackets(text: str, start: int) -> tuple[str, tuple[Fix, ...]]:
 
 
 def attributes_in_braces(text: str, start: int) -> Fix | None:
-    """The fix for `{key = value}` instead of `(key = value)`, on one line."""
+    """The fix for `{key = value}` or `{key: value}` instead of `(key = value)`, on one line."""
     match = _BRACED_ATTRIBUTES.match(text, start)
     if match is None:
         return None
     ends = Span(start, start + 1), Span(match.end() - 1, match.end())
-    changes = tuple(FixEdit(Place(end), sign) for end, sign in zip(ends, "()", strict=True))
+    changes = [FixEdit(Place(end), sign) for end, sign in zip(ends, "()", strict=True)]
+    for key in re.finditer(_KEY_OR_TEXT, match[0]):
+        if key[2] is not None:
+            changes.append(FixEdit(Place(Span(start + key.start(), start + key.end())), f"{key[2]} = "))
     is_whole = _REST.match(text, match.end()) is not None and "(" not in text[line_start(text, 0, start) : start]
-    return Fix("Write `(` and `)`", changes, safe=is_whole)
+    return Fix("Write `(` and `)`", tuple(changes), safe=is_whole)
 
 
 def are_plain_pairs(text: str) -> bool:
@@ -171,8 +174,9 @@ _SQUARE_ATTRIBUTES: Final = re.compile(rf"\[[ \t]*{_PAIRS}[ \t]*\][ \t]*(?=#|[\r
 _SQUARE_LIST: Final = re.compile(r"\[[ \t]*\w+(?:[ \t]*,[ \t]*\w+)*[ \t]*\][ \t]*(?=#|[\r\n]|\Z)")
 _REST: Final = re.compile(r"[ \t]*(?=#|[\r\n]|\Z|satisf|tags\b)")
 _BRACED_ATTRIBUTES: Final = re.compile(
-    r"""\{[ \t]*[\w-]+[ \t]*=(?:[^{}"'\r\n]|"[^"\r\n]*"|'[^'\r\n]*'|\{[^{}"'\r\n]*\})*\}"""
+    r"""\{[ \t]*"?[\w-]+"?[ \t]*(?:=|:[ \t]*(?=[^ \t}]))(?:[^{}"'\r\n]|"[^"\r\n]*"|'[^'\r\n]*'|\{[^{}"'\r\n]*\})*\}"""
 )
+_KEY_OR_TEXT: Final = r"""(?P<quote>"?)([^\W\d][\w-]*)(?P=quote)[ \t]*:[ \t]*|"[^"\r\n]*"|'[^'\r\n]*'"""  # of JSON
 _nearest_units: Final = lru_cache(256)(nearest_units)  # the same mistake is often repeated
 _NUMBER_BEFORE: Final = re.compile(r"(?<![\w.])\d+\Z")
 _TWO_UNITS: Final = re.compile(r"[^\W\d_]+\d+[^\W\d_]+")

@@ -5,10 +5,11 @@ One invariant: every fact is in exactly one row with a key, and the same mission
     overview.py    the rows
     collect.py     a workspace as an overview
     metadata.py    hazards, and what requirements say beside their demands
-    ways.py how clauses are covered
-    missions.py how the built tree covers them, and all of it in one call
-    meanings.py the meaning of quality names
-    verdicts.py verdicts on the page
+    ways.py        how clauses are covered
+    missions.py    how the built tree covers them, and all of it in one call
+    meanings.py    the meaning of quality names
+    wording.py     sentences that several writers print
+    verdicts.py    verdicts on the page
     run_figure.py  what the nodes of a run did
     table.py, csv_rows.py, json_document.py, needs_json.py, markdown.py, page.py   the writers
 """

@@ -12,6 +12,7 @@ from functools import cache
 from itertools import chain
 from typing import TYPE_CHECKING, Final, TypeAlias
 
+from btq_lang.btcpp.enforceability import way_instead
 from btq_lang.catalog.qualities import Edition, get, qualities
 from btq_lang.diagnostics.model import Place
 from btq_lang.evidence.boxes import measured_by
@@ -222,7 +223,7 @@ class _Collector:
                     location,
                     uses=(),
                     loose=(),
-                    is_hard=requirement.demands_enforcement and not requirement.is_verified_by_people,
+                    is_hard=way_instead(requirement) is None,
                     evidence=(),
                     further_qualities=requirement.further_qualities,
                     further_quality_keys=tuple(further),

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
-from btq_lang.btcpp.enforceability import unasked
+from btq_lang.btcpp.enforceability import way_instead
 from btq_lang.graph.missions import clauses_in_words
 from btq_lang.requirements.model import Applied
 from btq_lang.requirements.resolve import Requirements
@@ -35,7 +35,7 @@ def _clauses(applied: Applied, because: str) -> tuple[Clause, ...]:
     requirement = applied.requirement
     if not requirement.claims:
         return tuple(Clause(text, "reviewed", "it is not measurable") for text in clauses_in_words(applied)[:1])
-    is_demanded = unasked(requirement) is None
+    is_demanded = way_instead(requirement) is None
     not_enforced = because or f"nothing enforces `on violation {requirement.action}`"
-    way, why = unasked(requirement) or ("monitored", not_enforced)
+    way, why = way_instead(requirement) or ("monitored", not_enforced)
     return tuple(Clause(claim.text, way, why, is_demanded) for claim in requirement.claims)

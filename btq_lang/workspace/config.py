@@ -58,7 +58,8 @@ class Project(Record):
         hides_nodes: whether there may be nodes in C++ sources that cannot be seen.
         moves_to: the distribution of Nav2, or the version of the engine, for which its trees are checked besides
             their own.
-        written_for: what `engines` was, if it now has the versions that take its files whatever they are written for.
+        original_engines: what `engines` was, if it now has the versions that take its files whatever they are written
+            for.
         names_all: whether its file names all versions, instead of none.
     """
 
@@ -86,7 +87,7 @@ class Project(Record):
     cpp: tuple[str, ...] = ()
     hides_nodes: bool = False
     moves_to: str | None = None
-    written_for: tuple[str, ...] = ()
+    original_engines: tuple[str, ...] = ()
     names_all: bool = False
 
     def shown(self, path: str) -> str:

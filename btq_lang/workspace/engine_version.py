@@ -27,7 +27,7 @@ def written_for(project: Project, distribution: str | None, signs: Signs | None)
     """
     if signs is not None and signs.is_refused:
         return (VERSION_3,)
-    engines = project.written_for or project.engines
+    engines = project.original_engines or project.engines
     if project.names_all or engines != VERSIONS:
         return engines
     if distribution is not None:

@@ -20,8 +20,11 @@ from typing import TYPE_CHECKING, Concatenate, ParamSpec, TypeAlias, TypeVar
 from btq_lang.catalog.kinds import NodeKind
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2 import FILES, distribution_among
+from btq_lang.catalog.nodes import BUILTINS, available
+from btq_lang.catalog.versions import VERSION_3
 from btq_lang.syntax.tree import Apply, Entry, Item, Model, Tree, Verbatim
 from btq_lang.workspace.config import Project
+from btq_lang.workspace.engine_version import written_for
 from btq_lang.workspace.file import File
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store, input_of
@@ -35,8 +38,9 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 Placed: TypeAlias = tuple[str, Facts]  # an item, and the path of its file
-# The category of a model, if there is one, and what the node does, if it is of a library that btq knows.
-Declared: TypeAlias = "tuple[str | None, NodeKind | None]"
+# The category of a model, if there is one; what the node does, if it is of a library that btq knows; and whether it is
+# the program's own node in place of a built-in that the engine lacks.
+Declared: TypeAlias = "tuple[str | None, NodeKind | None, bool]"
 
 # ---- topics: what an edit has to touch to invalidate an input ----
 
@@ -193,11 +197,25 @@ def declared(workspace: Workspace, viewpoint: str, name: str) -> Declared:
         if definers := file.names.definitions.get((Kind.MODEL, name)):
             model = definers[0][1].target
             category = model.category.raw if isinstance(model, Model) else None
-            return category, _of_library(scope, name) if scope.node_paths else None
+            known_node = _of_library(scope, name) if scope.node_paths else None
+            return category, known_node, _replaces_builtin(workspace, scope, file, name, model)
     pooled = workspace.find(viewpoint, Kind.MODEL, name)
     target = pooled.symbol.target if pooled is not None else None
-    is_of_node = isinstance(target, Model) and target.category.raw != "SubTree"  # else of a tree of that name
-    return target.category.raw if isinstance(target, Model) and is_of_node else None, None
+    if pooled is None or not isinstance(target, Model) or target.category.raw == "SubTree":  # of a tree of that name
+        return None, None, False
+    return target.category.raw, None, _replaces_builtin(workspace, scope, workspace.files[pooled.path], name, target)
+
+
+def _replaces_builtin(workspace: Workspace, scope: Scope, file: File, name: str, model: object) -> bool:
+    """Whether a model is of a node of the program with the name of a built-in that its version of the engine lacks: it
+    is made of C++, or has other ports.  Groot writes models of built-ins, too."""
+    kind = BUILTINS.get(name)
+    if kind is None or not isinstance(model, Model) or kind.since == VERSION_3:
+        return False
+    if available(kind, written_for(workspace.project, distribution_among(scope.node_paths), None)[-1]):
+        return False
+    ports = {port.id.text for port in model.ports if port.id is not None}
+    return file.is_cpp or ports != {port.name for port in kind.ports}
 
 
 def _of_library(scope: Scope, name: str) -> NodeKind | None:

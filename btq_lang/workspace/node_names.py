@@ -10,7 +10,16 @@ from functools import lru_cache
 
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.names import legal_name
-from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, PLACEHOLDERS, NodeKind, lookup, spellings, xml_tag
+from btq_lang.catalog.nodes import (
+    BUILTINS,
+    KNOWN_WORDS,
+    PLACEHOLDERS,
+    NodeKind,
+    lookup,
+    spellings,
+    xml_tag,
+)
+from btq_lang.catalog.versions import VERSION_3
 from btq_lang.syntax.tree import Node
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import near
@@ -21,7 +30,8 @@ class NodeMeaning(Record):
     """The meaning of a node.
 
     Attributes:
-        kind: the built-in, if it is one; for an older engine's word, the one of today.
+        kind: the built-in, if it is one and the program has no node of its own in its place; for an older engine's
+            word, the one of today.
         behavior: the same, or the node of a library that btq knows; None if nothing is known of what it does.
         category: as written, or that of the built-in, the placeholder, the model or an older engine's word; None if
             unknown.
@@ -49,9 +59,9 @@ def meaning_of(node: Node, declared: Callable[[str], Declared]) -> NodeMeaning:
     if is_placeholder(node):
         return NodeMeaning(None, PLACEHOLDERS[name.raw])
     kind = kind_of(node)
-    if kind is not None:
+    if kind is not None and (kind.since == VERSION_3 or not declared(name.text)[2]):
         return NodeMeaning(kind, category or kind.category, behavior=kind)
-    of_model, known_node = declared(name.text)
+    of_model, known_node, _ = declared(name.text)
     old_word = KNOWN_WORDS.get(name.text) if of_model is None and not name.quoted else None
     if old_word is None:
         return NodeMeaning(None, category or of_model, of_model, behavior=known_node)

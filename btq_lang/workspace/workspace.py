@@ -78,8 +78,8 @@ class Workspace:
     def moved(self) -> Workspace:
         """The same files, for the engine that the project moves to."""
         target = self.project.moves_to or self.project.target
-        engines, written_for = (ENGINES.get(target, target),), self.project.engines
-        project = replace(self.project, engines=engines, moves_to=None, written_for=written_for)
+        engines, original = (ENGINES.get(target, target),), self.project.engines
+        project = replace(self.project, engines=engines, moves_to=None, original_engines=original)
         return Workspace(self.files, project, self.factory)
 
     @cached_property

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pickle
 
 import pytest
-from check_asserts import assert_clean, assert_problems, workspace_of
+from check_asserts import apply, assert_clean, assert_problems, show, workspace_of
 
 from btq_lang.btcpp.export import export
 from btq_lang.catalog.name_kinds import Kind
@@ -68,6 +68,22 @@ def test_the_engine_knows_no_namespaces() -> None:
     workspace = workspace_of({"main.xml": text.replace("//- main.xml", "").strip()})
     notes = [note for found in check(workspace, "main.xml") for note in found.notes]
     assert notes == ["it does not support XML namespaces: the prefix is part of the name"]
+
+
+def test_a_prefix_before_a_node_that_is_known() -> None:
+    text = (
+        '<root BTCPP_format="4" xmlns:bt="u"><BehaviorTree ID="A"><bt:Sequence><bt:Spin/><bt:Turn/></bt:Sequence>'
+        '</BehaviorTree><TreeNodesModel><Action ID="Spin"/></TreeNodesModel></root>'
+    )
+    refused = "error forbidden-name «bt:{0}» the engine refuses the node ID `bt:{0}`: it contains `:`"
+    diagnostics = [each for each in check(workspace_of({"main.xml": text}), "main.xml") if each.rule != "unknown-node"]
+    assert [shown.partition(" ")[2] for shown in show(text, diagnostics)] == [
+        refused.format("Sequence") + "; did you mean `Sequence`?",
+        refused.format("Spin") + "; did you mean `Spin`?",
+        refused.format("Turn"),
+    ]
+    mended = apply({"main.xml": text}, "main.xml", diagnostics[0].fixes[0])["main.xml"]
+    assert mended == text.replace("bt:Sequence", "Sequence")
 
 
 def test_what_could_not_be_read_may_hold_anything() -> None:

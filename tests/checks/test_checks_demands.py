@@ -505,6 +505,25 @@ def test_an_entry_of_a_tree_is_not_that_of_the_root(call: str, port: str, is_ano
     assert findings(text, "signal-never-written") == ([expected] if is_another else [])
 
 
+@pytest.mark.parametrize(
+    ("clause", "model", "is_told"),
+    [
+        ("Rest keeps not hot", "Action Look\n    output heat : bool\n", True),
+        ("Rest keeps not hot", "", False),  # which may read it
+        ("Rest keeps not hot", "Action Look\n    input heat : bool\n", False),
+        ("Rest tries at most 3", "Action Look\n    output heat : bool\n", False),  # the signal is unused
+    ],
+)
+def test_nor_where_logs_alone_are_judged(clause: str, model: str, *, is_told: bool) -> None:
+    text = (
+        f"signal hot : bool from {{heat}} initially false\nQualityReq r\n    {clause}\n"
+        "Root Main\nBehaviorTree Main\n    ->\n        SubTree Part\n        Rest\n"
+        f"BehaviorTree Part\n    Look (heat = {{heat}})\n{model}"
+    )
+    expected = "1 hint «hot» `hot` reads the root's `heat`, but the tree `Part` writes its own `heat`"
+    assert findings(text, "signal-never-written") == ([expected] if is_told else [])
+
+
 def test_a_private_entry_of_a_tree_is_not_that_of_the_root_either() -> None:
     text = (
         "signal hot : bool from {_heat} initially false\nQualityReq r\n    Rest keeps not hot\n    on violation fail\n"

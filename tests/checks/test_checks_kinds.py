@@ -306,6 +306,33 @@ def test_a_word_of_version_3_is_replaced_by_itself_only_where_no_version_3_reads
     assert_clean(text, Project(engines=("3.8",)))
 
 
+@pytest.mark.parametrize(
+    ("node", "engines", "is_own"),
+    [
+        ("Sleep", ("3.8",), True),
+        ("Sleep", ("3.8", "4.10"), False),
+        ("Sleep", ("4.6",), False),
+        ("Retry", ("3.8",), False),
+        ("TryCatch", ("4.6", "4.8"), True),
+        ("TryCatch", ("4.8", "4.10"), False),
+    ],
+)
+def test_a_model_counts_before_a_built_in_that_no_version_has(
+    node: str, engines: tuple[str, ...], is_own: bool
+) -> None:
+    text = f"Action {node}\n    input seconds : double\nBehaviorTree Main\n    {node} (seconds = 1)\n"
+    workspace = workspace_of({"main.btq": text}, Project(engines=engines))
+    assert ([each.rule for each in check(workspace, "main.btq")] == []) == is_own
+    without_model = workspace_of({"main.btq": text[text.index("Behavior") :]}, Project(engines=engines))
+    assert "unknown-port" in [each.rule for each in check(without_model, "main.btq")]
+
+
+def test_a_model_with_the_ports_of_a_built_in_is_one_that_an_editor_wrote() -> None:
+    text = "Action Sleep\n    input msec : int\nBehaviorTree Main\n    Sleep (msec = 1)\n"
+    workspace = workspace_of({"main.btq": text}, Project(engines=("3.8",)))
+    assert "newer-engine-node" in [diagnostic.rule for diagnostic in check(workspace, "main.btq")]
+
+
 def test_a_model_makes_a_word_a_node() -> None:
     assert_clean("Action PopFromQueue\n" + tree("PopFromQueue"))
 

@@ -82,6 +82,9 @@ def test_what_is_read_of_a_number_with_a_tail(value: str, reads: str, fixes: dic
         ("double", "0,2,3", "0", ()),
         ("double", "90deg", None, ("write the number in the unit that the node expects",)),
         ("double", "90 %", None, ("write the number in the unit that the node expects",)),
+        ("double", "500 ms", None, ("write the number in the unit that the node expects",)),
+        ("double", "5s", "5", ("write the number in the unit that the node expects",)),
+        ("double", "0.30 m", "0.30", ("write the number in the unit that the node expects",)),
     ],
 )
 def test_what_a_port_without_a_unit_reads_of_a_number(
@@ -93,6 +96,26 @@ def test_what_a_port_without_a_unit_reads_of_a_number(
     fixed = [apply({"main.xml": text}, "main.xml", fix)["main.xml"] for fix in found.fixes]
     assert (found.rule, found.notes) == ("trailing-text-in-number", notes)
     assert fixed == ([text.replace(value, meant)] if meant is not None else [])
+
+
+@pytest.mark.parametrize(("value", "meant"), [("100%", "-1"), ("100 %", "-1"), ("50%", None)])
+@pytest.mark.parametrize("port", ["success_count", "failure_count"])
+def test_a_share_of_the_children(port: str, value: str, meant: str | None) -> None:
+    parallel = f'<Parallel {port}="{value}"><A/><B/></Parallel>'
+    text = f'<root BTCPP_format="4"><BehaviorTree ID="T">{parallel}</BehaviorTree></root>'
+    diagnostics = check(workspace_of({"main.xml": text}), "main.xml")
+    (problem,) = [each for each in diagnostics if each.rule == "trailing-text-in-number"]
+    assert problem.notes == (f"`{port}` is a number of children, of which -1 means all",)
+    fixed = [apply({"main.xml": text}, "main.xml", fix)["main.xml"] for fix in problem.fixes]
+    assert fixed == ([text.replace(value, meant)] if meant is not None else [])
+
+
+@pytest.mark.parametrize(("value", "minutes"), [("5 m", "5 min"), ("0.5m", "0.5 min")])
+def test_minutes_that_are_written_as_metres(value: str, minutes: str) -> None:
+    text = f"BehaviorTree Main\n    Delay (delay_msec = {value})\n        Action A\n"
+    message = f"expected a time for `delay_msec`, found `{value}` (a length); did you mean `{minutes}`?"
+    assert_problems(text, f"2:25 error quantity-on-unitless-port «{value}» {message}")
+    assert_fix(text, f"Replace `{value}` with `{minutes}`", text.replace(value, minutes))
 
 
 @pytest.mark.parametrize(("tag", "port"), [("Timeout", "msec"), ("Delay", "delay_msec")])

@@ -131,6 +131,41 @@ def test_bare_words(nodes: str, count: int) -> None:
     assert len(findings(text, RULE)) == count
 
 
+GO: Final = (
+    "Action Find\n    output bed : string\nAction Look\n    input at : string\n"
+    "Action Go\n    input place : string\n"
+    "BehaviorTree Main\n    ->\n        Find (bed = {{bed}})\n        Look (at = {{bed}})\n"
+    "        Go (place = {})\n        Go (place = {})\n"
+)
+
+
+def test_a_bare_word_where_all_texts_have_quotes() -> None:
+    text = GO.format("bed", '"dock"')
+    (found,) = check(workspace_of({MAIN: text}), MAIN)
+    assert show(text, [found]) == ["11:21 hint misspelt-entry «bed» `bed` is a text here, not the entry `{bed}`"]
+    assert found.notes == ('write `{bed}` for the entry, `"bed"` for the text',)
+    mended = [after(text, fix) for fix in found.fixes]
+    assert mended == [text.replace("place = bed", f"place = {meant}") for meant in ("{bed}", '"bed"')]
+    assert [check(workspace_of({MAIN: each}), MAIN) for each in mended] == [(), ()]
+
+
+@pytest.mark.parametrize(
+    ("text", "lines"),
+    [
+        (GO.format("bed", "bed"), ["11", "12"]),
+        (GO.format("bed", "dock"), []),  # texts without quotes
+        (GO.format("bed", '"bed"'), []),  # the same text
+        (GO.format("bath", '"dock"'), []),
+        (GO.format("bed", '"dock"').replace("string\nB", "string = bed\nB"), []),
+        (GO.format("bed", '"dock"').replace("place", "name"), []),
+        (GO.format("bed", '"dock"').replace("        Find (bed = {bed})\n", "") + "        Find (bed = {bed})\n", []),
+        ("Action Go\n    input place : string\nBehaviorTree A\n    input bed\n    Go (place = bed)\n", ["5"]),
+    ],
+)
+def test_bare_words_that_are_rather_texts(text: str, lines: list[str]) -> None:
+    assert [found.split()[0] for found in findings(text, RULE)] == lines
+
+
 @pytest.mark.parametrize("value", ["true", "False", "NaN", "inf", "SUCCESS", "running", "1"])
 @pytest.mark.parametrize("type_", ["", " : Pose", " : string"])
 def test_words_that_are_values_are_never_meant_as_entries(value: str, type_: str) -> None:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from check_asserts import findings, fixes, problems, show
+from in_process import run_btq
 
 RULE = "misspelt-entry"
 
@@ -174,6 +177,31 @@ def test_only_names_of_other_languages_hide_what_is_unset_and_unread(entry: str,
     ]
     found = [*problems(text, "unread-argument"), *problems(text, "unset-entry")]
     assert show(text, found) == told * is_told
+
+
+def test_the_subtree_to_which_an_entry_is_to_be_added() -> None:
+    text = (
+        "Action Go\n    input place\nBehaviorTree Main\n    ->\n        SubTree Stop (speed = 3)\n"
+        "BehaviorTree Stop\n    Go (place = {spot})\n"
+    )
+    (found,) = problems(text, "unset-entry")
+    (related,) = found.related
+    assert (found.span.start, related.message) == (text.index("spot"), "write `spot = {…}` at this SubTree")
+    assert text[related.place.span.start : related.place.span.end] == "Stop"
+
+
+def test_the_subtree_of_xml_to_which_an_entry_is_to_be_added(tmp_path: Path) -> None:
+    (tmp_path / "t.xml").write_text(
+        '<root BTCPP_format="4" main_tree_to_execute="Main">\n  <BehaviorTree ID="Main">\n'
+        '    <SubTree ID="Stop" speed="3"/>\n  </BehaviorTree>\n  <BehaviorTree ID="Stop">\n'
+        '    <Go place="{spot}" speed="{speed}"/>\n  </BehaviorTree>\n  <TreeNodesModel>\n    <Action ID="Go">\n'
+        '      <input_port name="place"/>\n      <input_port name="speed"/>\n    </Action>\n'
+        "  </TreeNodesModel>\n</root>\n"
+    )
+    _, out, _ = run_btq("check", "t.xml", cwd=tmp_path)
+    assert out.splitlines()[0].endswith("nothing in `Stop` writes `spot`, which is read here, and no SubTree passes it")
+    at = out.splitlines().index('note: write `spot="{…}"` at this SubTree')
+    assert out.splitlines()[at + 1] == " --> t.xml:3:18"
 
 
 @pytest.mark.parametrize(

@@ -547,3 +547,46 @@ def test_a_recovery_node_with_several_recoveries(extra: tuple[str, ...]) -> None
             "put those after the first one below one Sequence, or a RoundRobin, which takes turns",
         )
     ]
+
+
+# ---- poses ----
+
+
+@pytest.mark.parametrize("distribution", ["humble", "iron", "jazzy", "kilted", "lyrical"])
+@pytest.mark.parametrize(("value", "number"), [("1.0;2.0;0.0", 3), ("kitchen", 1), ("0;map;1;2;0;0;0;0;1;0", 10)])
+def test_a_pose_with_other_fields(distribution: str, value: str, number: int) -> None:
+    """Sources: convertFromString in bt_conversions.hpp of Humble and Iron, bt_utils.hpp of the others."""
+    message = f"expected the 9 fields of a pose for `goal`, found {number}: `{value}`"
+    node = 'ComputePathToPose (goal = "{}" path = {{path}})'
+    text = tree("->", "    " + node.format(value), "    FollowPath (path = {path})")
+    where = f'3:35 error invalid-literal «"{value}"» {message}'
+    assert [each for each in found(text, distribution) if "invalid-literal" in each] == [where]
+    for right in ("0;map;1.0;2.0;0.0;0;0;0;1", "json:{}", "{goal}"):
+        assert "invalid-literal" not in str(found(text.replace(value, right), distribution))
+
+
+def test_a_pose_in_xml() -> None:
+    text = (
+        '<root BTCPP_format="4"><BehaviorTree ID="Main"><Sequence><GoalReached goal="1.0;2.0;0.0" '
+        'global_frame="map" robot_base_frame="base_link"/></Sequence></BehaviorTree></root>'
+    )
+    message = "expected the 9 fields of a pose for `goal`, found 3: `1.0;2.0;0.0`"
+    assert found(text, "jazzy") == [f"1:77 error invalid-literal «1.0;2.0;0.0» {message}"]
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [
+        ("Pipeline", "; did you mean `PipelineSequence`?"),
+        ("Round", "; did you mean `RoundRobin`?"),
+        ("Goal", ""),  # which several begin with
+        ("Pipe", ""),  # no whole word
+    ],
+)
+def test_the_first_words_of_a_node(name: str, meant: str) -> None:
+    text = (
+        f'<root BTCPP_format="4"><BehaviorTree ID="Main"><{name}><Wait wait_duration="1.0"/><Mine/></{name}>'
+        "</BehaviorTree></root>"
+    )
+    (unknown,) = [each for each in found(text, "jazzy") if f"«{name}»" in each]
+    assert unknown == f"1:49 hint unknown-node «{name}» unknown node `{name}`{meant}"

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
+
 import pytest
 from check_asserts import findings, fixes
+from in_process import run_btq
 
 from btq_lang.catalog.versions import VERSIONS
 from btq_lang.workspace.config import Project
@@ -62,6 +66,25 @@ def test_a_delay_in_the_releases_that_do_not_wait(engines: tuple[str, ...], is_f
     found = findings(tree("Delay (delay_msec = 5 s)", "    Action Work"), COUNT, project=Project(engines=engines))
     what = "3 warning «Delay» `Delay` does not wait: 4.8.3 and 4.8.4 do not read `delay_msec`"
     assert found == ([what] if is_found else [])
+
+
+@pytest.mark.parametrize("engines", ['["4.6", "4.8", "4.10"]', '"4.10"', ""])
+def test_a_delay_of_a_project_that_names_all_versions(tmp_path: Path, engines: str) -> None:
+    """As `btq init` does; without a project file nobody says that 4.8 must load it."""
+    (tmp_path / "m.btq").write_text(tree("Delay (delay_msec = 5 s)", "    Action Work"))
+    (tmp_path / "btq.toml").write_text(f"engine = {engines}\n" if engines else "")
+    code, out, _ = run_btq("check", "--output-format", "json", cwd=tmp_path)
+    problems = json.loads(out)["diagnostics"]
+    if engines.count("4") < 2:
+        assert (code, problems) == (0, [])
+        return
+    assert [(problem["rule"], problem["message"], problem["notes"]) for problem in problems] == [
+        (
+            "count-of-nothing",
+            "`Delay` does not wait: 4.8.3 and 4.8.4 do not read `delay_msec`",
+            ["put a Sleep before the child", 'if you run 4.10, set `engine = "4.10"` in btq.toml'],
+        )
+    ]
 
 
 # ---- literal-for-output ----

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from check_asserts import apply, workspace_of
+from in_process import run_btq
 
 from btq_lang.checks import check
 from btq_lang.diagnostics.model import Diagnostic
@@ -72,3 +75,44 @@ def test_it_is_a_hint_where_no_engine_is_named() -> None:
 def test_a_double_is_written_with_a_point() -> None:
     (found,) = refused(XML.format("10", "double"))
     assert [fix.title for fix in found.fixes] == ["Write `10.0`"]
+
+
+DEFAULT = (
+    '<root BTCPP_format="4"><BehaviorTree ID="M"><SubTree ID="S"{}/></BehaviorTree>'
+    '<BehaviorTree ID="S"><Sleep msec="{{v}}"/></BehaviorTree>'
+    '<TreeNodesModel><SubTree ID="S"><input_port name="v" default="{}"/></SubTree></TreeNodesModel></root>'
+)
+
+
+@pytest.mark.parametrize(
+    ("attributes", "default", "is_refused"),
+    [
+        ("", "10", True),
+        (' _autoremap="false"', "10", True),
+        ("", "10 ", False),
+        ("", "{ms}", False),
+        (' v="{ms}"', "10", False),
+        (' _autoremap="true"', "10", False),
+    ],
+)
+def test_a_default_counts_where_a_subtree_gives_no_value(attributes: str, default: str, is_refused: bool) -> None:
+    text = DEFAULT.format(attributes, default)
+    assert [(each.message, each.effective_severity) for each in refused(text)] == [
+        (
+            "BehaviorTree.CPP 4.9.1 and later refuse to load this tree: "
+            "`10` is of the type int, `msec` of `Sleep` of unsigned int",
+            Severity.ERROR,
+        )
+    ] * is_refused
+    for fix in (fix for each in refused(text) for fix in each.fixes):
+        assert apply({"main.xml": text}, "main.xml", fix)["main.xml"] == DEFAULT.format(attributes, "10 ")
+    assert refused(text, "4.9") == []
+
+
+def test_a_default_is_reported_in_a_project(tmp_path: Path) -> None:
+    (tmp_path / "a.xml").write_text(DEFAULT.format("", "10"))
+    (tmp_path / "btq.toml").write_text('engine = "4.10"\n')
+    column = DEFAULT.format("", "10").index('10"') + 1
+    place = f"a.xml:1:{column}: error[entry-with-two-types] BehaviorTree.CPP 4.9.1 and later refuse to load this tree: "
+    code, out, _ = run_btq("check", "--output-format", "concise", cwd=tmp_path)
+    assert (code, out.splitlines()[0]) == (1, f"{place}`10` is of the type int, `msec` of `Sleep` of unsigned int")

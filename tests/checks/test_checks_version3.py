@@ -9,7 +9,8 @@ from in_process import run_btq
 
 from btq_lang.btcpp.opening import file_of
 from btq_lang.catalog.nav2 import PACKAGED
-from btq_lang.checks import check
+from btq_lang.checks import check, lookups
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.workspace import Workspace
@@ -166,3 +167,26 @@ def test_nothing_is_built_for_version_3(tmp_path: Path) -> None:
     code, out, _ = run_btq("schema", "xsd", cwd=tmp_path)
     assert code == 0
     assert 'name="AlwaysSuccess"' in out
+
+
+def test_what_is_looked_up_is_of_the_version_of_the_file() -> None:
+    """Two files of a project that names no version: one is for version 3."""
+    loop = (
+        '<root {}><BehaviorTree ID="Tray?"><LoopInt queue="{{q}}" value="{{v}}"><Say text="{{q}}"/></LoopInt>'
+        '</BehaviorTree><TreeNodesModel><Action ID="Say"><input_port name="text" type="std::string"/></Action>'
+        "</TreeNodesModel></root>"
+    )
+    texts = {"old.xml": loop.format('BTCPP_format="3"'), "new.xml": loop.format('BTCPP_format="4"')}
+    workspace = Workspace({path: file_of(path, text) for path, text in texts.items()}, Project())
+    views = {path: View(workspace.store, path) for path in texts}
+    assert {path: view.target for path, view in views.items()} == {"old.xml": "3.8", "new.xml": "4.10"}
+    types, texts_below, taken = {}, {}, {}
+    for path, view in views.items():
+        types[path] = [type_ for *_, type_ in view.ask(lookups.types_below, "Tray?", "q", view.target)]
+        text = view.ask(lookups.text_below, "Tray?", "q", view.target)
+        texts_below[path] = text[1:] if text is not None else None
+        taken[path] = [name for name, owner in view.ask(lookups.taken_names, "", view.target).items() if "?" in owner]
+    queue = "std::shared_ptr<std::deque<int, std::allocator<int> > >"
+    assert types == {"old.xml": [queue, "std::string"], "new.xml": ["std::string"]}
+    assert texts_below == {"old.xml": ("text", "Say"), "new.xml": ("text", "Say")}
+    assert taken == {"old.xml": ["Tray?"], "new.xml": ["Tray"]}

@@ -97,6 +97,30 @@ def test_checks_know_the_nodes_and_hold_the_code_against_them(robot: Path) -> No
     assert check(robot, "trees/m.btq", "src") == [*IN_MISSION, UNUSED, UNDECLARED]
 
 
+def test_a_node_of_version_3_may_have_the_name_of_a_built_in_of_version_4(robot: Path) -> None:
+    ports = 'BT::PortsList providedPorts() { return { BT::InputPort<double>("sleep_time") }; }'
+    node = f"struct Sleep : BT::SyncActionNode {{ static {ports} }};\n"
+    write(robot, "src/drive.cpp", f'{node}void f() {{ factory.registerNodeType<Sleep>("Sleep"); }}\n')
+    tree = '<BehaviorTree ID="M">\n<Sequence>\n<Sleep sleep_time="5.0"/>\n<Sleep sleep_tim="5.0"/>\n</Sequence>\n'
+    write(robot, "trees/m.btq", "")
+    write(robot, "trees/m.xml", f'<root BTCPP_format="4">\n{tree}</BehaviorTree>\n</root>\n')
+    for line in ('engine = "3.8"\nnodes = ["src/*.cpp"]', 'nodes = ["nav2-humble", "src/*.cpp"]'):
+        write(robot, "btq.toml", f"{line}\n")
+        misspelt = "error[unknown-port] `Sleep` has no port `sleep_tim`; did you mean `sleep_time`?"
+        assert check(robot, "trees") == [f"trees/m.xml:5:8: {misspelt}"]
+        workspace, path = open_workspace(str(robot)), f"{robot}/trees/m.xml"
+        file = workspace.files[path]
+        assert place(workspace, path, file.text.index("Sleep")) == ["drive.cpp:1:8 Sleep"]
+        shown = hover(workspace, path, file.text.index("Sleep"))
+        assert shown is not None
+        assert shown.markdown.startswith("```btq\nAction Sleep\n```")
+    write(robot, "btq.toml", 'nodes = ["src/*.cpp"]\n')
+    assert [line.split()[1:5] for line in check(robot, "trees")] == [
+        ["error[unknown-port]", "`Sleep`", "has", "no"],
+        ["error[unknown-port]", "`Sleep`", "has", "no"],
+    ]
+
+
 def test_an_action_that_ends_within_its_tick_runs_over_no_second_one(robot: Path) -> None:
     source = (
         "struct Prune : BT::ActionNodeBase {{ static PortsList providedPorts() {{ return {{}}; }}\n"
@@ -576,3 +600,28 @@ def test_base_classes_of_nav2_are_known_by_the_distribution_of_the_project(
         if code
         else []
     )
+
+
+@pytest.mark.parametrize(
+    ("base", "distribution", "entries"),
+    [
+        ("BtActionNode<M>", "jazzy", "`node`, `wait_for_service_timeout`, `bt_loop_duration`"),
+        ("BtServiceNode<M>", "humble", "`node`, `wait_for_service_timeout`, `bt_loop_duration`, `server_timeout`"),
+        ("BtCancelActionNode<M>", "lyrical", "`node`, `wait_for_service_timeout`"),
+        ("Other", "jazzy", ""),
+    ],
+)
+def test_a_node_that_derives_from_nav2s_needs_what_they_need(
+    robot: Path, base: str, distribution: str, entries: str
+) -> None:
+    (robot / "src/drive.cpp").unlink()
+    write(robot, "src/scan.cpp", OF_NAV2.replace("BtActionNode<M>", base))
+    write(robot, "src/other.cpp", "namespace nav2_behavior_tree { struct Other : BT::SyncActionNode {}; }\n")
+    write(robot, "btq.toml", f'nodes = ["nav2-{distribution}", "src/*.cpp"]\n')
+    mission = "BehaviorTree M\n    SubTree Look{}\n\nBehaviorTree Look\n    Scan (area = 1)\n"
+    write(robot, "trees/m.btq", mission.format(""))
+    refused = f"error[isolated-node] `Scan` cannot be created in the tree `Look`: this SubTree does not pass {entries}"
+    assert check(robot, "trees") == ([f"trees/m.btq:2:13: {refused}"] if entries else [])
+    if distribution != "humble":
+        write(robot, "trees/m.btq", mission.format(" (_autoremap = true)"))
+        assert check(robot, "trees") == []

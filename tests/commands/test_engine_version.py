@@ -249,8 +249,17 @@ def test_init_says_what_is_unknown_with_sources(tmp_path: Path) -> None:
     )
     xml = '<root BTCPP_format="4"><BehaviorTree ID="Main"><Sequence><Dock/>{}</Sequence></BehaviorTree></root>\n'
     (tmp_path / "t.xml").write_text(xml.format("<Dokc/><Undock/>"))
-    unknown = "with it btq finds in t.xml: unknown node `Dokc`; did you mean `Dock`?"
-    assert lines_of_init(tmp_path) == [f'# nodes = ["*.cpp"]  # C++ that registers nodes; {unknown}']
+    lines = ['nodes = ["*.cpp"]  # C++ that registers nodes']
+    assert lines_of_init(tmp_path) == lines
+    (tmp_path / "btq.toml").unlink()
+    wrote, after = "Wrote btq.toml with no factories.", "Next: btq check .\n"
+    one = f"{wrote} With its nodes btq finds 1 problem in the trees. {after}"
+    assert run_btq("init", "--from-xml", cwd=tmp_path)[:2] == (0, one)
+    _, out, _ = run_btq("check", "--output-format", "concise", cwd=tmp_path)
+    assert out.splitlines()[0].endswith("warning[unknown-node] unknown node `Dokc`; did you mean `Dock`?")
+    (tmp_path / "btq.toml").unlink()
+    (tmp_path / "t.xml").write_text(xml.format("<Dock/><Undock/>"))
+    assert run_btq("init", "--from-xml", cwd=tmp_path)[:2] == (0, f"{wrote} {after}")
 
 
 def test_init_proposes_all_nodes_in_one_line(tmp_path: Path) -> None:

@@ -60,6 +60,40 @@ def test_what_defines_a_tree_twice_is_no_factory(tmp_path: Path, write: Write) -
     assert run_btq("check", cwd=tmp_path)[0] == 0
 
 
+def test_what_runs_a_tree_that_several_others_define_is_no_factory(tmp_path: Path, write: Write) -> None:
+    """Whether the program loads `one` or `two` is not known, so that the factory would lack `Wait`."""
+    write("arm/main.xml", "Main: Pick")
+    write("arm/pick.xml", "Pick: Wait")
+    write("one/wait.xml", "Wait")
+    write("two/wait.xml", "Wait")
+    code, out, err = run_btq("init", "--from-xml", cwd=tmp_path)
+    assert (code, out) == (0, "Wrote btq.toml with no factories. Next: btq check .\n")
+    why = "arm/pick.xml runs the tree `Wait`, which one/wait.xml and two/wait.xml define"
+    assert err == f"not a factory, because {why}: arm/main.xml, arm/pick.xml\n"
+    assert run_btq("check", cwd=tmp_path)[:2] == (0, "No problems found in 4 files\n")
+
+
+@pytest.mark.parametrize("package", ["moveit_pro_behavior", "moveit_studio_agent", "moveit_studio_behavior_interface"])
+def test_the_packages_of_moveit_pro_name_the_engine(tmp_path: Path, package: str) -> None:
+    """It provides trees, and its engine takes names that others refuse."""
+    tree = '<BehaviorTree ID="Pick: fast"><SubTree ID="Move to Waypoint"/></BehaviorTree>'
+    (tmp_path / "main.xml").write_text(f'<root BTCPP_format="4">{tree}</root>\n')
+    (tmp_path / "package.xml").write_text(f"<package><exec_depend>{package}</exec_depend></package>\n")
+    assert run_btq("check", "--output-format", "concise", cwd=tmp_path)[0] == 1
+    run_btq("init", "--from-xml", cwd=tmp_path)
+    engine = f'engine = "moveit-pro"  # the packages depend on {package}\n'
+    assert (tmp_path / "btq.toml").read_text() == HEAD.splitlines(keepends=True)[0] + engine
+    assert run_btq("check", cwd=tmp_path)[:2] == (0, "No problems found in 1 file\n")
+
+
+@pytest.mark.parametrize("package", ["moveit_ros_planning", "<!-- moveit_pro_behavior -->"])
+def test_other_packages_of_moveit_are_not_moveit_pro(tmp_path: Path, write: Write, package: str) -> None:
+    write("main.xml", "Main")
+    (tmp_path / "package.xml").write_text(f"<package><exec_depend>{package}</exec_depend></package>\n")
+    run_btq("init", "--from-xml", cwd=tmp_path)
+    assert (tmp_path / "btq.toml").read_text() == HEAD
+
+
 def test_a_project_of_groot_says_what_belongs_together(tmp_path: Path, write: Write) -> None:
     write("a.xml", "A")
     write("b.xml", "B")

@@ -368,6 +368,29 @@ def test_ports_that_a_base_class_of_nav2_has_in_some_distributions_are_unseen() 
     assert unseen(other) == ["a.cpp:11:3: `elsewhere::BtActionNode` is not in the sources, and may provide ports"]
 
 
+BASE_OF_NAV2 = """
+}
+namespace nav2_behavior_tree { template<class T> struct BtActionNode : BT::ActionNodeBase {}; }
+namespace robot {
+"""
+
+
+@pytest.mark.parametrize(
+    ("base", "above", "nav2_base"),
+    [
+        ("nav2_behavior_tree::BtServiceNode<M>", "", "BtServiceNode"),
+        ("BtCancelActionNode<M>", "", "BtCancelActionNode"),
+        ("Base", "struct Base : nav2_behavior_tree::BtActionNode<M> {};", "BtActionNode"),
+        ("nav2_behavior_tree::BtActionNode<M>", BASE_OF_NAV2, "BtActionNode"),
+        ("BtActionNode<M>", "template<class T> struct BtActionNode : BT::SyncActionNode {};", ""),
+        ("elsewhere::BtActionNode<M>", "", ""),
+        ("BT::SyncActionNode", "", ""),
+    ],
+)
+def test_the_class_of_nav2_from_which_a_node_derives(base: str, above: str, nav2_base: str) -> None:
+    assert moved("static PortsList providedPorts() { return {}; }", base, above).nav2_base == nav2_base
+
+
 @pytest.mark.parametrize(
     ("base", "tick", "at_once"),
     [

@@ -145,6 +145,21 @@ FROM_PYTHON: Final[list[Case]] = [
         "Root Main\n" + tree("Go (n = 1)"),
     ),
     (
+        "Root Main\n" + tree('Go There {place: "do: ck", at: {y}}'),
+        "3:14 error syntax-error «{» attributes go in round brackets: `(key = value)`",
+        "Root Main\n" + tree('Go There (place = "do: ck", at = {y})'),
+    ),
+    (
+        "Root Main\n" + tree('Go {"n": 1}'),
+        "3:8 error syntax-error «{» attributes go in round brackets: `(key = value)`",
+        "Root Main\n" + tree("Go (n = 1)"),
+    ),
+    (
+        "Root Main\n" + tree("Go {n: 1}"),
+        "3:8 error syntax-error «{n: 1}» attributes go in round brackets: `(key = value)`",
+        "Root Main\n" + tree("Go (n = 1)"),
+    ),
+    (
         tree("->", "    Condtion AtDoor"),
         "3:9 warning unknown-node «Condtion» btq reads `Condtion` as a node here; did you mean `Condition`?",
         tree("->", "    Condition AtDoor"),

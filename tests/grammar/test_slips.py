@@ -8,11 +8,12 @@ from __future__ import annotations
 from typing import Final
 
 import pytest
-from check_asserts import after, show, workspace_of
+from check_asserts import after, problems, show, workspace_of
 from safe_fixes import unwanted
 from test_first_mistakes import OTHER, Case, R, S, mistakes, requirement, tree
 
 from btq_lang.checks import check
+from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.grammar.cursor import shown
 from btq_lang.parser import parse
 from btq_lang.syntax.tree import quote
@@ -1073,3 +1074,89 @@ def test_children_beside_the_first_node_of_a_tree() -> None:
     ]
     fixes = [(fix.title, after(text, fix)) for each in found for fix in each.fixes]
     assert fixes == [("Indent them below `Sequence`", tree("Sequence", "    Go", "    Inverter  # or", "        Left"))]
+
+
+@pytest.mark.parametrize(("word", "number"), [("three", "3"), ("Ten", "10"), ("dozen", None)])
+def test_a_number_as_a_word(word: str, number: str | None) -> None:
+    text = requirement(f"Go tries at most {word} per Main")
+    (found,) = problems(text, "unknown-signal")
+    meant = f"; did you mean `{number}`?" if number is not None else ""
+    assert found.message == f"unknown signal `{word}`{meant}"
+    assert [after(text, fix) for fix in found.fixes] == ([text.replace(word, number)] if number is not None else [])
+    declared = f"signal {word} : 1 from {{{word}}}\n{text}"
+    assert problems(declared, "unknown-signal") == []
+
+
+@pytest.mark.parametrize("clause", ["onviolation halt", "on-violation: halt"])
+def test_on_violation_as_one_word(clause: str) -> None:
+    text = requirement("takes at most 3 s", clause)
+    (found,) = parse(text).diagnostics
+    assert show(text, [found]) == [
+        f"5:5 error syntax-error «{clause}» this clause is written `on violation halt`",
+    ]
+    assert [after(text, fix) for fix in found.fixes] == [requirement("takes at most 3 s", "on violation halt")]
+
+
+def test_a_deadline_with_in_is_no_probability() -> None:
+    text = requirement("succeeds in 45 s", "in at least 95 % of activations")
+    assert show(text, check(workspace_of({"main.btq": text}), "main.btq")) == [
+        "4:5 error syntax-error «succeeds in 45 s» this clause is written `succeeds within 45 s`"
+    ]
+    assert len(problems(text.replace("in 45 s", "in at least 45 % of runs"), "duplicate-clause")) == 1
+
+
+def test_a_subtree_without_its_word_is_the_only_diagnostic() -> None:
+    """A path that names its tree means the tree."""
+    text = (
+        "Root Main\nQualityReq r\n    Go tries at most 3 per Water\n"
+        "BehaviorTree Main\n    ->\n        Water\nBehaviorTree Water\n    ->\n        Action Go\n"
+    )
+    assert show(text, check(workspace_of({"main.btq": text}), "main.btq")) == [
+        "6:9 error unknown-node «Water» `Water` is a tree, not a node"
+    ]
+    action = text.replace("        Water\n", "        Action Water\n")
+    assert [each.message for each in problems(action, "ambiguous-path")] == ["ambiguous path `Water`: 2 nodes match"]
+
+
+def test_a_signal_whose_entry_could_not_be_read_is_the_only_diagnostic() -> None:
+    """Whether its requirement is enforced is unknown."""
+    text = (
+        "Root Main\nsignal tank : L from tank_level initially 20 L\nQualityReq r\n    keeps tank >= 2 L\n"
+        "    on violation halt\nBehaviorTree Main\n    Action Go satisfies r\n"
+    )
+    assert show(text, check(workspace_of({"main.btq": text}), "main.btq")) == [
+        "2:22 error syntax-error «tank_level» expected a blackboard entry: `{key}`, found `tank_level`"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("subtree", "said"),
+    [
+        ('ID="go"', "unknown-tree «go» unknown tree `go`; did you mean `Go`?"),
+        ('name="Go"', 'unknown-tree «SubTree» missing tree of this SubTree: write `ID="Go"`'),
+    ],
+)
+def test_an_entry_of_a_tree_that_a_misspelt_subtree_may_run(subtree: str, said: str) -> None:
+    xml = (
+        f'<root BTCPP_format="4" main_tree_to_execute="M"><BehaviorTree ID="M"><SubTree {subtree} place="{{p}}"/>'
+        '</BehaviorTree><BehaviorTree ID="Go"><Drive to="{place}"/></BehaviorTree>'
+        '<TreeNodesModel><Action ID="Drive"><input_port name="to"/></Action></TreeNodesModel></root>'
+    )
+    found = [each for each in check(workspace_of({"main.xml": xml}), "main.xml") if "`p`" not in each.message]
+    assert [f"{each.rule} «{xml[each.span.start : each.span.end]}» {each.message}" for each in found] == [said]
+
+
+def test_a_port_of_a_model_in_another_element_is_the_only_diagnostic() -> None:
+    xml = (
+        '<root BTCPP_format="4"><BehaviorTree ID="M"><Say text="hello"/></BehaviorTree>'
+        '<TreeNodesModel><Action ID="Say"><input name="text" type="std::string"/></Action></TreeNodesModel></root>'
+    )
+    (found,) = check(workspace_of({"main.xml": xml}), "main.xml")
+    message = 'the engine and its tools ignore <input> in a model; did you mean `<input_port name="text"/>`?'
+    assert (found.rule, found.message) == ("xml-ignored", message)
+    (other,) = problems_in_xml(xml.replace('Say text="hello"', 'Say word="hello"'), "unknown-port")
+    assert other.message.startswith("`Say` has no port `word`")
+
+
+def problems_in_xml(xml: str, rule: str) -> list[Diagnostic]:
+    return [each for each in check(workspace_of({"main.xml": xml}), "main.xml") if each.rule == rule]

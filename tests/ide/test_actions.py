@@ -415,6 +415,19 @@ def test_extract_gives_a_free_name() -> None:
     )
 
 
+@pytest.mark.parametrize(("distribution", "name"), [("nav2-humble", "Extracted"), ("nav2-jazzy", "Extracted2")])
+def test_extract_gives_a_name_that_is_free_in_the_version_of_the_file(
+    tmp_path: Path, distribution: str, name: str
+) -> None:
+    """A build for version 4 writes `Extracted?` as `Extracted`."""
+    text = 'BehaviorTree Main\n    ->\n        Pick\nBehaviorTree "Extracted?"\n    Place\n'
+    path, at = str(tmp_path / "main.btq"), text.index("Pick")
+    (tmp_path / "btq.toml").write_text(f'nodes = ["{distribution}"]\n')
+    (tmp_path / "main.btq").write_text(text)
+    actions = code_actions(open_workspace(path), path, Span(at, at), ("refactor.extract",))
+    assert [action.title for action in actions] == [f"Extract into the tree `{name}`"]
+
+
 @pytest.mark.parametrize(
     ("node", "name"),
     [

@@ -436,7 +436,7 @@ def test_the_folders_are_read_once_for_their_settings(folder: Path) -> None:
 def test_severities_that_are_no_words_are_ignored(folder: Path) -> None:
     session = Session()
     session.folders = (str(folder),)
-    session.settle({"rules": {"unused-tree": ["off"], "unknown-node": {}, "missing-port": None, "x": "off"}})
+    session.configure({"rules": {"unused-tree": ["off"], "unknown-node": {}, "missing-port": None, "x": "off"}})
     assert str(folder / "main.btq") in session.reload()
 
 

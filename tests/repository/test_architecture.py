@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
 from collections import Counter
@@ -128,6 +129,15 @@ def test_the_top_of_the_package_is_small() -> None:
     assert names == {"__init__.py", "__main__.py", "cli.py", "lexer.py", "parser.py", "py.typed", "server.py"}
 
 
+def test_a_package_names_its_modules() -> None:
+    """In its docstring, which says what they are for; ARCHITECTURE.md does so for the rooms."""
+    for module in MODULES.keys() - {"btq_lang"}:
+        package, _, name = module.rpartition(".")
+        if package != "btq_lang":
+            docstring = ast.get_docstring(parsed(MODULES[package])) or ""
+            assert name in re.findall(r"\w+", docstring.lower()), f"{package} does not name {name}"
+
+
 def test_only_the_edges_open_files() -> None:
     for path in MODULES.values():
         calls = [node for node in ast.walk(parsed(path)) if isinstance(node, ast.Call)]
@@ -138,7 +148,7 @@ def test_only_the_edges_open_files() -> None:
 
 def test_there_is_one_way_to_look_something_up() -> None:
     """Inputs and queries are functions that `ask` is called with; nobody calls an input."""
-    declared = {"workspace/inputs.py", "checks/lookups.py"}
+    declared = {"workspace/inputs.py", "checks/lookups.py", "checks/cpp_lookups.py"}
     topics = {"of_viewpoint", "of_name", "of_model", "of_item", "of_project"}
     names = {
         node.name
@@ -153,7 +163,7 @@ def test_there_is_one_way_to_look_something_up() -> None:
         for node in ast.walk(parsed(path))
         if isinstance(node, ast.Call)
     }
-    assert called & {f"{module}.{name}" for module in ("inputs", "lookups") for name in names} == set()
+    assert called & {f"{module}.{name}" for module in ("inputs", "lookups", "cpp_lookups") for name in names} == set()
     takes_query = {
         f"{node.name}.{method.name}"
         for path in ("workspace/queries.py", "checks/view.py")

@@ -60,7 +60,7 @@ def verdicts(shared: Path) -> dict[str, str]:
 @pytest.fixture(scope="module")
 def found(corpus: dict[str, str]) -> dict[str, tuple[Diagnostic, ...]]:
     """The diagnostics of each file, by version 4 of the engine."""
-    project = Project(written_for=VERSIONS)
+    project = Project(original_engines=VERSIONS)
     return {name: check(Workspace({name: file_of(name, text)}, project), name) for name, text in corpus.items()}
 
 

@@ -1,5 +1,11 @@
 """The nodes of Nav2 by distribution of ROS 2: files with models, which `tools/nav2_nodes.py` writes.
 
+nodes       what control nodes, decorators and some leaves do; `ports`, which each node has in any distribution
+creation    what nodes need when they are created
+changes     what a release changes for trees of an earlier one
+navigator   the entries and parameters of bt_navigator; `servers`, the parameters of other nodes
+libraries   the libraries that register the nodes
+
 One invariant: only names and paths; a file is read when a project names it.
 """
 

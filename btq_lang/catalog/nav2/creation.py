@@ -102,15 +102,19 @@ SET_BEFORE: Final = ENTRIES.keys() - {"goal", "goals", "path", "waypoint_statuse
 
 def created_with(distribution: str, node: str, ports: Container[str]) -> Iterator[str]:
     """The entries that a node with these ports takes from its blackboard when it is created."""
-    letter = distribution[0]
-    calls_action, calls_service = ("server_name" in ports, "service_name" in ports)
-    if not calls_action and not calls_service:
-        yield from (entry for entry, letters in CREATED_WITH.get(node, {}).items() if letter in letters)
-        return
+    if "service_name" in ports:
+        return created_by(distribution, "BtServiceNode")
+    if "server_name" in ports:
+        return created_by(distribution, "BtActionNode" if node in SERVERS else "BtCancelActionNode")
+    return (entry for entry, letters in CREATED_WITH.get(node, {}).items() if distribution[0] in letters)
+
+
+def created_by(distribution: str, base: str) -> Iterator[str]:
+    """The entries that the constructor of a class of nodes that call a server takes: one of `cpp_classes.BASES`."""
     yield from ("node", "wait_for_service_timeout")
-    if calls_service or node in SERVERS:  # and does not cancel
+    if base != "BtCancelActionNode":
         yield "bt_loop_duration"
-    if letter in "hi":  # later ones go on without
+    if distribution[0] in "hi":  # later ones go on without
         yield "server_timeout"
 
 

@@ -1,4 +1,5 @@
-"""Completion scripts for shells, generated from the argparse parser, so that they have every option.
+"""Completion scripts for bash, fish, zsh and PowerShell, generated from the argparse parser, so that they have every
+option.
 
 One invariant: a script is self-contained: completion starts no process, not even btq.  What the commands do, and where
 a shell expects its script, is unknown here.

@@ -2,6 +2,12 @@
 
 One invariant: a log is read while it is judged, never all at once, and a bad file gives one NotALog or OSError whose
 message names what was expected.
+
+    btlog.py, sqlite.py   the files of the engine's loggers, and groot2/ what its publisher sends
+    bag.py                ROS 2 bags; `truncated_bags`: what is left of a broken one
+    tree_log.py, topics.py   what Nav2 publishes about its trees, and samples of signals, from a bag
+    samples.py            samples of signals from CSV and Parquet files
+    tree.py, side.py      the tree in a log, and the side file beside it
 """
 
 from __future__ import annotations
