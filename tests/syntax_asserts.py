@@ -37,6 +37,7 @@ from btq_lang.syntax.tree import (
     Goal,
     Hazard,
     HazardClause,
+    HazardSeverity,
     How,
     Include,
     Item,
@@ -68,7 +69,6 @@ from btq_lang.syntax.tree import (
     Satisfies,
     ScopeClause,
     Selector,
-    Severity,
     Signal,
     SkippedLines,
     Source,
@@ -548,7 +548,7 @@ def _(clause: Priority) -> str:
 
 
 @show_clause.register
-def _(clause: Severity) -> str:
+def _(clause: HazardSeverity) -> str:
     return words("severity", show(clause.tag))
 
 

@@ -37,6 +37,7 @@ WORDS = (
     *("at", "most", "least", "less", "than", "more", "between", "and", "or", "not", "if", "else", "of", "per", "every"),
     *("within", "after", "mission", "from", "to", "sum", "when", "while", "in", "with", "probability", "confidence"),
     *("over", "last", "activations", "on", "violation", "fail", "goal", "because", "verified", "by", "review", "node"),
+    *("source", "refines", "mitigates", "priority", "approved", "hazard", "severity"),
     *(
         "except",
         "under",
@@ -267,6 +268,8 @@ HEADS = (
     "",
     "context a : ",
     "QualityReq a ",
+    "QualityReq a refines ",
+    "QualityReq a\n  verified by test ",
     "signal a : m ",
     "apply a to ",
     "BehaviorTree t\n  X ",
