@@ -10,6 +10,7 @@ One invariant: nothing here concerns behavior trees or imports another room.
     reach.py        reachability in graphs, and their cycles
     grouping.py     values grouped by a key
     globs.py        patterns of paths
+    formulas.py     texts that a spreadsheet would run
     processes.py    processes that share the work of a command
     toml_places.py  positions of keys in a TOML text
     garbage.py      pauses of the garbage collector
