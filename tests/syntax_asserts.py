@@ -18,6 +18,7 @@ from btq_lang.syntax.tokens import DEDENT, INDENT, QUANTITY, STRING, Token
 from btq_lang.syntax.tree import (
     Amount,
     Apply,
+    Approval,
     Because,
     Between,
     Binary,
@@ -34,11 +35,14 @@ from btq_lang.syntax.tree import (
     Event,
     Every,
     Goal,
+    Hazard,
+    HazardClause,
     How,
     Include,
     Item,
     Meta,
     Mission,
+    Mitigates,
     Model,
     Models,
     Negative,
@@ -52,9 +56,11 @@ from btq_lang.syntax.tree import (
     Pair,
     Path,
     Port,
+    Priority,
     Qualities,
     QualityDecl,
     QualityPath,
+    Refines,
     ReqRef,
     Requirement,
     Root,
@@ -62,8 +68,10 @@ from btq_lang.syntax.tree import (
     Satisfies,
     ScopeClause,
     Selector,
+    Severity,
     Signal,
     SkippedLines,
+    Source,
     Subject,
     Sum,
     Table,
@@ -302,6 +310,12 @@ def _(item: QualityDecl) -> str:
 
 
 @show_item.register
+def _(item: Hazard) -> str:
+    head = words("hazard", show(item.name), show_optional(item.text))
+    return block(head, *map(show_clause, item.clauses))
+
+
+@show_item.register
 def _(item: Models) -> str:
     return block("models", *(show_item(model) for model in item.models))
 
@@ -444,13 +458,13 @@ def show_requirement_head(requirement: Requirement) -> str:
     return words(
         "classic" if requirement.classic else "",
         show(requirement.name) + (f"({parameters})" if parameters else ""),
-        f": {show_quality(requirement.quality)}" if requirement.quality else "",
+        f": {' and '.join(map(show_quality, requirement.qualities))}" if requirement.quality else "",
         show_optional(requirement.text),
     )
 
 
 @singledispatch
-def show_clause(clause: Clause) -> str:
+def show_clause(clause: Clause | HazardClause) -> str:
     raise TypeError(f"{type(clause).__name__} has no outline")
 
 
@@ -508,7 +522,39 @@ def _(clause: Because) -> str:
 
 @show_clause.register
 def _(clause: How) -> str:
-    return words("verified by", show(clause.method))
+    return words(
+        "verified by", ", ".join(words(show(way.method), show_optional(way.id)) for way in clause.ways) or MISSING
+    )
+
+
+@show_clause.register
+def _(clause: Source) -> str:
+    return words("source", show(clause.text))
+
+
+@show_clause.register
+def _(clause: Refines) -> str:
+    return words("refines", ", ".join(map(show, clause.names)) or MISSING)
+
+
+@show_clause.register
+def _(clause: Mitigates) -> str:
+    return words("mitigates", ", ".join(map(show, clause.names)) or MISSING)
+
+
+@show_clause.register
+def _(clause: Priority) -> str:
+    return words("priority", show(clause.tag))
+
+
+@show_clause.register
+def _(clause: Severity) -> str:
+    return words("severity", show(clause.tag))
+
+
+@show_clause.register
+def _(clause: Approval) -> str:
+    return words("approved by", show(clause.by), "on", show(clause.on), show_optional(clause.of, "of "))
 
 
 def show_subject(subject: Subject) -> str:

@@ -27,7 +27,9 @@ def grammar() -> str:
             "fileTypes": ["btq", "qualitybtcpp"],
             "patterns": [
                 _include("comment"),
-                *map(_include, ("file", "quality", "models", "port", "signal", "context", "apply", "verbatim")),
+                *map(
+                    _include, ("file", "quality", "hazard", "models", "port", "signal", "context", "apply", "verbatim")
+                ),
                 *map(_include, ("requirement", "tree", "node-clause", "clause-line", "node", "group")),
             ],
             "repository": _REPOSITORY,
@@ -142,6 +144,7 @@ _REPOSITORY: dict[str, Rule] = {
         "comment",
         "string",
     ),
+    "hazard": _region(rf"^\s*(hazard)(?=\s+[\w\"'])\s*({_NAME})?", _LINE, (_ITEM, _REQUIREMENT), "comment", "string"),
     "models": _match(rf"^\s*({words.MODELS})(?=\s*(?:[(#/]|$))", _ITEM),
     "port": _region(
         rf"^\s*({_any(words.PORT_WORDS)})(?!\s*[=(\w-]*=|[\w-])\s*({_NAME})?(?:\s*(:)\s*((?:{_NAME}|::)+))?",

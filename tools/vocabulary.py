@@ -17,11 +17,23 @@ from btq_lang.catalog.units import SYMBOLS as UNITS
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.grammar.claims import HAPPENINGS
 from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS
-from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS, HEADS
+from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS, HEADS, METADATA_HEADS
+from btq_lang.grammar.hazards import HAZARD_HEADS
 from btq_lang.syntax.tokens import DIRECTIONS, NODE_CLAUSES, SYMBOLS
 
 # Words that open an item of a file; what stands behind them differs, so each grammar treats them one by one.
-ITEMS = ("BehaviorTree", "Root", "include", "signal", "context", "apply", "quality", "qualities", "QualityReq")
+ITEMS = (
+    "BehaviorTree",
+    "Root",
+    "include",
+    "signal",
+    "context",
+    "apply",
+    "quality",
+    "qualities",
+    "QualityReq",
+    "hazard",
+)
 MODELS = "TreeNodesModel"
 
 # The words inside clauses that no table of the parser lists, because a function of it reads each where it stands.
@@ -60,8 +72,8 @@ CATEGORY_WORDS = CATEGORIES
 PORT_WORDS = longest_first(DIRECTIONS)
 CLAUSE_WORDS = tuple(sorted(NODE_CLAUSES))
 VERB_WORDS = longest_first(VERBS)
-HEAD_WORDS = longest_first(HEADS)
-REQUIREMENT_WORDS = longest_first((*VERBS, *HEADS, *HAPPENINGS, *EXPERIMENTS, *PARTICLES))
+HEAD_WORDS = longest_first((*HEADS, *METADATA_HEADS, *HAZARD_HEADS))
+REQUIREMENT_WORDS = longest_first((*VERBS, *HEAD_WORDS, *HAPPENINGS, *EXPERIMENTS, *PARTICLES))
 OUTCOME_WORDS = longest_first((*ACTIONS, *METHODS))
 FUNCTION_WORDS = longest_first(FUNCTIONS)
 COMPARISON_SIGNS = longest_first(COMPARISONS)

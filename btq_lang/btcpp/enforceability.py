@@ -36,7 +36,7 @@ def way_instead(requirement: ResolvedRequirement) -> tuple[Way, str] | None:
     """The way in which the clauses of a requirement are checked instead of enforced, and why; None if the engine is to
     enforce them."""
     if requirement.is_verified_by_people:
-        return "reviewed", f"verified by {requirement.method}"
+        return "reviewed", requirement.verification
     return None if requirement.demands_enforcement else ("monitored", "")
 
 

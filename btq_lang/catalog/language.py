@@ -83,6 +83,8 @@ item
     signal | signal battery : % from {{battery_level}} level initially 100 % | a measured value | \
         a value on the robot's blackboard, with its unit, for use in conditions
     context | context humans_near : distance < 2 m | a named condition | a situation that conditions can name
+    hazard | hazard H1 "Collision with a person" | a hazard | \
+        what may go wrong, which requirements mitigate
     apply | apply slow to every MoveBase except ToDock | a requirement for many nodes | \
         attaches a requirement to nodes anywhere in the mission
     quality | quality hygiene : safety "Nothing is carried along" | a custom quality | \
@@ -183,6 +185,14 @@ clause
     because | because "visitors do not know the robot" | the reason | the reason
     verified by | verified by review | monitor, analysis, test or review | \
         the verification method: `monitor`, `test`, `analysis` or `review`
+    source | source "ISO 13482, 5.10.2" | where it is from | where it is from: a clause of a standard, a document, a URL
+    refines | refines safe_speed | what it is a part of | the requirements of which this one is a part
+    mitigates | mitigates H1, H2 | hazards | the hazards that it makes less likely or less severe
+    priority | priority high | a tag | how important it is: a word of your own, which is shown and filtered
+    approved by | approved by "Kim" on "2026-11-29" of "1:0123456789ab" | who, when, and what | \
+        an approval, which `btq approve` writes; it counts until the requirement means something else
+clause of a hazard
+    severity | severity high | a tag | how severe it is: a word of your own
 action
     fail | on violation fail | stop the node | stops the node and makes it fail; its parent handles the failure
     halt | on violation halt | stop the mission | \
@@ -192,8 +202,8 @@ action
 method
     monitor | verified by monitor | from logs | tools check it from logs; the default
     analysis | verified by analysis | by people | people analyze it; no tool computes it
-    test | verified by test | by people | a test shows it; no tool computes it
-    review | verified by review | by people | people review it; no tool computes it
+    test | verified by test "TC-12" | by people | a test shows it; no tool computes it
+    review | verified by review "R-3" | by people | people review it; no tool computes it
 selector
     every | apply slow to every MoveBase | all nodes of a kind | all nodes of an ID or a kind
     under | apply slow to every MoveBase under Dock | below a node | only the nodes below another node

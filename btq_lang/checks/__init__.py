@@ -30,9 +30,11 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import TypeAlias
 
 from btq_lang.checks import (
+    approvals,
     arguments,
     attributes,
     bounds,
+    chain,
     children,
     clauses,
     demands,
@@ -104,6 +106,10 @@ _OF_CLAUSES: tuple[Check, ...] = (
     clauses.duplicate_clause,
     clauses.clause_without_odds,
     clauses.unused_parameter,
+    chain.unknown_hazard,
+    chain.cyclic_refinement,
+    approvals.approval_outdated,
+    approvals.approval_missing,
     bounds.impossible_bound,
     bounds.uses_of_gauge,
 )
@@ -210,6 +216,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         requirements.unresolved,
     ),
     syntax.Requirement: (
+        requirements.unknown_requirement,
         requirements.conflicting_requirement,
         requirements.unused_requirement,
         *_OF_CLAUSES,
@@ -219,6 +226,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         requirements.unresolved,
         requirements.requirement_without_subject,
     ),
+    syntax.Hazard: (kinds.duplicate_definition, chain.shared_id, names.empty_text),
     syntax.Apply: (requirements.unknown_requirement, clauses.named_twice, requirements.unresolved),
     syntax.Qualities: (qualities.quality_name,),
     syntax.QualityDecl: (kinds.duplicate_definition, names.empty_text, qualities.quality_name),

@@ -20,6 +20,7 @@ _ONCE: dict[type, str] = {
     syntax.OnViolation: "what happens on violation",
     syntax.Goal: "a goal",
     syntax.How: "how to verify it",
+    syntax.Priority: "a priority",
 }
 
 

@@ -30,6 +30,7 @@ from btq_lang.evidence.verdicts import (
     ContextSummary,
     EvidenceFile,
     MissionVerdicts,
+    RequirementLinks,
     RequirementVerdict,
     worst_of,
 )
@@ -249,6 +250,7 @@ class MissionEvaluation:
                 " ".join((requirements.all[name].title or "").split()),
                 worst_of(clause_verdict.verdict for clause_verdict in clauses),
                 tuple(clauses),
+                RequirementLinks.of(requirements.all[name]),
             )
             for name, clauses in by_requirement.items()
         )

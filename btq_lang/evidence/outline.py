@@ -129,7 +129,7 @@ _WORDS: Final[dict[type, str]] = {
 def open_reason(requirement: ResolvedRequirement) -> str:
     """Why no log can show a requirement; empty if logs can."""
     if requirement.is_verified_by_people:
-        return f"verified by {requirement.method}"
+        return requirement.verification
     return "" if requirement.claims or requirement.unread else "it has no clause that can be measured"
 
 

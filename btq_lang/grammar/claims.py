@@ -15,6 +15,7 @@ from btq_lang.grammar.clause_slips import clause_slip
 from btq_lang.grammar.conditions import (
     COMPARISONS,
     HEADS,
+    METADATA_HEADS,
     RELATIONS,
     bound_ahead,
     parse_cond,
@@ -305,7 +306,9 @@ def no_verb(cursor: Cursor, subject: Subject) -> None:
         cursor.recover()
     elif not isinstance(subject, Path):
         cursor.expected(_A_VERB)
-    elif len(subject.names) == 1 and (likely := near(subject.names[0].raw, VERB_WORDS | HEADS, limit=1)):
+    elif len(subject.names) == 1 and (
+        likely := near(subject.names[0].raw, VERB_WORDS | HEADS | METADATA_HEADS, limit=1)
+    ):
         cursor.misspelt(subject.span.shifted(cursor.base), subject.names[0].raw, likely[0])
         cursor.recover()
     else:
@@ -519,11 +522,13 @@ MEANT: Final = {  # by the word that is read as a node before a verb
     "always": "write `keeps battery >= 15 %`",
     "not": "write `never lamp_on`, or `keeps not lamp_on`",
     "quality": QUALITY_IN_HEAD,
+    "severity": "a hazard has a `severity`, a requirement a `priority`",
     **dict.fromkeys(
         ("title", "description", "text"), 'a requirement has one title, after its name: `QualityReq fast "in time"`'
     ),
 }
 _NO_NAMES: Final = HEADS | {"and", "or", "not", "if", "else", "is", "to", "of", "by", "per", "at", "within", "after"}
+_BEGINNINGS: Final = VERB_WORDS | HEADS | METADATA_HEADS
 _OPEN: Final = re.compile("<[a-z]+>")  # what is left to choose in a clause
 _A_CHOICE: Final = "60 s if battery_low else 30 s"
 _A_VERB: Final = "a verb: takes, succeeds, needs, keeps, …"

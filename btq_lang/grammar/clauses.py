@@ -18,9 +18,10 @@ from btq_lang.grammar.claims import (
     parse_claim,
     report_slip,
 )
-from btq_lang.grammar.conditions import HEADS, SUBJECT_HEADS, parse_cond
+from btq_lang.grammar.conditions import HEADS, METADATA_HEADS, SUBJECT_HEADS, parse_cond
 from btq_lang.grammar.cursor import Cursor
-from btq_lang.syntax.scan import line_end, line_start
+from btq_lang.grammar.metadata import begins_metadata, list_goes_on, parse_metadata, parse_text
+from btq_lang.syntax.scan import line_start
 from btq_lang.syntax.suggestions import unknown_unit
 from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPERATOR, QUANTITY, STRING
 from btq_lang.syntax.tree import (
@@ -32,9 +33,9 @@ from btq_lang.syntax.tree import (
     Odds,
     OnViolation,
     ScopeClause,
+    Way,
     Window,
     Word,
-    quote,
 )
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
@@ -67,7 +68,7 @@ def parse_clauses(cursor: Cursor, at_least_one: bool = False) -> tuple[Clause, .
 
 
 def parse_clause(cursor: Cursor) -> Clause | None:
-    """Clause = Claim | Scope | Odds | Confidence | Window | OnViolation | Goal | Because | How"""
+    """Clause = Claim | Scope | Odds | Confidence | Window | OnViolation | Goal | Because | How | Source | …"""
     word = cursor.raw if cursor.kind == NAME else ""
     if word in VERB_WORDS or word in SUBJECT_HEADS:
         return parse_claim(cursor)
@@ -87,6 +88,8 @@ def parse_clause(cursor: Cursor) -> Clause | None:
         return parse_because(cursor)
     if word == "verified":
         return parse_how(cursor)
+    if word in METADATA_HEADS and begins_metadata(cursor):
+        return parse_metadata(cursor)
     if word.lower() in _NOT_IN_BTQ and is_other_clause(cursor):
         other_clause(cursor, _NOT_IN_BTQ[word.lower()])
         return None
@@ -207,22 +210,27 @@ def parse_goal(cursor: Cursor) -> Goal:
 def parse_because(cursor: Cursor) -> Because:
     """ "because" STRING"""
     start = cursor.take().start
-    cursor.skip_sign(":", "=")
-    text = cursor.take() if cursor.kind == STRING else None
-    if text is None:
-        begin = cursor.here().start
-        reason = cursor.text[begin : line_end(cursor.text, begin)].partition(" #")[0].rstrip()
-        fix = replace_fix("Put quotes around it", Span(begin, begin + len(reason)), quote(reason))
-        cursor.expected("the reason in quotes", (), (fix,) if reason and not cursor.group else ())
+    text = parse_text(cursor, "the reason")
     return Because(start, cursor.last_end(), text)
 
 
 def parse_how(cursor: Cursor) -> How:
-    """ "verified" "by" ( "monitor" | "analysis" | "test" | "review" )"""
+    """ "verified" "by" Way { "," Way }"""
     start = cursor.take().start
     cursor.expect_word("by")
+    ways = cursor.listed(parse_way, ways_go_on)
+    return How(start, cursor.last_end(), ways)
+
+
+def parse_way(cursor: Cursor) -> Way | None:
+    """( "monitor" | "analysis" | "test" | "review" ) [ STRING ]"""
+    start = cursor.start()
     method = parse_one_of(cursor, METHODS)
-    return How(start, cursor.last_end(), method)
+    if is_bare_id(cursor):
+        cursor.complain(cursor.here(), "the ID of a test or a report goes in quotes", cursor.put_in_quotes())
+        cursor.advance()
+    identifier = cursor.take() if cursor.kind == STRING else None
+    return Way(start, cursor.last_end(), method, identifier) if method is not None else None
 
 
 def parse_experiments(cursor: Cursor) -> Word | None:
@@ -265,6 +273,21 @@ def parse_one_of(cursor: Cursor, words: tuple[str, ...]) -> Word | None:
 # ---- what productions ask and report ----
 
 
+def ways_go_on(cursor: Cursor) -> bool:
+    """Skip the comma between ways to verify; where it may belong to `satisfies`, only before a way with an ID."""
+    following = cursor.index + 1
+    if cursor.at(",") and cursor.raws[following] in METHODS and cursor.kinds[following + 1] == STRING:
+        return cursor.accept(",")
+    return list_goes_on(cursor)
+
+
+def is_bare_id(cursor: Cursor) -> bool:
+    """Whether the current word ends its clause and begins no other one."""
+    if cursor.kind != NAME or cursor.raw in VERB_WORDS or cursor.raw in ENDS_CLAUSES:
+        return False
+    return cursor.kinds[cursor.index + 1] == NEWLINE or cursor.raws[cursor.index + 1] == ","
+
+
 def is_other_clause(cursor: Cursor) -> bool:
     """Whether the current word, of other notations, begins a clause of them and is not the subject of one."""
     following = cursor.index + 1
@@ -277,8 +300,9 @@ def other_clause(cursor: Cursor, nearest: str) -> None:
     """Report a clause of another notation, with the nearest of this one."""
     word, value = cursor.here(), cursor.index + 1 + (cursor.raws[cursor.index + 1] in (":", "="))
     fixes: tuple[Fix, ...] = ()
-    if nearest == _BECAUSE and cursor.kinds[value] == STRING:
-        fixes = (replace_fix("Write `because`", Span(word.start, cursor.starts[value]), "because "),)
+    if nearest in (_BECAUSE, _SOURCE) and cursor.kinds[value] == STRING:
+        head = "because" if nearest == _BECAUSE else "source"
+        fixes = (replace_fix(f"Write `{head}`", Span(word.start, cursor.starts[value]), f"{head} "),)
     elif (
         nearest == _TITLE and cursor.title_at >= 0 and cursor.index == 0 and cursor.kinds[value : value + 2] == _STRING
     ):
@@ -348,18 +372,21 @@ _OTHER_WORDS: Final = {  # for actions and methods
 _A_CLAUSE: Final = "a clause: takes, keeps, in at least, on violation, …"
 _BECAUSE: Final = '`because "…"`'
 _COMMENT: Final = "a comment `# …`"
+_SOURCE: Final = '`source "…"`'
 _TITLE: Final = 'the title in quotes after the name: `QualityReq fast "in time"`'
 # Words with which other notations begin a part of a requirement, each with what is nearest to it.
 _NOT_IN_BTQ: Final = {
     **dict.fromkeys(("rationale", "reason", "justification", "motivation", "why"), _BECAUSE),
     **dict.fromkeys(("description", "desc", "title", "text", "summary", "statement", "label"), _TITLE),
     **dict.fromkeys(
-        ("status", "state", "owner", "author", "source", "stakeholder", "version", "date", "note", "comment", "doc"),
+        ("status", "state", "owner", "author", "stakeholder", "version", "date", "note", "comment", "doc"),
         _COMMENT,
     ),
-    **dict.fromkeys(
-        ("priority", "severity", "criticality", "importance", "risk"), "`on violation` with what happens then"
-    ),
+    **dict.fromkeys(("reference", "ref", "standard", "origin", "url", "link"), _SOURCE),
+    **dict.fromkeys(("criticality", "importance", "prio"), "`priority` with a word"),
+    **dict.fromkeys(("risk", "risks", "hazards", "prevents", "avoids"), "`mitigates` with the ID of a hazard"),
+    **dict.fromkeys(("parent", "parents", "derives", "derived"), "`refines` with the ID of a requirement"),
+    **dict.fromkeys(("approval", "approver", "signed"), "`approved by`, which `btq approve` writes"),
     **dict.fromkeys(("wish", "desire", "target", "ideal", "optional"), "`goal`, a better bound than the required one"),
     **dict.fromkeys(("verification", "verify", "validation"), "`verified by` with a method"),
     **dict.fromkeys(("precondition", "assumption", "context"), "`while` or `when` with a condition"),

@@ -19,6 +19,8 @@ SUBJECT_HEADS: Final = frozenset(("mission", "every", "from", "sum"))
 HEADS: Final = SUBJECT_HEADS.union(
     ("while", "when", "in", "with", "confidence", "over", "on", "goal", "because", "verified")
 )
+# Words that begin a clause only where its continuation follows; else they are names.
+METADATA_HEADS: Final = frozenset(("source", "refines", "mitigates", "priority", "approved"))
 FUNCTIONS: Final = frozenset(("max", "min", "mean", "p95", "stddev", "change", "count"))
 _OTHER_FUNCTIONS: Final = {
     **dict.fromkeys(("avg", "average"), "mean"),

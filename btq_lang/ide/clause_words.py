@@ -8,7 +8,7 @@ from btq_lang.catalog.verbs import VERBS
 from btq_lang.catalog.verbs import words as words_of
 from btq_lang.grammar.claims import HAPPENINGS
 from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS
-from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS
+from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS, METADATA_HEADS
 from btq_lang.syntax.tokens import BRACED, CLOSE, NAME, NUMBER, OPEN, QUANTITY, STRING, Token
 from btq_lang.util.record import Record, replace
 
@@ -23,6 +23,7 @@ class Expected(Record):
         value: the value of a bound: parameters and signals.
         signal: the name of a signal.
         node: a path to a node.
+        requirement, hazard: the ID of one.
         clause: another clause.
     """
 
@@ -33,6 +34,8 @@ class Expected(Record):
     signal: bool = False
     node: bool = False
     clause: bool = False
+    requirement: bool = False
+    hazard: bool = False
 
 
 def expected(words: Sequence[Token]) -> Expected:
@@ -46,6 +49,10 @@ def expected(words: Sequence[Token]) -> Expected:
     before = words[-2].text if len(words) > 1 else ""
     earlier = [word.text for word in words]
     text = last.text if last.kind not in (STRING, BRACED) else ""
+    if (of_approval := _in_approval(words)) is not None:
+        return of_approval
+    if text == "," and (head := _begins_last(earlier, _CLAUSES)) in _LISTS:
+        return _LISTS[head]
     if text == "of" and _begins_last(earlier, (*_USES, "sum", "in", "with")) in _USES:
         return Expected(signal=True)
     if text == "of":
@@ -67,6 +74,18 @@ def expected(words: Sequence[Token]) -> Expected:
             return Expected(("to",))
         return Expected(_after_value(earlier), clause=True)
     return Expected(clause=True)
+
+
+def _in_approval(words: Sequence[Token]) -> Expected | None:
+    """What may follow in an approval; None in another clause, or after it."""
+    begin = next((index for index in reversed(range(len(words))) if words[index].text == "approved"), None)
+    written = [word.text for word in words[begin + 1 :] if word.kind != STRING] if begin is not None else []
+    if begin is None or written != _APPROVAL[: len(written)] or len(words) == begin + 1:
+        return None
+    if words[-1].kind != STRING:
+        return _A_TEXT
+    following = _APPROVAL[len(written) : len(written) + 1]
+    return Expected(tuple(following), clause=written != _APPROVAL[:1])
 
 
 def opens_condition(words: Sequence[Token]) -> bool:
@@ -137,6 +156,8 @@ def _after_value(words: Sequence[str]) -> tuple[str, ...]:
         return _EXPERIMENTS
     if head in _CONDITIONS:
         return _AFTER_OPERAND
+    if head == "verified" and words[-1] in METHODS:
+        return ('""',)
     if "if" in words:
         return ("and", "or", "else")
     return ("if",) if head in _TIMED or head == "goal" else ()
@@ -161,10 +182,18 @@ _EVENTS = (*words_of(operands=("event",)), "after", "from", "to")
 _CLAUSES = (
     *VERBS,
     *("in", "with", "confidence", "over", "on", "goal", "because", "verified", "from", "while", "when", "context"),
+    *METADATA_HEADS,
 )
 _CONDITION = Expected(condition=True)
 _VALUE = Expected(value=True)
 _EVENT = Expected(("mission", "when"), node=True)
+_A_TEXT = Expected(('""',))
+_APPROVAL = ["by", "on", "of"]
+_LISTS = {
+    "refines": Expected(requirement=True),
+    "mitigates": Expected(hazard=True),
+    "verified": Expected(METHODS),
+}
 _OPERANDS = {
     **dict.fromkeys(("duration", "use", "count"), Expected(_BOUNDS)),
     "rate": Expected(("every", *_BOUNDS)),
@@ -197,7 +226,11 @@ _AFTER = {
     "every": Expected(value=True, node=True),
     "node": Expected(node=True),
     "confidence": Expected(("95 %", "99 %")),
-    "because": Expected(('""',)),
+    **dict.fromkeys(("because", "source"), _A_TEXT),
+    "refines": _LISTS["refines"],
+    "mitigates": _LISTS["mitigates"],
+    "priority": Expected(("high", "medium", "low")),
+    "approved": Expected(("by",)),
     ",": Expected(value=True, node=True),
     "/": Expected(node=True, operand=True),
 }

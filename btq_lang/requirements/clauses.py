@@ -13,6 +13,7 @@ from typing import Final
 from btq_lang.catalog.units import Dimension, a_dimension
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements import model, nodes
+from btq_lang.requirements.metadata import metadata_of
 from btq_lang.requirements.reader import Reader
 from btq_lang.requirements.terms import COUNT, DURATION, PERCENT, SORTS, TIME, Wanted, sort_of
 from btq_lang.syntax import tree as syntax
@@ -29,6 +30,7 @@ def with_clauses(
     scopes: list[model.ResolvedScope] = []
     once: dict[str, object] = {}
     reasons: list[str] = []
+    metadata: list[syntax.Clause] = []
     goals: list[syntax.Goal] = []
 
     def keep(field: str, value: object) -> None:
@@ -59,10 +61,14 @@ def with_clauses(
             goals.append(clause)
         elif isinstance(clause, syntax.Because) and clause.text is not None:
             reasons.append(clause.text.text)
-        elif isinstance(clause, syntax.How) and clause.method is not None:
-            keep("method", clause.method.raw)
+        elif isinstance(clause, syntax.How) and clause.ways:
+            keep("ways", tuple(_way(way) for way in clause.ways))
+        elif type(clause) in syntax.METADATA:
+            metadata.append(clause)
     if goals:
         once["goal"] = reader.bounded(goals[0].value, _of_goal(claims, "odds" in once))
+    if metadata:
+        once |= metadata_of(reader, metadata)
     return replace(
         requirement,
         claims=(*requirement.claims, *claims),
@@ -71,6 +77,10 @@ def with_clauses(
         reasons=(*requirement.reasons, *reasons),
         **once,
     )
+
+
+def _way(written: syntax.Way) -> model.ResolvedWay:
+    return model.ResolvedWay(written.method.raw, written.id.text if written.id is not None else None)  # type: ignore[arg-type]  # the parser's words
 
 
 def claim_of(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | None:

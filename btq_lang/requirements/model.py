@@ -350,16 +350,46 @@ class ResolvedWindow(Record):
     place: Place
 
 
+class ResolvedWay(Record):
+    """A way to verify a requirement: `test "TC-12"`.  id: of the test case or the report; None if none is named."""
+
+    method: Method
+    id: str | None
+
+    @property
+    def text(self) -> str:
+        return self.method if self.id is None else f'{self.method} "{self.id}"'
+
+
+class ResolvedApproval(Record):
+    """An approval.
+
+    Attributes:
+        on: the date, as written.
+        fingerprint: of the meaning that was approved; None if none is given.
+    """
+
+    by: str
+    on: str
+    fingerprint: str | None
+    place: Place
+
+
 class ResolvedRequirement(Record):
     """A requirement with its clauses resolved; scopes, odds, confidence, window, action and goal apply to all claims.
 
     Attributes:
         place: its name, where it is defined.
         quality: as written, names joined by points; the enclosing one for a classic requirement.
+        further_qualities: those after the first one.
         title: its title, or the classic description.
         classic: whether its claims were read from SuccessIf and FailureIf in its description.
         action: None: not given, so it is monitored.
+        ways: to verify it; none: by monitor.
         unread: the claims, as typed, of which a part was not understood.
+        sources: where it is from.
+        refines: the requirements of which it is a part.
+        mitigates: hazards.
     """
 
     name: str
@@ -376,8 +406,30 @@ class ResolvedRequirement(Record):
     action: Action | None = None
     goal: Bounded | None = None
     reasons: tuple[str, ...] = ()
-    method: Method | None = None
+    ways: tuple[ResolvedWay, ...] = ()
     unread: tuple[str, ...] = ()
+    further_qualities: tuple[str, ...] = ()
+    sources: tuple[str, ...] = ()
+    refines: tuple[str, ...] = ()
+    mitigates: tuple[str, ...] = ()
+    priority: str | None = None
+    approvals: tuple[ResolvedApproval, ...] = ()
+
+    @property
+    def qualities(self) -> tuple[str, ...]:
+        """All its qualities, as written."""
+        return () if self.quality is None else (self.quality, *self.further_qualities)
+
+    @property
+    def method(self) -> Method | None:
+        """The way that counts: `monitor` if it is one of several; None if none is given."""
+        methods = [way.method for way in self.ways]
+        return "monitor" if "monitor" in methods else next(iter(methods), None)
+
+    @property
+    def verification(self) -> str:
+        """The clause about the ways to verify it; empty without any."""
+        return f"verified by {', '.join(way.text for way in self.ways)}" if self.ways else ""
 
     @property
     def demands_enforcement(self) -> bool:

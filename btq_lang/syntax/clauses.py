@@ -5,7 +5,7 @@ One invariant: as in `tree`, to which these classes belong, offsets count from t
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 from btq_lang.syntax.words import Word
 from btq_lang.util.record import Part, Record
@@ -177,13 +177,76 @@ class Because(Part):
     text: Word | None
 
 
+class Way(Part):
+    """`test "TC-12"` of `verified by`.  method: monitor, analysis, test or review; id: of the test case, the report."""
+
+    method: Word
+    id: Word | None = None
+
+
 class How(Part):
-    """`verified by review`.  method: monitor, analysis, test or review."""
+    """`verified by test "TC-12", review`."""
 
-    method: Word | None
+    ways: tuple[Way, ...]
 
 
-Clause: TypeAlias = Claim | ScopeClause | Odds | Confidence | Window | OnViolation | Goal | Because | How
+class Source(Part):
+    """`source "ISO 13482, 5.10.2"`: where a requirement or a hazard is from."""
+
+    text: Word | None
+
+
+class Refines(Part):
+    """`refines safe_speed, REQ-7`: the requirements of which this one is a part."""
+
+    names: tuple[Word, ...]
+
+
+class Mitigates(Part):
+    """`mitigates H1, H2`: hazards."""
+
+    names: tuple[Word, ...]
+
+
+class Priority(Part):
+    """`priority high`: a free tag."""
+
+    tag: Word | None
+
+
+class Approval(Part):
+    """`approved by "Kim" on "2026-11-29" of "1:0123456789ab"`; `of`: the fingerprint of what was approved."""
+
+    by: Word | None
+    on: Word | None
+    of: Word | None = None
+
+
+class Severity(Part):
+    """`severity high` of a hazard: a free tag."""
+
+    tag: Word | None
+
+
+Clause: TypeAlias = (
+    Claim
+    | ScopeClause
+    | Odds
+    | Confidence
+    | Window
+    | OnViolation
+    | Goal
+    | Because
+    | How
+    | Source
+    | Refines
+    | Mitigates
+    | Priority
+    | Approval
+)
+HazardClause: TypeAlias = Source | Because | Severity
+# The clauses that demand nothing.
+METADATA: Final = frozenset((Source, Refines, Mitigates, Priority, Approval))
 
 
 # ---- Conditions -----------------------------------------------------------------------------------------------------

@@ -10,7 +10,8 @@ import pytest
 from btq_lang.catalog.language import PHRASES, Phrase, beginning, phrase_at, phrases_of
 from btq_lang.grammar.claims import HAPPENINGS, VERB_WORDS
 from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS
-from btq_lang.grammar.conditions import FUNCTIONS, HEADS
+from btq_lang.grammar.conditions import FUNCTIONS, HEADS, METADATA_HEADS
+from btq_lang.grammar.hazards import HAZARD_HEADS
 from btq_lang.grammar.item_words import ITEM_WORDS
 from btq_lang.parser import parse
 from btq_lang.syntax.tokens import NODE_CLAUSES
@@ -20,6 +21,7 @@ FORMS = {
     "part of a model": "Action X\n    {}\n",
     "clause of a node": "BehaviorTree X\n    A {}\n",
     "attribute of a node": "BehaviorTree X\n    {}\n",
+    "clause of a hazard": "hazard x\n    {}\n",
     "event": "QualityReq x\n    {}\n",
     **dict.fromkeys(("item", "part of a signal", "selector", "attribute of the file", "classic form"), "{}\n"),
 }
@@ -36,7 +38,7 @@ def test_no_word_of_the_grammar_is_left_out() -> None:
     assert words_of("method") == set(METHODS)
     assert words_of("item") == set(ITEM_WORDS)
     assert words_of("clause of a node") - {"parameters"} == set(NODE_CLAUSES)
-    assert words_of() >= HEADS | FUNCTIONS | EXPERIMENTS
+    assert words_of() >= HEADS | METADATA_HEADS | FUNCTIONS | EXPERIMENTS | {*HAZARD_HEADS}
 
 
 @pytest.mark.parametrize("phrase", PHRASES, ids=lambda phrase: f"{phrase.words}, {phrase.part}")

@@ -372,7 +372,6 @@ A_TIME = "expected a unit of time: ms, s, min, h"
 TITLE = "a title goes in quotes"
 ITEM = "expected an item: BehaviorTree, QualityReq, include, signal, …, found "
 A_FILE = "expected a file in quotes, found "
-TWO_QUALITIES = "write a second requirement for the other one, or choose the one that matters most"
 A_PORT = "expected a port (input, output or inout), metadata or xml, found "
 
 
@@ -479,8 +478,9 @@ A_PORT = "expected a port (input, output or inout), metadata or xml, found "
         ("tree T\n    A\n", "unknown word `tree`; did you mean `BehaviorTree`?", None, "BehaviorTree T\n    A\n"),
         ('QualityReq REQ.001 : safety "t"\n', "this ID needs quotes", None, 'QualityReq "REQ.001" : safety "t"\n'),
         ("QualityReq 4711 : safety\n", "this ID needs quotes", None, 'QualityReq "4711" : safety\n'),
-        ("QualityReq r : safety, usability\n", "a requirement has one quality", TWO_QUALITIES, None),
-        ("QualityReq r : safety and usability\n", "a requirement has one quality", TWO_QUALITIES, None),
+        ("QualityReq r : safety, usability\n", "qualities are joined by `and`, not by `,`", None,
+         "QualityReq r : safety and usability\n"),
+        ("QualityReq r : safety and\n", "expected a quality, found the end of the line", None, None),
         ('QualityReq r "t" : safety\n', "a requirement's quality goes before its title", None, None),
         ("QualityReq r (x = 3 m)\n", "expected `:` and the parameter's unit, found `=`",
          "write its unit after `:`, and its default after that: `limit : m = 3 m`", None),

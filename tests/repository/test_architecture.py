@@ -55,6 +55,7 @@ ONLY_IN = {
     "lsprotocol": {"lsp", "server"},
     "tree_sitter": {"cpp"},
     "tree_sitter_cpp": {"cpp"},
+    "reqif": {"requirements"},
     "yaml": {"nav2"},
     "zmq": {"evidence"},
     "msgpack": {"evidence"},
