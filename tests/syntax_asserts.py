@@ -17,6 +17,7 @@ from btq_lang.parser import Parsed, parse
 from btq_lang.syntax.tokens import DEDENT, INDENT, QUANTITY, STRING, Token
 from btq_lang.syntax.tree import (
     Amount,
+    AnyEvent,
     Apply,
     Because,
     Between,
@@ -530,9 +531,11 @@ def show_path(path: Path | None) -> str:
     return "/".join(map(show, path.names)) if path else MISSING
 
 
-def show_event(event: Event | None) -> str:
+def show_event(event: Event | AnyEvent | None) -> str:
     if event is None:
         return MISSING
+    if isinstance(event, AnyEvent):
+        return " or ".join(map(show_event, event.atoms))
     if event.happening == "when":
         return words("when", show_condition(event.condition))
     return words(show_path(event.path) if event.path else "(mission)", event.happening)

@@ -317,6 +317,7 @@ _KINDS: Final[dict[type, str]] = {
     model.ClassicScript: "script",
     model.Limit: "limit",
     model.ResolvedEvent: "event",
+    model.AnyEvent: "any-event",
     model.Interval: "span",
     model.DurationSum: "total",
     model.EveryNode: "every",

@@ -166,6 +166,7 @@ event
     finishes | follows Pick finishes | SUCCESS or FAILURE | the node returns SUCCESS or FAILURE
     halts | follows Pick halts | it is halted while it runs | another node or the program halts the node while it runs
     when | starts within 1 s after when humans_near | a condition | a condition becomes true
+    or | follows Pick fails or Place fails | any of several | any of several events; a condition comes last
 clause
     while | while humans_near | only while a condition holds | \
         counts only the time (or the activations) in which the condition holds

@@ -150,18 +150,19 @@ def _of_subject(view: View, claim: syntax.Claim) -> tuple[str, str] | None:
         message = f"a mission starts only once in a run, so `{verb}` does not apply to it"
         return message, "name the node whose starts to count: `MoveBase tries at most 3`"
     note = "name the node that is meant: `Dock starts within 2 s after Batch succeeds`"
-    if verb == "follows" and event.condition is not None:
+    if verb == "follows" and isinstance(event, syntax.Event) and event.condition is not None:
         note = "for what must hold when it starts, write `mission needs …`"
     return "a mission starts before all else in its run, not after it", note
 
 
 def _of_event(view: View, claim: syntax.Claim) -> tuple[str, str] | None:
     """The message and the note for a claim about what happens after the mission has ended, or what runs before it."""
-    event = claim.event
+    event = claim.event if isinstance(claim.event, syntax.Event) else None
+    for atom in claim.event.atoms if claim.event is not None else ():
+        if atom is not None and atom.happening != "starts" and _is_of_mission(view, atom):
+            return f"nothing happens in a run after `{_event_text(atom)}`", _BY_ITSELF
     if event is None or not _is_of_mission(view, event):
         return None
-    if event.happening != "starts":
-        return f"nothing happens in a run after `{_event_text(event)}`", _BY_ITSELF
     if claim.verb.raw != "ends" or not _starts_first(view) or _is_mission(view, claim.subject):
         return None
     ending = _path_text(claim.subject) if isinstance(claim.subject, syntax.Path) else "…"
@@ -174,8 +175,9 @@ def _of_span(view: View, claim: syntax.Claim) -> tuple[str, str] | None:
     if not isinstance(claim.subject, syntax.Between):
         return None
     for event, side, is_outside in ((claim.subject.first, "after", False), (claim.subject.last, "before", True)):
-        if event is not None and (event.happening == "starts") is is_outside and _is_of_mission(view, event):
-            return f"nothing happens in a run {side} `{_event_text(event)}`", _BY_ITSELF
+        for atom in event.atoms if event is not None else ():
+            if atom is not None and (atom.happening == "starts") is is_outside and _is_of_mission(view, atom):
+                return f"nothing happens in a run {side} `{_event_text(atom)}`", _BY_ITSELF
     return None
 
 

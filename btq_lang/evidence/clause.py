@@ -6,7 +6,7 @@ One invariant: a clause that cannot be judged is unknown with the reason, and ne
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
@@ -57,7 +57,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.model import Outcome
     from btq_lang.evidence.odds import Limits
     from btq_lang.evidence.outline import Demand
-    from btq_lang.requirements.model import ResolvedClaim, ResolvedEvent, Subject
+    from btq_lang.requirements.model import AnyEvent, ResolvedClaim, ResolvedEvent, Subject
 
 
 class _Place(Record):
@@ -315,7 +315,9 @@ class JudgedClause:
         observed = Observed(self._signals, place.others, root.started, root.ended)
         own = self._history.activations_of(place.uids)
         refused = [refusal for refusal in self._refused if refusal.uid in place.uids]
-        return OverRun(self.claim.verb, self.requirement.scopes, root, own, observed, refused, self._stopped, [])
+        return OverRun(
+            self.claim.verb, self.requirement.scopes, root, place.uids, own, observed, refused, self._stopped, []
+        )
 
     def _judged_over(self, claim: ResolvedClaim, overs: Sequence[OverRun]) -> Sequence[Judgement | None]:
         """The judgements of a run by a claim; `overs`: the run as it may have been."""
@@ -435,17 +437,25 @@ class JudgedClause:
         if self._is_about_mission and not joined.build.is_main:  # which did not run as a whole
             return []
         if isinstance(subject, Interval):
-            firsts = self._instances(joined, _node_of(subject.first.subject))
-            groups: dict[tuple[int, ...], tuple[int, ...]] = {}
-            lasts = self._instances(joined, _node_of(subject.last.subject))
-            for uid in firsts if subject.first.subject is not None else [ROOT]:
-                together = near(uid, lasts, joined.tree)
+            firsts = self._instances_of(joined, subject.first)
+            groups: dict[tuple[tuple[int, ...], ...], tuple[int, ...]] = {}
+            lasts = [self._instances(joined, _node_of(atom.subject)) for atom in subject.last.atoms]
+            for uid in firsts:
+                together = tuple(near(uid, of_atom, joined.tree) for of_atom in lasts)
                 groups[together] = (*groups.get(together, ()), uid)
             return [*groups.values()] if not self.findings.missing else []
         if isinstance(subject, DurationSum):
             uids = [uid for target in subject.targets for uid in self._instances(joined, target)]
             return [tuple(uids)] if uids and not self.findings.missing else []
         return [(uid,) for uid in self._instances(joined, _node_of(subject))]
+
+    def _instances_of(self, joined: Joined, event: ResolvedEvent | AnyEvent) -> Iterable[int]:
+        """The uids of the nodes of an event; that of the root for a condition."""
+        uids: dict[int, None] = {}
+        for atom in event.atoms:
+            own = self._instances(joined, _node_of(atom.subject)) if atom.condition is None else [ROOT]
+            uids.update(dict.fromkeys(own))
+        return uids
 
     def _instances(self, joined: Joined, target: NodeTarget | None) -> list[int]:
         """The uids of a node's instances; notes those missing from the log."""
@@ -558,8 +568,8 @@ def _kind(judgement: Judgement | None, activation: Activation) -> int:
 def _events(claim: ResolvedClaim, subject: Subject | None) -> tuple[ResolvedEvent, ...]:
     """The events that a clause names."""
     if isinstance(subject, Interval):
-        return subject.first, subject.last
-    return (claim.event,) if claim.event is not None else ()
+        return subject.first.atoms + subject.last.atoms
+    return claim.event.atoms if claim.event is not None else ()
 
 
 def _node_of(subject: Subject | None) -> NodeTarget | None:

@@ -316,7 +316,7 @@ def _span(claim: ResolvedClaim, run: OverRun) -> Judgements:
     # The first one that has happened, of those from each index on.
     ends = [*accumulate(reversed(certain), lambda *pair: min(pair, key=attrgetter("last")))][::-1]
     next_after = bisect_right if first == span.last else bisect_left  # an event does not follow itself
-    for event in run.happenings(first, run.own if first.condition is None else None, is_by_row):
+    for event in run.happenings(first, is_own=True, is_by_row=is_by_row):
         index = next_after(moments, event.first)
         last = ends[index] if index < len(ends) else None
         until = last.last if last is not None else run.root.ended

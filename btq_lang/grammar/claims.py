@@ -16,6 +16,7 @@ from btq_lang.grammar.conditions import (
     COMPARISONS,
     HEADS,
     RELATIONS,
+    accept_one,
     bound_ahead,
     parse_cond,
     parse_path,
@@ -27,6 +28,7 @@ from btq_lang.syntax.scan import number_end
 from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
 from btq_lang.syntax.tree import (
     Amount,
+    AnyEvent,
     Between,
     Bound,
     Bounded,
@@ -74,7 +76,7 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
     condition: Condition | None = None
     resource: Word | None = None
     per: Path | Word | None = None
-    event: Event | None = None
+    event: Event | AnyEvent | None = None
     every = False
     operand = VERBS[verb.raw].operand
     if operand == "duration":
@@ -139,8 +141,19 @@ def parse_subject(cursor: Cursor) -> Subject | None:
     return parse_path(cursor, "a node")
 
 
-def parse_event(cursor: Cursor) -> Event | None:
-    """Event = ( Path | "mission" ) ( "starts" | "succeeds" | … ) | "when" Cond"""
+def parse_event(cursor: Cursor) -> Event | AnyEvent | None:
+    """Event = { EventAtom "or" } ( EventAtom | "when" Cond )"""
+    first = parse_event_atom(cursor)
+    if first is None or not accept_one(cursor, ("or",)):
+        return first
+    events: list[Event | None] = [first, parse_event_atom(cursor)]
+    while events[-1] is not None and accept_one(cursor, ("or",)):
+        events.append(parse_event_atom(cursor))
+    return AnyEvent(first.start, cursor.last_end(), tuple(events))
+
+
+def parse_event_atom(cursor: Cursor) -> Event | None:
+    """EventAtom = ( Path | "mission" ) ( "starts" | "succeeds" | … );  "when" Cond too"""
     start = cursor.start()
     if cursor.accept_word("when"):
         condition = parse_cond(cursor)
@@ -148,6 +161,8 @@ def parse_event(cursor: Cursor) -> Event | None:
     path = None if cursor.accept_word("mission") else parse_path(cursor, "an event: a node and what happens to it")
     if not (cursor.kind == NAME and cursor.raw in HAPPENINGS) and not blank_in_path(cursor, path, HAPPENINGS):
         note = "an event is a node and what happens to it: `Pick starts`, `Place succeeds`"
+        if cursor.at_word("or"):
+            note = "of several events each has its own word: `Pick fails or Place fails`"
         cursor.expected("starts, succeeds, fails, finishes or halts", (note,), cursor.replaced_by(HAPPENINGS))
         return None
     happening = cursor.take().raw

@@ -46,12 +46,17 @@ def expected(words: Sequence[Token]) -> Expected:
     before = words[-2].text if len(words) > 1 else ""
     earlier = [word.text for word in words]
     text = last.text if last.kind not in (STRING, BRACED) else ""
+    head_of_event = _begins_last(_without_other_events(earlier), _HEADS_OF_EVENTS)
+    if text == "or" and before in HAPPENINGS and head_of_event in _EVENTS:
+        return _EVENT
     if text == "of" and _begins_last(earlier, (*_USES, "sum", "in", "with")) in _USES:
         return Expected(signal=True)
     if text == "of":
         return Expected(node=True) if before == "sum" else Expected(_EXPERIMENTS)
     if text == "and" and _begins_last(earlier, ("between", *_CONDITIONS)) == "between":
         return Expected(value=True)
+    if text in HAPPENINGS and (head := _begins_last(_without_other_events(earlier[:-1]), _HEADS_OF_EVENTS)) in _EVENTS:
+        return Expected(("to", "or")) if head == "from" else Expected(("or",), clause=True)
     if text in _AFTER:
         return _AFTER[text]
     if text in COMPARISONS or text in ("+", "-", "*", "/"):
@@ -61,10 +66,8 @@ def expected(words: Sequence[Token]) -> Expected:
             return Expected(_EXPERIMENTS) if last.kind == NUMBER else Expected(clause=True)
         return Expected(_after_value(earlier), clause=True)
     if last.kind in (NAME, STRING, CLOSE) or text in HAPPENINGS:
-        if _begins_last(earlier, (*_EVENTS, *_CLAUSES)) in _EVENTS and text not in HAPPENINGS:
+        if head_of_event in _EVENTS and text not in HAPPENINGS:
             return Expected(_HAPPENINGS)
-        if text in HAPPENINGS and _begins_last(earlier, ("from", "to", *_CLAUSES)) == "from":
-            return Expected(("to",))
         return Expected(_after_value(earlier), clause=True)
     return Expected(clause=True)
 
@@ -123,6 +126,13 @@ def _begins_last(words: Sequence[str], heads: Sequence[str]) -> str:
     return next((word for word in reversed(words) if word in heads), "")
 
 
+def _without_other_events(words: Sequence[str]) -> list[str]:
+    """The words without what happens in each of several events but the last."""
+    return [
+        word for word, after in zip(words, [*words[1:], ""], strict=True) if word not in HAPPENINGS or after != "or"
+    ]
+
+
 def _after_value(words: Sequence[str]) -> tuple[str, ...]:
     head = _begins_last(words, _CLAUSES)
     if head in _USES and "of" not in words[last_index(words, head) :]:
@@ -162,6 +172,7 @@ _CLAUSES = (
     *VERBS,
     *("in", "with", "confidence", "over", "on", "goal", "because", "verified", "from", "while", "when", "context"),
 )
+_HEADS_OF_EVENTS = (*_EVENTS, *_CLAUSES)
 _CONDITION = Expected(condition=True)
 _VALUE = Expected(value=True)
 _EVENT = Expected(("mission", "when"), node=True)

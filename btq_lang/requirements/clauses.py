@@ -155,7 +155,17 @@ def _per(reader: Reader, written: syntax.Path | syntax.Word | None) -> model.Nod
 _RUN = frozenset(("mission", "run", "execution", "trial", "tree"))
 
 
-def _event(reader: Reader, written: syntax.Event | None) -> model.ResolvedEvent | None:
+def _event(
+    reader: Reader, written: syntax.Event | syntax.AnyEvent | None
+) -> model.ResolvedEvent | model.AnyEvent | None:
+    if not isinstance(written, syntax.AnyEvent):
+        return _event_atom(reader, written)
+    atoms = [_event_atom(reader, atom) for atom in written.atoms]
+    understood = tuple(atom for atom in atoms if atom is not None)
+    return model.AnyEvent(understood) if len(understood) == len(atoms) else None
+
+
+def _event_atom(reader: Reader, written: syntax.Event | None) -> model.ResolvedEvent | None:
     if written is None:
         return None
     if written.happening == "when":

@@ -251,12 +251,28 @@ class ResolvedEvent(Record):
     subject: NodeTarget | MissionRun | None
     condition: Condition | None = None
 
+    @property
+    def atoms(self) -> tuple[ResolvedEvent, ...]:
+        """This one, as of several events."""
+        return (self,)
+
+
+class AnyEvent(Record):
+    """Any of several events, of which only the last may be a condition."""
+
+    atoms: tuple[ResolvedEvent, ...]
+
+    @property
+    def condition(self) -> Condition | None:
+        """The condition that is one of them."""
+        return self.atoms[-1].condition
+
 
 class Interval(Record):
     """The time from each `first` to the next `last`."""
 
-    first: ResolvedEvent
-    last: ResolvedEvent
+    first: ResolvedEvent | AnyEvent
+    last: ResolvedEvent | AnyEvent
 
 
 class DurationSum(Record):
@@ -296,7 +312,7 @@ class ResolvedClaim(Record):
     condition: Condition | None = None
     signal: ResolvedSignal | None = None
     per: NodeTarget | Quantity | None = None
-    event: ResolvedEvent | None = None
+    event: ResolvedEvent | AnyEvent | None = None
     every: bool = False
 
     @property
@@ -473,7 +489,9 @@ class Applied(Record):
         if isinstance(self.subject, DurationSum):
             return tuple(target.node for target in self.subject.targets)
         events = (self.subject.first, self.subject.last) if isinstance(self.subject, Interval) else ()
-        parts = [event.subject for event in events] if isinstance(self.subject, Interval) else [self.subject]
+        parts: list[NodeTarget | MissionRun | None] = [atom.subject for event in events for atom in event.atoms]
+        if isinstance(self.subject, NodeTarget | MissionRun):
+            parts.append(self.subject)
         return tuple(part.node for part in parts if part is not None and part.node is not None)
 
 

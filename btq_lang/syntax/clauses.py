@@ -81,6 +81,17 @@ class Event(Part):
     happening: str
     condition: Condition | None = None
 
+    @property
+    def atoms(self) -> tuple[Event | None, ...]:
+        """This one, as of several events."""
+        return (self,)
+
+
+class AnyEvent(Part):
+    """`Pick fails or Place fails`: any of several events, of which only the last may be a condition."""
+
+    atoms: tuple[Event | None, ...]
+
 
 class Mission(Part):
     """The subject `mission`: the whole run."""
@@ -95,8 +106,8 @@ class Every(Part):
 class Between(Part):
     """The subject `from Pick starts to Place succeeds`."""
 
-    first: Event | None
-    last: Event | None
+    first: Event | AnyEvent | None
+    last: Event | AnyEvent | None
 
 
 class Sum(Part):
@@ -127,7 +138,7 @@ class Claim(Part):
     condition: Condition | None = None
     resource: Word | None = None
     per: Path | Word | None = None
-    event: Event | None = None
+    event: Event | AnyEvent | None = None
     every: bool = False
 
 

@@ -13,6 +13,7 @@ from typing import TypeAlias
 
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.syntax.clauses import Amount as Amount
+from btq_lang.syntax.clauses import AnyEvent as AnyEvent
 from btq_lang.syntax.clauses import Argument as Argument
 from btq_lang.syntax.clauses import Because as Because
 from btq_lang.syntax.clauses import Between as Between

@@ -39,6 +39,8 @@ CLAUSES = {
     "follows": (
         *(f"follows Other {happening}" for happening in ("starts", "succeeds", "fails", "finishes", "halts")),
         "follows mission starts",
+        "follows Other succeeds or Other starts",
+        "follows Other succeeds or when door",
         "follows when door",
     ),
 }

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from literal_verbs import Verdict
 
     from btq_lang.requirements.model import (
+        AnyEvent,
         Condition,
         DurationSum,
         Interval,
@@ -251,7 +252,7 @@ class OverRuns(OfActivations):
 
     def spans(self, span: Interval, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Spent]:
         """from e1 to e2: each e1 opens one, the next e2 closes all that are open."""
-        firsts = self.uids(span.first.subject) if span.first.condition is None else [ROOT]
+        firsts = self.places(span.first)
         by_rows = span.first.condition is None and span.last.condition is None
         found = []
         for run in self.runs:
@@ -309,9 +310,25 @@ class OverRuns(OfActivations):
             found.append((between(run, run.uid, moments[index], end), now is True))
         return found
 
+    def places(self, event: ResolvedEvent | AnyEvent) -> list[int]:
+        """The instances of the nodes of an event; the root for a condition."""
+        uids = [
+            uid for each in event.atoms for uid in ([ROOT] if each.condition is not None else self.uids(each.subject))
+        ]
+        return [*dict.fromkeys(uids)]
+
     def events(
-        self, event: ResolvedEvent, run: Activation, *, only: bool = False, by_rows: bool = True
+        self, event: ResolvedEvent | AnyEvent, run: Activation, *, only: bool = False, by_rows: bool = True
     ) -> list[Happening]:
+        """Those of any of several events, in order, each once."""
+        by_rows = by_rows and event.condition is None
+        found: list[Happening] = []
+        for each in event.atoms:
+            if not only or run.uid in self.places(each):
+                found += [one for one in self.event(each, run, only=only, by_rows=by_rows) if one not in found]
+        return sorted(found, key=lambda one: one.after)
+
+    def event(self, event: ResolvedEvent, run: Activation, *, only: bool, by_rows: bool) -> list[Happening]:
         """An event in a run: of its nodes, those in the same use of a subtree as the run's uid; only: of this alone;
         by_rows: see `placed`."""
         if event.condition is not None:

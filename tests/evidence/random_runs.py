@@ -293,6 +293,8 @@ def seconds(chance: random.Random) -> str:
 def event(chance: random.Random, labels: list[str]) -> str:
     if chance.random() < 0.2:
         return f"when {condition(chance, labels)}"
+    if chance.random() < 0.2:
+        return f"{chance.choice(labels)} {chance.choice(_HAPPENINGS)} or {event(chance, labels)}"
     return f"{chance.choice(labels)} {chance.choice(_HAPPENINGS)}"
 
 

@@ -182,6 +182,9 @@ def test_runs_per(demand: str, runs: str, expected: str, verify: Verify) -> None
         ("Pick starts within 24 ms after when low", TWICE, "violated 2/2"),
         ("Alarm starts within 9 ms after when low", "0 1R 11R 10 5I 5S 42 5I 5S 50 1S", "satisfied 0/2"),
         ("Pick starts within 5 ms after when node Pick", TWICE, "satisfied 0/1"),
+        ("Pick starts within 20 ms after Move fails or Move succeeds", TWICE, "satisfied 0/2"),
+        ("Pick starts within 20 ms after Move succeeds or Move finishes", TWICE, "satisfied 0/2"),  # not three
+        ("Pick starts within 19 ms after Alarm starts or Move fails or when low", TWICE, "violated 3/3"),
         ("Pick ends within 20 ms after Move succeeds", TWICE, "never exercised 0/0"),  # it did not run then
         ("Pick ends within 20 ms after Pick starts", TWICE, "satisfied 0/1"),
         ("Pick ends within 19 ms after Pick starts", TWICE, "violated 1/1"),
@@ -225,6 +228,12 @@ def test_starts_and_ends(demand: str, runs: str, expected: str, verify: Verify) 
         ("Pick follows Move succeeds", CUT, "never exercised 0/0 |1"),
         ("Pick follows Alarm succeeds", CUT, "violated 1/1"),
         ("Pick follows Alarm succeeds\nwhen not low", TWICE, "violated 1/1"),
+        # Any of several events is enough.
+        ("Pick follows Alarm succeeds or Move succeeds", TWICE, "satisfied 0/1"),
+        ("Pick follows Alarm succeeds or Move halts", TWICE, "violated 1/1"),
+        ("Move follows mission starts or Move fails", TWICE, "satisfied 0/2"),
+        ("Move follows Alarm starts or when low", TWICE, "violated 1/2"),
+        ("Put follows Alarm succeeds or Grip succeeds", "0 1R 8S 9S 13S 10 1S", "violated 1/2"),
     ],
 )
 def test_follows(demand: str, runs: str, expected: str, verify: Verify) -> None:
@@ -258,6 +267,19 @@ def test_follows(demand: str, runs: str, expected: str, verify: Verify) -> None:
         ("from Grip starts to Put succeeds takes at most 20 ms", "0 1R 8S 12S 10 9S 20 13S 1S", "satisfied 0/2"),
         ("from Grip starts to Pick succeeds takes at most 9 ms", "0 1R 8S 5 12I 12S 10 4I 4S 20 1S", "violated 1/2"),
         ("from Alarm starts to Grip succeeds takes at most 5 ms", "0 1R 5S 5 12S 10 8S 20 1S", "satisfied 0/1"),
+        ("from Move starts or Pick starts to Move fails or Pick succeeds takes at most 30 ms", TWICE, "satisfied 0/3"),
+        ("from Move starts or Pick starts to Move fails or Pick succeeds takes at most 29 ms", TWICE, "violated 1/3"),
+        ("from Pick starts or when low to Pick succeeds takes at most 20 ms", TWICE, "violated 1/2"),
+        (
+            "from Grip starts to Alarm starts or Put succeeds takes at most 10 ms",
+            "0 1R 8S 12S 10 9S 20 13S 1S",
+            "violated 1/2",
+        ),
+        (
+            "from Pick starts or Grip starts to Put succeeds takes at most 9 ms",
+            "0 1R 4R 8S 10 9S 20 13S 4S 1S",
+            "violated 2/2",
+        ),
         ("from when low to Pick succeeds takes at most 45 ms", TWICE, "satisfied 0/1"),
         ("from when low to when not low takes at most 19 ms", TWICE, "violated 1/1"),
         ("from Move starts to Pick succeeds takes at most 29 ms\nwhen low", TWICE, "violated 1/1"),

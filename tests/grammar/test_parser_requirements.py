@@ -183,6 +183,12 @@ def test_broken_requirement(text: str, tree: str, problem: str) -> None:
         ("follows when a", "follows when a"),
         ("follows 'mission' halts", "follows 'mission' halts"),
         ("follows mission finishes", "follows (mission) finishes"),
+        ("follows a/b fails or c fails", "follows a/b fails or c fails"),
+        ("follows or succeeds or 'or' fails", "follows or succeeds or 'or' fails"),
+        (
+            "starts within 2 s after mission starts or a fails or when b or c",
+            "starts <= 2s after (mission) starts or a fails or when (or b c)",
+        ),
     ],
 )
 def test_verb(clause: str, shown: str) -> None:
@@ -205,6 +211,7 @@ def test_verb(clause: str, shown: str) -> None:
         ("every 'node'", "every 'node'"),
         ("from a starts to b succeeds", "from a starts to b succeeds"),
         ("from when a > 3 to mission finishes", "from when (a > 3) to (mission) finishes"),
+        ("from a starts or b starts to c fails or when d", "from a starts or b starts to c fails or when d"),
         ("sum of a, b/c, d", "sum of a, b/c, d"),
         ("at", "at"),
         ("'on'", "'on'"),
@@ -296,6 +303,21 @@ def test_a_verb_is_no_subject_without_quotes(verb: str) -> None:
             "follows a begins",
             "follows MISSING",
             "1:11 syntax-error «begins» expected starts, succeeds, fails, finishes or halts, found `begins`",
+        ),
+        (
+            "follows a or b fails",
+            "follows MISSING",
+            "1:11 syntax-error «or» expected starts, succeeds, fails, finishes or halts, found `or`",
+        ),
+        (
+            "follows a fails or",
+            "follows a fails or MISSING",
+            f"1:19 syntax-error «» expected an event: a node and what happens to it, {END}",
+        ),
+        (
+            "follows a fails || b fails",
+            "follows a fails or b fails",
+            "1:17 syntax-error «||» in conditions `||` is written `or`",
         ),
         ("X", "", f"1:2 syntax-error «» expected a verb after `X` (takes, succeeds, needs, keeps, …), {END}"),
         ("X/", "", f"1:3 syntax-error «» expected a node, {END}"),
