@@ -31,6 +31,7 @@ from btq_lang.syntax.tree import (
     Condition,
     Confidence,
     Context,
+    EachEvent,
     Entry,
     Event,
     Every,
@@ -459,7 +460,7 @@ def show_clause(clause: Clause) -> str:
 def _(clause: Claim) -> str:
     verb = clause.verb.raw
     parts = [show_subject(clause.subject) if clause.subject else "", verb, "every" if clause.every else ""]
-    if clause.bound or verb not in ("needs", "keeps", "never", "leaves", "succeeds", "follows"):
+    if clause.bound or verb not in ("needs", "keeps", "never", "leaves", "succeeds", "follows", "followed"):
         parts.append(show_bound(clause.bound))
     if clause.condition or verb in ("needs", "keeps", "never", "leaves"):
         parts.append(show_condition(clause.condition))
@@ -468,7 +469,7 @@ def _(clause: Claim) -> str:
     if clause.per or (verb == "runs" and not clause.every):
         parts.append(f"per {show_path(clause.per) if isinstance(clause.per, Path) else show(clause.per)}")
     if clause.event or verb in ("starts", "ends", "follows"):
-        parts += ["after" if verb != "follows" else "", show_event(clause.event)]
+        parts += ["after" if verb in ("starts", "ends") else "", show_event(clause.event)]
     return words(*parts)
 
 
@@ -522,6 +523,8 @@ def show_subject(subject: Subject) -> str:
         inner = f"sum of {', '.join(map(show_path, subject.paths)) or MISSING}"
     elif isinstance(subject, Between):
         inner = f"from {show_event(subject.first)} to {show_event(subject.last)}"
+    elif isinstance(subject, EachEvent):
+        inner = f"each {show_event(subject.event)}"
     else:
         inner = show_path(subject)
     return f"<{inner}>"

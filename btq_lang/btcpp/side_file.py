@@ -320,6 +320,7 @@ _KINDS: Final[dict[type, str]] = {
     model.AnyEvent: "any-event",
     model.Interval: "span",
     model.DurationSum: "total",
+    model.EachEvent: "each",
     model.EveryNode: "every",
     model.ResolvedClaim: "claim",
     model.ResolvedScope: "scope",

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence import margins
@@ -39,11 +39,13 @@ from btq_lang.evidence.wording import duration
 from btq_lang.requirements.model import (
     Aggregate,
     DurationSum,
+    EachEvent,
     Interval,
     MissionRun,
     NodeTarget,
     Quantity,
     Running,
+    events_of,
     parts_in,
     signals_in,
 )
@@ -181,7 +183,8 @@ class JudgedClause:
         if activation.uid in self._around:
             if guard is not None and guard.requirement == self.requirement.name and self.claim.verb in guard.verbs:
                 self._stopped.append(activation)
-            return
+            if activation.uid not in self._nodes:
+                return
         self.findings.has_run = self._has_started = True
         if activation.timing in BEGUN_BEFORE:
             return
@@ -444,6 +447,12 @@ class JudgedClause:
                 together = tuple(near(uid, of_atom, joined.tree) for of_atom in lasts)
                 groups[together] = (*groups.get(together, ()), uid)
             return [*groups.values()] if not self.findings.missing else []
+        if isinstance(subject, EachEvent):
+            answers = self.claim.event.atoms if self.claim.event is not None else ()
+            firsts = [*self._instances_of(joined, subject.event)]
+            for atom in answers:
+                self._instances(joined, _node_of(atom.subject))
+            return [(uid,) for uid in firsts] if not self.findings.missing else []
         if isinstance(subject, DurationSum):
             uids = [uid for target in subject.targets for uid in self._instances(joined, target)]
             return [tuple(uids)] if uids and not self.findings.missing else []
@@ -470,7 +479,7 @@ class JudgedClause:
 
     def _is_own(self, guard: Guard) -> bool:
         """Whether a guard enforces this clause; spans and sums have no guards."""
-        if isinstance(self._subject, Interval | DurationSum):
+        if isinstance(self._subject, Interval | DurationSum | EachEvent):
             return False
         return guard.requirement == self.requirement.name and self.claim.verb in guard.verbs
 
@@ -514,15 +523,16 @@ class JudgedClause:
             why = f"it was not running when {event} ({counted(findings.missed, 'time')})"
         is_of_run = VERBS[self.claim.verb].operand == "count" and self.claim.per is None
         is_once_a_run = isinstance(self._subject, DurationSum) or (is_of_run and len(findings.paths) == 1)
+        of_each: Literal["activations", "occurrences"] = "activations"
+        if isinstance(self._subject, EachEvent):
+            of_each = "occurrences"
         return ClauseVerdict(
             text=self.text,
             path=", ".join(findings.paths),
-            of=self.claim.text.partition(f" {self.claim.verb} ")[0]
-            if isinstance(self._subject, Interval | DurationSum)
-            else "",
+            of=self.claim.subject_text if isinstance(self._subject, Interval | DurationSum | EachEvent) else "",
             verdict=verdict,
             why=why,
-            unit="runs" if tally.counts_runs or is_once_a_run else "activations",
+            unit="runs" if tally.counts_runs or is_once_a_run else of_each,
             confidence=self.requirement.confidence,
             histogram=tally.distribution.histogram(self.marks()),
             timeline=findings.timeline if verdict == VIOLATED else None,
@@ -567,9 +577,8 @@ def _kind(judgement: Judgement | None, activation: Activation) -> int:
 
 def _events(claim: ResolvedClaim, subject: Subject | None) -> tuple[ResolvedEvent, ...]:
     """The events that a clause names."""
-    if isinstance(subject, Interval):
-        return subject.first.atoms + subject.last.atoms
-    return claim.event.atoms if claim.event is not None else ()
+    events = (*events_of(subject), *([claim.event] if claim.event is not None else ()))
+    return tuple(atom for event in events for atom in event.atoms)
 
 
 def _node_of(subject: Subject | None) -> NodeTarget | None:
@@ -587,4 +596,4 @@ def _clocked(judgement: Judgement | None, root: Activation | None) -> Judgement 
 
 
 _WITHOUT_SUCCESS: Final[dict[Outcome, str]] = {"F": "failed", "H": "halted"}
-_OF_TIME: Final = ("duration", "deadline", "reaction")  # operands that bound the time since something began
+_OF_TIME: Final = ("duration", "deadline", "reaction", "answer")  # operands that bound the time since something began

@@ -34,6 +34,7 @@ class Happening(Record):
         is_certain: it did happen, rather than may have.
         order: the moment that orders it among other events; None: its own.
         judged: when scopes and bounds are read; None: at `at`.
+        uid: of the node that it happened to; 0: it is a condition.
     """
 
     at: Moment
@@ -42,6 +43,7 @@ class Happening(Record):
     is_certain: bool = True
     order: Moment | None = None
     judged: Moment | None = None
+    uid: int = 0
 
     @property
     def first(self) -> Moment:
@@ -127,9 +129,13 @@ class OverRun(Record):
             return [Stretch(self.observed.begin, self.observed.end)]
         return self.with_all_along(All(tuple(conditions)))
 
-    def with_all_along(self, condition: Condition) -> list[Stretch]:
-        """The maximal parts of the run in which a condition holds or is unknown."""
-        observed = self.observed.in_scope
+    def with_all_along(self, condition: Condition, observed: Observed | None = None) -> list[Stretch]:
+        """The maximal parts of the run in which a condition holds or is unknown.
+
+        Args:
+            observed: of the run; None: with the values `initially` of signals.
+        """
+        observed = observed or self.observed.in_scope
         stretches: list[Stretch] = []
         begin = observed.begin
         before: bool | UnknownValue = False
@@ -181,14 +187,17 @@ class OverRun(Record):
             return occurrences
         outcomes = _OUTCOMES.get(event.happening)
         for activation in activations if activations is not None else self.observed.nodes.activations(target_of(event)):
+            uid = activation.uid
             if outcomes is None:
                 begun = activation.begun(self.observed.is_early)
                 order = activation.shown if is_by_row else begun
-                occurrences.append(Happening(activation.begun(True), activation.started, order=order, judged=begun))
+                moments = activation.begun(True), activation.started
+                occurrences.append(Happening(*moments, order=order, judged=begun, uid=uid))
             elif activation.outcome in outcomes and activation.timing == "latest":
-                occurrences.append(Happening(activation.shown, activation.ended, UNKNOWN_END, judged=activation.ended))
+                moments = activation.shown, activation.ended
+                occurrences.append(Happening(*moments, UNKNOWN_END, judged=activation.ended, uid=uid))
             elif activation.outcome in outcomes:
-                occurrences.append(Happening(activation.ended, activation.ended))
+                occurrences.append(Happening(activation.ended, activation.ended, uid=uid))
         return sorted(occurrences, key=lambda happening: happening.first)
 
 

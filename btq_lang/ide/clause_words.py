@@ -53,10 +53,15 @@ def expected(words: Sequence[Token]) -> Expected:
         return Expected(signal=True)
     if text == "of":
         return Expected(node=True) if before == "sum" else Expected(_EXPERIMENTS)
+    if text == "by" and before == "followed":
+        return replace(_EVENT, condition=True)
     if text == "and" and _begins_last(earlier, ("between", *_CONDITIONS)) == "between":
         return Expected(value=True)
     if text in HAPPENINGS and (head := _begins_last(_without_other_events(earlier[:-1]), _HEADS_OF_EVENTS)) in _EVENTS:
-        return Expected(("to", "or")) if head == "from" else Expected(("or",), clause=True)
+        if head in _AFTER_EVENT:
+            return Expected((_AFTER_EVENT[head], "or"))
+        in_time = ("within",) if _is_answer(earlier) else ()
+        return Expected(("or", *in_time), clause=True)
     if text in _AFTER:
         return _AFTER[text]
     if text in COMPARISONS or text in ("+", "-", "*", "/"):
@@ -66,6 +71,8 @@ def expected(words: Sequence[Token]) -> Expected:
             return Expected(_EXPERIMENTS) if last.kind == NUMBER else Expected(clause=True)
         return Expected(_after_value(earlier), clause=True)
     if last.kind in (NAME, STRING, CLOSE) or text in HAPPENINGS:
+        if head_of_event == "followed" and text not in HAPPENINGS:
+            return Expected((*_HAPPENINGS, *_AFTER_OPERAND, "within"), clause=True)
         if head_of_event in _EVENTS and text not in HAPPENINGS:
             return Expected(_HAPPENINGS)
         return Expected(_after_value(earlier), clause=True)
@@ -126,6 +133,11 @@ def _begins_last(words: Sequence[str], heads: Sequence[str]) -> str:
     return next((word for word in reversed(words) if word in heads), "")
 
 
+def _is_answer(words: Sequence[str]) -> bool:
+    """Whether these words end in what follows an event, perhaps before its deadline."""
+    return _begins_last([word for word in words if word not in HAPPENINGS], _CLAUSES) == "followed"
+
+
 def _without_other_events(words: Sequence[str]) -> list[str]:
     """The words without what happens in each of several events but the last."""
     return [
@@ -147,6 +159,8 @@ def _after_value(words: Sequence[str]) -> tuple[str, ...]:
         return _EXPERIMENTS
     if head in _CONDITIONS:
         return _AFTER_OPERAND
+    if head == "followed" and "within" not in words[last_index(words, head) :]:
+        return (*_AFTER_OPERAND, "within")
     if "if" in words:
         return ("and", "or", "else")
     return ("if",) if head in _TIMED or head == "goal" else ()
@@ -167,10 +181,25 @@ _USES = words_of(operands=("use",))
 _CONDITIONS = (*words_of(operands=("condition",)), "while", "when", "context")
 _BEFORE_CONDITIONS = frozenset((*_CONDITIONS, "if"))
 _AFTER_OPERAND = ("and", "or", "<=", ">=", "<", ">", "==", "!=")
-_EVENTS = (*words_of(operands=("event",)), "after", "from", "to")
+_EVENTS = (*words_of(operands=("event",)), "after", "from", "to", "each", "followed")
+_AFTER_EVENT = {"from": "to", "each": "is followed by"}  # between two events
 _CLAUSES = (
     *VERBS,
-    *("in", "with", "confidence", "over", "on", "goal", "because", "verified", "from", "while", "when", "context"),
+    *(
+        "in",
+        "with",
+        "confidence",
+        "over",
+        "on",
+        "goal",
+        "because",
+        "verified",
+        "from",
+        "while",
+        "when",
+        "context",
+        "each",
+    ),
 )
 _HEADS_OF_EVENTS = (*_EVENTS, *_CLAUSES)
 _CONDITION = Expected(condition=True)
@@ -183,6 +212,7 @@ _OPERANDS = {
     "reaction": Expected(("within",)),
     "condition": _CONDITION,
     "event": _EVENT,
+    "answer": Expected(("by",)),
 }
 # The verbs of things that a mission does once, from its start to its end.
 _OF_MISSIONS = [verb.word for verb in VERBS.values() if verb.judged in ("at its end", "while it runs")]
@@ -202,7 +232,8 @@ _AFTER = {
     "probability": Expected((">=", ">")),
     "over": Expected(("last",)),
     "sum": Expected(("of",)),
-    **dict.fromkeys(("after", "from", "to"), _EVENT),
+    **dict.fromkeys(("after", "from", "to", "each"), _EVENT),
+    "is": Expected(("followed by",)),
     "mission": Expected((*_OF_MISSIONS, *_HAPPENINGS)),
     "per": Expected(node=True),
     "every": Expected(value=True, node=True),

@@ -19,7 +19,7 @@ Relation: TypeAlias = Literal["<=", ">=", "<", ">", "between"]
 Happening: TypeAlias = Literal["starts", "succeeds", "fails", "finishes", "halts", "when"]
 Action: TypeAlias = Literal["fail", "halt", "warn", "log"]
 Method: TypeAlias = Literal["monitor", "analysis", "test", "review"]
-Experiments: TypeAlias = Literal["activations", "runs"]
+Experiments: TypeAlias = Literal["activations", "runs", "occurrences"]
 Behaviour: TypeAlias = Literal["level", "counter", "gauge"]
 Sort: TypeAlias = Literal["number", "bool", "text"]
 
@@ -275,6 +275,12 @@ class Interval(Record):
     last: ResolvedEvent | AnyEvent
 
 
+class EachEvent(Record):
+    """Each occurrence of an event."""
+
+    event: ResolvedEvent | AnyEvent
+
+
 class DurationSum(Record):
     """The sum of the durations of several nodes in one run."""
 
@@ -287,7 +293,7 @@ class EveryNode(Record):
     name: str
 
 
-Subject: TypeAlias = NodeTarget | MissionRun | EveryNode | Interval | DurationSum
+Subject: TypeAlias = NodeTarget | MissionRun | EveryNode | Interval | DurationSum | EachEvent
 
 
 class ResolvedClaim(Record):
@@ -296,10 +302,10 @@ class ResolvedClaim(Record):
     Attributes:
         subject: the claim's own; None: what the requirement is attached to.
         limit: of takes, uses, tries, runs; of `within d` and `runs every d` as `<= d`.
-        condition: of needs, keeps, never, leaves.
+        condition: of needs, keeps, never, leaves, and of followed if it is followed by one.
         signal: of uses.
         per: of tries a node, of runs a duration.
-        event: of starts, ends, follows.
+        event: of starts, ends, follows, followed.
         every: `runs every d`.
         text: the clause as typed, blanks folded.
     """
@@ -314,6 +320,12 @@ class ResolvedClaim(Record):
     per: NodeTarget | Quantity | None = None
     event: ResolvedEvent | AnyEvent | None = None
     every: bool = False
+
+    @property
+    def subject_text(self) -> str:
+        """What is before its verb, as typed."""
+        verb = "is followed" if isinstance(self.subject, EachEvent) else self.verb
+        return self.text.partition(f" {verb} ")[0]
 
     @property
     def highest(self) -> tuple[float, str] | None:
@@ -441,20 +453,20 @@ class Applied(Record):
 
     Attributes:
         requirement: with arguments in place of its parameters, and only the claims that apply to `subject`.
-        subject: a node, the mission, a span or a sum.
+        subject: a node, the mission, a span, a sum, or each occurrence of an event.
         place: of what attached it: the reference at the node, the `apply`, or the claim that names its subject.
         how: `subject`, `satisfies` or `apply`.
     """
 
     requirement: ResolvedRequirement
-    subject: NodeTarget | MissionRun | Interval | DurationSum
+    subject: NodeTarget | MissionRun | Interval | DurationSum | EachEvent
     arguments: tuple[ResolvedArgument, ...]
     place: Place
     how: Literal["subject", "satisfies", "apply"]
 
     @property
     def node(self) -> ResolvedNode | None:
-        """The node that it applies to; None for a span, a sum, and an unknown mission."""
+        """The node that it applies to; None for a span, a sum, an event, and an unknown mission."""
         return self.subject.node if isinstance(self.subject, NodeTarget | MissionRun) else None
 
     @property
@@ -485,14 +497,21 @@ class Applied(Record):
 
     @property
     def nodes(self) -> tuple[ResolvedNode, ...]:
-        """The nodes that its subject names; for a span those of its events."""
+        """The nodes that its subject names; for a span, and for an event, those of the events."""
         if isinstance(self.subject, DurationSum):
             return tuple(target.node for target in self.subject.targets)
-        events = (self.subject.first, self.subject.last) if isinstance(self.subject, Interval) else ()
+        events = events_of(self.subject)
         parts: list[NodeTarget | MissionRun | None] = [atom.subject for event in events for atom in event.atoms]
         if isinstance(self.subject, NodeTarget | MissionRun):
             parts.append(self.subject)
         return tuple(part.node for part in parts if part is not None and part.node is not None)
+
+
+def events_of(subject: Subject | None) -> tuple[ResolvedEvent | AnyEvent, ...]:
+    """The events that a subject names."""
+    if isinstance(subject, Interval):
+        return subject.first, subject.last
+    return (subject.event,) if isinstance(subject, EachEvent) else ()
 
 
 class Trace(Record):

@@ -116,19 +116,25 @@ class Sum(Part):
     paths: tuple[Path, ...]
 
 
-Subject: TypeAlias = Path | Mission | Every | Between | Sum
+class EachEvent(Part):
+    """The subject `each Pick fails`: each occurrence of an event."""
+
+    event: Event | AnyEvent | None
+
+
+Subject: TypeAlias = Path | Mission | Every | Between | Sum | EachEvent
 
 
 class Claim(Part):
     """A demand of a requirement: a subject (None: the node it is attached to), a verb and its operands.
 
     Attributes:
-        verb: takes, succeeds, needs, keeps, never, leaves, uses, tries, runs, starts, ends or follows.
+        verb: takes, succeeds, needs, keeps, never, leaves, uses, tries, runs, starts, ends, follows or followed.
         bound: of takes, uses, tries, runs; for `within d` and `runs every d`, `<= d`.
-        condition: of needs, keeps, never, leaves.
+        condition: of needs, keeps, never, leaves, and of followed if it is followed by one.
         resource: of uses: the signal.
         per: of tries: the path; of runs: the quantity.
-        event: of starts, ends, follows.
+        event: of starts, ends, follows, followed.
         every: `runs every d`.
     """
 

@@ -27,6 +27,7 @@ from btq_lang.syntax.clauses import Clause as Clause
 from btq_lang.syntax.clauses import Comparison as Comparison
 from btq_lang.syntax.clauses import Condition as Condition
 from btq_lang.syntax.clauses import Confidence as Confidence
+from btq_lang.syntax.clauses import EachEvent as EachEvent
 from btq_lang.syntax.clauses import Event as Event
 from btq_lang.syntax.clauses import Every as Every
 from btq_lang.syntax.clauses import Goal as Goal

@@ -243,6 +243,94 @@ def test_follows(demand: str, runs: str, expected: str, verify: Verify) -> None:
 @pytest.mark.parametrize(
     ("demand", "runs", "expected"),
     [
+        ("each Move fails is followed by Pick starts within 20 ms", TWICE, "satisfied 0/1"),
+        ("each Move fails is followed by Pick starts within 19 ms", TWICE, "violated 1/1"),
+        ("each Move finishes is followed by Pick starts within 0 ms if low else 20 ms", TWICE, "violated 1/2"),
+        ("each Move halts is followed by Pick starts", TWICE, "never exercised 0/0"),
+        # One answer is enough for all events before it, in the order of the rows.
+        ("each Move starts is followed by Pick starts", TWICE, "satisfied 0/2"),
+        ("each Move succeeds is followed by Pick starts within 0 ms", TWICE, "satisfied 0/1"),
+        ("each Pick starts is followed by Move succeeds within 1 s", TWICE, "violated 1/1"),
+        ("each Move finishes is followed by Move succeeds", TWICE, "violated 1/2"),
+        ("each Move fails is followed by Move finishes within 20 ms", TWICE, "satisfied 0/1"),
+        ("each Move starts is followed by Move starts", TWICE, "violated 1/2"),
+        (
+            "each Move fails or Pick starts is followed by Pick succeeds or Move starts within 20 ms",
+            TWICE,
+            "satisfied 0/2",
+        ),
+        # Without an answer the run's end breaks it, and the log's end leaves it out.
+        ("each Move fails is followed by Alarm starts", TWICE, "violated 1/1"),
+        ("each Move fails is followed by Alarm starts within 1 min", TWICE, "violated 1/1"),
+        ("each Move fails is followed by Alarm starts within 40 ms", CUT, "never exercised 0/0 |1"),
+        ("each Move fails is followed by Alarm starts within 39 ms", CUT, "violated 1/1"),
+        ("each Move fails is followed by Alarm starts", CUT, "never exercised 0/0 |1"),
+        ("each Move starts is followed by Pick halts", UNWRITTEN, "violated 2/2"),
+        ("each Move starts is followed by Move halts within 29 ms", UNWRITTEN, "unknown 0/0 ?2"),
+        ("each Move starts is followed by Move halts within 50 ms", UNWRITTEN, "satisfied 0/2"),
+        ("each Move fails is followed by Pick starts within 20 ms", BACK, "never exercised 0/0"),
+        ("each Move starts is followed by Pick starts within 20 ms", BACK, "unknown 0/0 ?1"),
+        # Nodes of two uses of a subtree.
+        ("each Grip succeeds is followed by Put succeeds", "0 1R 8S 12S 10 9S 20 1S", "violated 1/2"),
+        ("each Grip succeeds is followed by Pick succeeds", "0 1R 8S 12S 10 4S 20 1S", "satisfied 0/2"),
+        # A condition: low from 5 to 25.
+        ("each Move starts is followed by low within 5 ms", TWICE, "satisfied 0/2"),
+        ("each Move starts is followed by low within 4 ms", TWICE, "violated 1/2"),
+        ("each Move starts is followed by when low within 5 ms", TWICE, "violated 1/2"),  # it is low already at 20
+        ("each Move finishes is followed by not low within 0 ms", TWICE, "violated 1/2"),
+        ("each Pick starts is followed by low within 20 ms", TWICE, "violated 1/1"),
+        ("each Pick starts is followed by low within 21 ms", TWICE, "never exercised 0/0"),  # the run ends before
+        ("each Pick starts is followed by low", TWICE, "violated 1/1"),
+        ("each Pick starts is followed by low", CUT, "never exercised 0/0 |1"),
+        ("each mission finishes is followed by not low", TWICE, "satisfied 0/1"),
+        ("each when low is followed by node Pick within 25 ms", TWICE, "satisfied 0/1"),
+        ("each when low is followed by Pick starts within 24 ms", TWICE, "violated 1/1"),
+        ("each Move starts is followed by Pick starts within 15 ms\nwhen low", TWICE, "satisfied 0/1"),
+        ("each Move starts is followed by Pick starts\nwhile low", TWICE, "never exercised 0/0"),
+        ("each Move fails is followed by Pick starts\nin at least 50 % of runs", TWICE, "satisfied 0/1"),
+        (
+            "each Move starts is followed by Pick starts within 20 ms\nin at least 50 % of occurrences",
+            TWICE,
+            "satisfied 1/2",
+        ),
+        (
+            "each Move starts is followed by Pick starts within 20 ms\nin at least 51 % of occurrences",
+            TWICE,
+            "violated 1/2",
+        ),
+    ],
+)
+def test_followed(demand: str, runs: str, expected: str, verify: Verify) -> None:
+    assert come_to(verify, demand, runs, samples("battery", {-1: 50, 5: 10, 25: 50})) == expected
+
+
+def test_what_is_counted_are_occurrences(verify: Verify) -> None:
+    found = clause(verify, "each Move starts is followed by Pick starts within 20 ms", TWICE)
+    assert (found["unit"], found["path"], found["counted"]) == ("occurrences", "Move::3, Pick::4", 2)
+    printed = verify.text("run.btlog", "--mission", "main.btq")
+    assert "1 of 2 occurrences" in printed
+
+
+@pytest.mark.parametrize(
+    ("csv", "expected", "why"),
+    [
+        ({}, "unknown 0/0 ?2", "no samples of `battery`"),
+        ({15: 50}, "violated 1/1 ?1", ""),  # unknown from 0 to 9
+        ({-1: 10, 15: 50}, "violated 1/2", ""),
+        ({-1: 10}, "satisfied 0/2", ""),
+        ({-1: 50}, "violated 2/2", ""),
+    ],
+)
+def test_a_condition_that_follows_is_measured(csv: dict[float, float], expected: str, why: str, verify: Verify) -> None:
+    level = f"{LEVEL} initially 10 %\ncontext low : battery < 20 %"
+    demand = "each Move starts is followed by battery < 20 % within 9 ms"
+    found = clause(verify, demand, TWICE, samples("battery", csv) if csv else None, level)
+    assert (count(found), found["why"]) == (expected, why)
+
+
+@pytest.mark.parametrize(
+    ("demand", "runs", "expected"),
+    [
         ("from Move starts to Pick succeeds takes at most 50 ms", TWICE, "satisfied 0/2"),
         ("from Move starts to Pick succeeds takes at most 49 ms", TWICE, "violated 1/2"),
         ("from Move starts to Pick succeeds takes at most 29 ms", TWICE, "violated 2/2"),
