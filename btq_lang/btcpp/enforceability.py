@@ -16,6 +16,7 @@ from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.model import (
     Applied,
+    EachEvent,
     Interval,
     MissionRun,
     NodeTarget,
@@ -102,6 +103,8 @@ class Enforceability:
             raise NotEnforced("a probability is evaluated in the logs of many runs")
         if requirement.window is not None:
             raise NotEnforced("a window is evaluated in the logs of many runs")
+        if isinstance(subject, EachEvent):
+            raise NotEnforced(VERBS[claim.verb].why_monitored)
         if isinstance(subject, NodeTarget) and subject.through:
             raise NotEnforced("its path names only some instances of a node")
         if (

@@ -26,6 +26,7 @@ from btq_lang.catalog.units import Unit
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements.classic import entries_in
 from btq_lang.requirements.model import (
+    AnyEvent,
     Bounded,
     Condition,
     Interval,
@@ -34,6 +35,7 @@ from btq_lang.requirements.model import (
     NodeTarget,
     Quantity,
     ResolvedClaim,
+    ResolvedEvent,
     ResolvedRequirement,
     ResolvedSignal,
     ResolvedTable,
@@ -305,24 +307,43 @@ def _follows(guard: ClauseGuard) -> None:
     guard.refuse_scopes()
     event = guard.claim.event
     assert event is not None, "the clause names one"
-    subject = event.subject
-    is_start = isinstance(subject, MissionRun) and event.happening == "starts"
-    if not is_start and (not isinstance(subject, NodeTarget) or event.happening not in _RECORDED_BY):
-        raise NotEnforced("the engine runs no script at this event")
-    if isinstance(subject, NodeTarget) and subject.through:
-        raise NotEnforced("its event names only some instances of a node")
-    flag = guard.entry("seen", "true" if is_start else "false")
+    flag = guard.entry("seen", "true" if _is_recorded(event) else "false")
     guard.wrap(CONDITION, "Sequence", "follows", before=(guard.condition("check", f"({flag} == true)"),))
     reset = guard.leaf("Script", "taken", f"{flag} := false")
     guard.wrap(INSIDE, "Sequence", "started", before=(reset,))
-    if not isinstance(subject, NodeTarget):
-        return
-    attribute = _RECORDED_BY[event.happening]
-    note = f"{flag} := true"
-    if attribute is None:
-        guard.wrap(INSIDE, "Sequence", "event", before=(guard.leaf("Script", "seen", note),), node=subject.node)
-    else:
-        guard.wrap(INSIDE, "Sequence", "event", attributes=((attribute, note),), node=subject.node)
+    _record(guard, event, "event", "seen", f"{flag} := true")
+
+
+def _is_recorded(event: ResolvedEvent | AnyEvent) -> bool:
+    """Whether an event has happened when the mission starts.
+
+    Raises:
+        NotEnforced: the engine does not notice the event.
+    """
+    has_happened = False
+    for atom in event.atoms:
+        is_start = isinstance(atom.subject, MissionRun) and atom.happening == "starts"
+        if not is_start and (not isinstance(atom.subject, NodeTarget) or atom.happening not in _RECORDED_BY):
+            raise NotEnforced("the engine runs no script at this event")
+        if isinstance(atom.subject, NodeTarget) and atom.subject.through:
+            raise NotEnforced("its event names only some instances of a node")
+        has_happened = has_happened or is_start
+    return has_happened
+
+
+def _record(guard: ClauseGuard, event: ResolvedEvent | AnyEvent, what: str, script_name: str, script: str) -> None:
+    """Have a script run at an event; none does at the start of the mission."""
+    for number, atom in enumerate(event.atoms, 1):
+        if not isinstance(atom.subject, NodeTarget):
+            continue
+        attribute = _RECORDED_BY[atom.happening]
+        suffix = f"_{number}" if number > 1 else ""
+        node = atom.subject.node
+        if attribute is None:
+            leaf_before = (guard.leaf("Script", f"{script_name}{suffix}", script),)
+            guard.wrap(INSIDE, "Sequence", f"{what}{suffix}", before=leaf_before, node=node)
+        else:
+            guard.wrap(INSIDE, "Sequence", f"{what}{suffix}", attributes=((attribute, script),), node=node)
 
 
 def _upper_bound(guard: ClauseGuard) -> Limit:

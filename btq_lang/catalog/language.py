@@ -145,6 +145,8 @@ subject
     every | every MoveArm takes at most 8 s | subject: each node of a kind | each node of an ID or a kind
     from | {_SPAN} | subject: between two events | the time from an event to the next event after `to`
     to | {_SPAN} | the later event | the event that ends the time
+    each | each Pick fails is followed by Recover starts | subject: every time that it happens | \
+        each occurrence of an event; what is demanded is what follows it
     sum of | sum of ToBox, ToHome takes at most 120 s | subject: several nodes together | \
         the durations of several nodes in one run, added up
 claim
@@ -168,15 +170,18 @@ event
     finishes | follows Pick finishes | SUCCESS or FAILURE | the node returns SUCCESS or FAILURE
     halts | follows Pick halts | it is halted while it runs | another node or the program halts the node while it runs
     when | starts within 1 s after when humans_near | a condition | a condition becomes true
+    or | follows Pick fails or Place fails | any of several | any of several events; a condition comes last
 clause
     while | while humans_near | only while a condition holds | \
         counts only the time (or the activations) in which the condition holds
     when | when fragile | only when a condition holds | counts only activations at whose start the condition holds
     in at least | in at least 98 % of activations | how often | \
-        allows some violations; also `of runs` and `with probability >= 98 %`
+        allows some violations; also `of runs`, of an event `of occurrences`, and `with probability >= 98 %`
     with probability | with probability >= 98 % of runs | how often | allows some violations
     activations | in at least 98 % of activations | from its start to its end | each time that the node runs
     runs | in at least 98 % of runs | whole missions | each time that the mission runs
+    occurrences | in at least 98 % of occurrences | each time that an event happens | \
+        each time that the event of `each … is followed by` happens
     confidence | confidence 95 % | how sure | the required statistical confidence of a verdict on the probability
     over last | over last 200 activations | window | ignores older ones; also `over last 7 d`
     on violation | on violation fail | what happens: fail, halt, warn or log | \

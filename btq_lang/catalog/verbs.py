@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
-    Operand: TypeAlias = Literal["duration", "deadline", "condition", "use", "count", "rate", "reaction", "event"]
+    Operand: TypeAlias = Literal[
+        "duration", "deadline", "condition", "use", "count", "rate", "reaction", "event", "answer"
+    ]
     Judged: TypeAlias = Literal["at its start", "while it runs", "at its end", "over the run"]
     Limits: TypeAlias = Literal["", "completion", "success"]
     Enforced: TypeAlias = Literal["", "limit", "refusal", "guard", "check"]
@@ -24,7 +26,8 @@ class Verb(Record):
 
     Attributes:
         operand: what it is followed by: a bound of a duration, perhaps a deadline, a condition, a bound of the use of a
-            signal, a bound of a count, a period or a rate, a deadline after an event, an event.
+            signal, a bound of a count, a period or a rate, a deadline after an event, an event, an event or a condition
+            that answers one.
         measures: what is compared with the bound, or evaluated.
         judged: when it is known whether an activation, or a run, satisfies or violates it.
         phrases: for each continuation: its words, an example, what it is about, and when a clause is violated.
@@ -262,6 +265,24 @@ VERBS: Final = {
                 ),
             ),
             enforced="refusal",
+        ),
+        Verb(
+            word="followed",
+            operand="answer",
+            measures="the time from an event to another one, or until a condition holds",
+            judged=_RUN,
+            said="was followed after {}",
+            phrases=(
+                (
+                    "is followed by",
+                    "each Pick fails is followed by Recover starts within 5 s",
+                    "what comes after an event",
+                    "after one of the events the other one does not happen, or the condition does not hold at any "
+                    "moment, within that time; without `within`, before the run ends",
+                ),
+            ),
+            forms=(("each", "each ${1:A} fails is followed by ${0:B} starts"),),
+            why_monitored=_NOTHING_STARTS_NODES,
         ),
     )
 }

@@ -105,6 +105,7 @@ _OF_CLAUSES: tuple[Check, ...] = (
     requirements.requirement_without_text,
     clauses.duplicate_clause,
     clauses.clause_without_odds,
+    clauses.odds_of_what,
     clauses.unused_parameter,
     chain.unknown_hazard,
     chain.cyclic_refinement,

@@ -6,8 +6,8 @@ One invariant: a clause that cannot be judged is unknown with the reason, and ne
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Sequence
-from typing import TYPE_CHECKING, Final, TypeAlias
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence import margins
@@ -39,11 +39,13 @@ from btq_lang.evidence.wording import duration
 from btq_lang.requirements.model import (
     Aggregate,
     DurationSum,
+    EachEvent,
     Interval,
     MissionRun,
     NodeTarget,
     Quantity,
     Running,
+    events_of,
     parts_in,
     signals_in,
 )
@@ -57,7 +59,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.model import Outcome
     from btq_lang.evidence.odds import Limits
     from btq_lang.evidence.outline import Demand
-    from btq_lang.requirements.model import ResolvedClaim, ResolvedEvent, Subject
+    from btq_lang.requirements.model import AnyEvent, ResolvedClaim, ResolvedEvent, Subject
 
 
 class _Place(Record):
@@ -181,7 +183,8 @@ class JudgedClause:
         if activation.uid in self._around:
             if guard is not None and guard.requirement == self.requirement.name and self.claim.verb in guard.verbs:
                 self._stopped.append(activation)
-            return
+            if activation.uid not in self._nodes:
+                return
         self.findings.has_run = self._has_started = True
         if activation.timing in BEGUN_BEFORE:
             return
@@ -315,7 +318,9 @@ class JudgedClause:
         observed = Observed(self._signals, place.others, root.started, root.ended)
         own = self._history.activations_of(place.uids)
         refused = [refusal for refusal in self._refused if refusal.uid in place.uids]
-        return OverRun(self.claim.verb, self.requirement.scopes, root, own, observed, refused, self._stopped, [])
+        return OverRun(
+            self.claim.verb, self.requirement.scopes, root, place.uids, own, observed, refused, self._stopped, []
+        )
 
     def _judged_over(self, claim: ResolvedClaim, overs: Sequence[OverRun]) -> Sequence[Judgement | None]:
         """The judgements of a run by a claim; `overs`: the run as it may have been."""
@@ -435,17 +440,31 @@ class JudgedClause:
         if self._is_about_mission and not joined.build.is_main:  # which did not run as a whole
             return []
         if isinstance(subject, Interval):
-            firsts = self._instances(joined, _node_of(subject.first.subject))
-            groups: dict[tuple[int, ...], tuple[int, ...]] = {}
-            lasts = self._instances(joined, _node_of(subject.last.subject))
-            for uid in firsts if subject.first.subject is not None else [ROOT]:
-                together = near(uid, lasts, joined.tree)
+            firsts = self._instances_of(joined, subject.first)
+            groups: dict[tuple[tuple[int, ...], ...], tuple[int, ...]] = {}
+            lasts = [self._instances(joined, _node_of(atom.subject)) for atom in subject.last.atoms]
+            for uid in firsts:
+                together = tuple(near(uid, of_atom, joined.tree) for of_atom in lasts)
                 groups[together] = (*groups.get(together, ()), uid)
             return [*groups.values()] if not self.findings.missing else []
+        if isinstance(subject, EachEvent):
+            answers = self.claim.event.atoms if self.claim.event is not None else ()
+            firsts = [*self._instances_of(joined, subject.event)]
+            for atom in answers:
+                self._instances(joined, _node_of(atom.subject))
+            return [(uid,) for uid in firsts] if not self.findings.missing else []
         if isinstance(subject, DurationSum):
             uids = [uid for target in subject.targets for uid in self._instances(joined, target)]
             return [tuple(uids)] if uids and not self.findings.missing else []
         return [(uid,) for uid in self._instances(joined, _node_of(subject))]
+
+    def _instances_of(self, joined: Joined, event: ResolvedEvent | AnyEvent) -> Iterable[int]:
+        """The uids of the nodes of an event; that of the root for a condition."""
+        uids: dict[int, None] = {}
+        for atom in event.atoms:
+            own = self._instances(joined, _node_of(atom.subject)) if atom.condition is None else [ROOT]
+            uids.update(dict.fromkeys(own))
+        return uids
 
     def _instances(self, joined: Joined, target: NodeTarget | None) -> list[int]:
         """The uids of a node's instances; notes those missing from the log."""
@@ -460,7 +479,7 @@ class JudgedClause:
 
     def _is_own(self, guard: Guard) -> bool:
         """Whether a guard enforces this clause; spans and sums have no guards."""
-        if isinstance(self._subject, Interval | DurationSum):
+        if isinstance(self._subject, Interval | DurationSum | EachEvent):
             return False
         return guard.requirement == self.requirement.name and self.claim.verb in guard.verbs
 
@@ -504,15 +523,16 @@ class JudgedClause:
             why = f"it was not running when {event} ({counted(findings.missed, 'time')})"
         is_of_run = VERBS[self.claim.verb].operand == "count" and self.claim.per is None
         is_once_a_run = isinstance(self._subject, DurationSum) or (is_of_run and len(findings.paths) == 1)
+        of_each: Literal["activations", "occurrences"] = "activations"
+        if isinstance(self._subject, EachEvent):
+            of_each = "occurrences"
         return ClauseVerdict(
             text=self.text,
             path=", ".join(findings.paths),
-            of=self.claim.text.partition(f" {self.claim.verb} ")[0]
-            if isinstance(self._subject, Interval | DurationSum)
-            else "",
+            of=self.claim.subject_text if isinstance(self._subject, Interval | DurationSum | EachEvent) else "",
             verdict=verdict,
             why=why,
-            unit="runs" if tally.counts_runs or is_once_a_run else "activations",
+            unit="runs" if tally.counts_runs or is_once_a_run else of_each,
             confidence=self.requirement.confidence,
             histogram=tally.distribution.histogram(self.marks()),
             timeline=findings.timeline if verdict == VIOLATED else None,
@@ -557,9 +577,8 @@ def _kind(judgement: Judgement | None, activation: Activation) -> int:
 
 def _events(claim: ResolvedClaim, subject: Subject | None) -> tuple[ResolvedEvent, ...]:
     """The events that a clause names."""
-    if isinstance(subject, Interval):
-        return subject.first, subject.last
-    return (claim.event,) if claim.event is not None else ()
+    events = (*events_of(subject), *([claim.event] if claim.event is not None else ()))
+    return tuple(atom for event in events for atom in event.atoms)
 
 
 def _node_of(subject: Subject | None) -> NodeTarget | None:
@@ -577,4 +596,4 @@ def _clocked(judgement: Judgement | None, root: Activation | None) -> Judgement 
 
 
 _WITHOUT_SUCCESS: Final[dict[Outcome, str]] = {"F": "failed", "H": "halted"}
-_OF_TIME: Final = ("duration", "deadline", "reaction")  # operands that bound the time since something began
+_OF_TIME: Final = ("duration", "deadline", "reaction", "answer")  # operands that bound the time since something began

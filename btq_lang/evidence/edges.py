@@ -15,6 +15,7 @@ from btq_lang.requirements.model import (
     Aggregate,
     Compare,
     DurationSum,
+    EachEvent,
     Limit,
     Quantity,
     ResolvedClaim,
@@ -58,8 +59,9 @@ class Edge(Record):
 
 def edge_of(claim: ResolvedClaim, subject: Subject | None, requirement: ResolvedRequirement) -> Edge | None:
     """The bound of a claim at a subject; None if it has none that may be moved."""
-    if requirement.window is not None or isinstance(subject, DurationSum):
-        return None  # a window holds other judgements for another bound; of a sum parts may be unknown
+    if requirement.window is not None or isinstance(subject, DurationSum | EachEvent):
+        # A window holds other judgements for another bound; parts of a sum, and earlier answers, may be unknown.
+        return None
     if claim.limit is not None:
         if VERBS[claim.verb].operand == "count" and requirement.scopes:
             return None  # starts may be unknown

@@ -241,7 +241,7 @@ class ClauseVerdict(Record):
     of: str
     verdict: Verdict
     why: str
-    unit: Literal["activations", "runs"]
+    unit: Literal["activations", "runs", "occurrences"]
     counted: int
     violated: int
     unknown: int

@@ -86,6 +86,8 @@ _IN_WORDS: Final = _any("during", "for as long as", "as long as", "so long as", 
 _IF: Final = _any(
     "whenever", "only when", "only if", "only while", "provided(?: that)?", "given(?: that)?", "where", "for"
 )
+_WHENEVER: Final = _any("whenever", "after", "once", "if", "each time", "every time", "when")
+_HAPPENS: Final = ("starts", "succeeds", "fails", "finishes", "halts")
 _NOT: Final = _any("except(?: (?:when|while|if|during))?", "until", "but not (?:when|while|if)")
 _MODAL: Final = _any(*MODALS, "has to", "have to", "ought to", "needs to")
 _ENDS: Final = "(?:be |is )?(?:finish(?:es|ed)?|ends?|ended|over|terminate[sd]?|complete[sd]?|returns?|stops?)"
@@ -157,6 +159,15 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
         rf"(?:(?:sliding |moving )?window(?: size)?(?: *[:=])?|over){_LATEST} (?P<number>\d+)",
         ("over last {number} activations", "over last {number} runs"),
         "",
+    ),
+    # what follows an event
+    *(
+        (
+            rf"{_WHENEVER} OTHER EVENT,? *(?:then )?(?P<answer>{_PATH} {_any(*_HAPPENS)}){within}",
+            (f"each {{other}} {{event}} is followed by {{answer}}{deadline}",),
+            "",
+        )
+        for within, deadline in ((" (?:within|in) TIME", " within {time}"), ("", ""))
     ),
     # in which situation
     (f"{_IN_WORDS} CONDITION", ("while {condition}",), ""),

@@ -41,6 +41,7 @@ from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 
 EXPERIMENTS: Final = frozenset(("activations", "runs"))
+COUNTED: Final = ("activations", "runs", "occurrences")  # by odds
 ACTIONS: Final = ("fail", "halt", "warn", "log")
 METHODS: Final = ("monitor", "analysis", "test", "review")
 ENDS_CLAUSES: Final = frozenset(("satisfices", "satisfies", "tags", "parameters", "QualityReq", "Quality"))
@@ -131,8 +132,8 @@ def parse_share(cursor: Cursor, start: int) -> Odds:
         value = parse_percentage(cursor, "at least 98 %", "at least ")
     elif cursor.expect_word("at") and cursor.expect_word("least"):
         value = parse_percentage(cursor, "98 %")
-    if value is not None and cursor.expect_word("of", forgotten=cursor.raw in EXPERIMENTS):
-        experiments = parse_experiments(cursor)
+    if value is not None and cursor.expect_word("of", forgotten=cursor.raw in COUNTED):
+        experiments = parse_one_of(cursor, COUNTED)
     return Odds(start, cursor.last_end(), ">=", value, experiments)
 
 
@@ -158,7 +159,7 @@ def parse_probability(cursor: Cursor, start: int) -> Odds:
                 fixes = (write_fix(written, cursor.here()),)
             cursor.expected("`>=` or `>` and a percentage", (), fixes)
     if value is not None and cursor.accept_word("of"):
-        experiments = parse_experiments(cursor)
+        experiments = parse_one_of(cursor, COUNTED)
     return Odds(start, cursor.last_end(), relation, value, experiments)
 
 

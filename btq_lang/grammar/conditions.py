@@ -218,6 +218,8 @@ def too_deep(cursor: Cursor, message: str) -> None:
 def in_words(cursor: Cursor) -> str:
     """Report `wind below 10 m/s`, and go to the value; the comparison that is meant, or empty."""
     bound = bound_ahead(cursor) if cursor.kind == NAME and cursor.raw not in _ENDS_OPERAND else None
+    if cursor.raw == "within" and "followed" in cursor.raws[: cursor.index]:
+        return ""  # the deadline of what follows an event
     if bound is None or cursor.kinds[cursor.index + bound[0]] not in (NUMBER, QUANTITY):
         return ""
     length, meant = bound

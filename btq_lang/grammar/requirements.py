@@ -9,7 +9,7 @@ import re
 from typing import Final
 
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, replace_fix, write_fix
-from btq_lang.grammar.claims import MEANT, VERB_WORDS, parse_bounded
+from btq_lang.grammar.claims import MEANT, VERB_WORDS, followed_ahead, parse_bounded
 from btq_lang.grammar.clauses import ENDS_CLAUSES, parse_clauses
 from btq_lang.grammar.conditions import HEADS, RELATIONS, close_group
 from btq_lang.grammar.cursor import Cursor
@@ -221,7 +221,12 @@ def spaced_quality(cursor: Cursor, quality: QualityPath) -> None:
     last = quality.names[-1]
     if cursor.kind != NAME or last.kind != NAME or cursor.kinds[cursor.index + 1] not in (STRING, NEWLINE):
         return
-    if cursor.raw not in VERB_WORDS and cursor.raw not in HEADS and not is_metadata(cursor):
+    if (
+        cursor.raw not in VERB_WORDS
+        and cursor.raw not in HEADS
+        and not is_metadata(cursor)
+        and not (cursor.raw == "each" and followed_ahead(cursor))
+    ):
         fix = write_fix("-", Span(last.end + cursor.base, cursor.here().start))
         span = Span(last.start + cursor.base, cursor.here().end)
         cursor.complain(span, "a quality's name has no spaces", fix)

@@ -53,12 +53,22 @@ def expected(words: Sequence[Token]) -> Expected:
         return of_approval
     if text == "," and (head := _begins_last(earlier, _CLAUSES)) in _LISTS:
         return _LISTS[head]
+    head_of_event = _begins_last(_without_other_events(earlier), _HEADS_OF_EVENTS)
+    if text == "or" and before in HAPPENINGS and head_of_event in _EVENTS:
+        return _EVENT
     if text == "of" and _begins_last(earlier, (*_USES, "sum", "in", "with")) in _USES:
         return Expected(signal=True)
     if text == "of":
         return Expected(node=True) if before == "sum" else Expected(_EXPERIMENTS)
+    if text == "by" and before == "followed":
+        return replace(_EVENT, condition=True)
     if text == "and" and _begins_last(earlier, ("between", *_CONDITIONS)) == "between":
         return Expected(value=True)
+    if text in HAPPENINGS and (head := _begins_last(_without_other_events(earlier[:-1]), _HEADS_OF_EVENTS)) in _EVENTS:
+        if head in _AFTER_EVENT:
+            return Expected((_AFTER_EVENT[head], "or"))
+        in_time = ("within",) if _is_answer(earlier) else ()
+        return Expected(("or", *in_time), clause=True)
     if text in _AFTER:
         return _AFTER[text]
     if text in COMPARISONS or text in ("+", "-", "*", "/"):
@@ -68,10 +78,10 @@ def expected(words: Sequence[Token]) -> Expected:
             return Expected(_EXPERIMENTS) if last.kind == NUMBER else Expected(clause=True)
         return Expected(_after_value(earlier), clause=True)
     if last.kind in (NAME, STRING, CLOSE) or text in HAPPENINGS:
-        if _begins_last(earlier, (*_EVENTS, *_CLAUSES)) in _EVENTS and text not in HAPPENINGS:
+        if head_of_event == "followed" and text not in HAPPENINGS:
+            return Expected((*_HAPPENINGS, *_AFTER_OPERAND, "within"), clause=True)
+        if head_of_event in _EVENTS and text not in HAPPENINGS:
             return Expected(_HAPPENINGS)
-        if text in HAPPENINGS and _begins_last(earlier, ("from", "to", *_CLAUSES)) == "from":
-            return Expected(("to",))
         return Expected(_after_value(earlier), clause=True)
     return Expected(clause=True)
 
@@ -142,6 +152,18 @@ def _begins_last(words: Sequence[str], heads: Sequence[str]) -> str:
     return next((word for word in reversed(words) if word in heads), "")
 
 
+def _is_answer(words: Sequence[str]) -> bool:
+    """Whether these words end in what follows an event, perhaps before its deadline."""
+    return _begins_last([word for word in words if word not in HAPPENINGS], _CLAUSES) == "followed"
+
+
+def _without_other_events(words: Sequence[str]) -> list[str]:
+    """The words without what happens in each of several events but the last."""
+    return [
+        word for word, after in zip(words, [*words[1:], ""], strict=True) if word not in HAPPENINGS or after != "or"
+    ]
+
+
 def _after_value(words: Sequence[str]) -> tuple[str, ...]:
     head = _begins_last(words, _CLAUSES)
     if head in _USES and "of" not in words[last_index(words, head) :]:
@@ -158,6 +180,8 @@ def _after_value(words: Sequence[str]) -> tuple[str, ...]:
         return _AFTER_OPERAND
     if head == "verified" and words[-1] in METHODS:
         return ('""',)
+    if head == "followed" and "within" not in words[last_index(words, head) :]:
+        return (*_AFTER_OPERAND, "within")
     if "if" in words:
         return ("and", "or", "else")
     return ("if",) if head in _TIMED or head == "goal" else ()
@@ -178,12 +202,28 @@ _USES = words_of(operands=("use",))
 _CONDITIONS = (*words_of(operands=("condition",)), "while", "when", "context")
 _BEFORE_CONDITIONS = frozenset((*_CONDITIONS, "if"))
 _AFTER_OPERAND = ("and", "or", "<=", ">=", "<", ">", "==", "!=")
-_EVENTS = (*words_of(operands=("event",)), "after", "from", "to")
+_EVENTS = (*words_of(operands=("event",)), "after", "from", "to", "each", "followed")
+_AFTER_EVENT = {"from": "to", "each": "is followed by"}  # between two events
 _CLAUSES = (
     *VERBS,
-    *("in", "with", "confidence", "over", "on", "goal", "because", "verified", "from", "while", "when", "context"),
+    *(
+        "in",
+        "with",
+        "confidence",
+        "over",
+        "on",
+        "goal",
+        "because",
+        "verified",
+        "from",
+        "while",
+        "when",
+        "context",
+        "each",
+    ),
     *METADATA_HEADS,
 )
+_HEADS_OF_EVENTS = (*_EVENTS, *_CLAUSES)
 _CONDITION = Expected(condition=True)
 _VALUE = Expected(value=True)
 _EVENT = Expected(("mission", "when"), node=True)
@@ -201,6 +241,7 @@ _OPERANDS = {
     "reaction": Expected(("within",)),
     "condition": _CONDITION,
     "event": _EVENT,
+    "answer": Expected(("by",)),
 }
 # The verbs of things that a mission does once, from its start to its end.
 _OF_MISSIONS = [verb.word for verb in VERBS.values() if verb.judged in ("at its end", "while it runs")]
@@ -220,7 +261,8 @@ _AFTER = {
     "probability": Expected((">=", ">")),
     "over": Expected(("last",)),
     "sum": Expected(("of",)),
-    **dict.fromkeys(("after", "from", "to"), _EVENT),
+    **dict.fromkeys(("after", "from", "to", "each"), _EVENT),
+    "is": Expected(("followed by",)),
     "mission": Expected((*_OF_MISSIONS, *_HAPPENINGS)),
     "per": Expected(node=True),
     "every": Expected(value=True, node=True),

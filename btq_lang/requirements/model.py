@@ -19,7 +19,7 @@ Relation: TypeAlias = Literal["<=", ">=", "<", ">", "between"]
 Happening: TypeAlias = Literal["starts", "succeeds", "fails", "finishes", "halts", "when"]
 Action: TypeAlias = Literal["fail", "halt", "warn", "log"]
 Method: TypeAlias = Literal["monitor", "analysis", "test", "review"]
-Experiments: TypeAlias = Literal["activations", "runs"]
+Experiments: TypeAlias = Literal["activations", "runs", "occurrences"]
 Behaviour: TypeAlias = Literal["level", "counter", "gauge"]
 Sort: TypeAlias = Literal["number", "bool", "text"]
 
@@ -251,12 +251,34 @@ class ResolvedEvent(Record):
     subject: NodeTarget | MissionRun | None
     condition: Condition | None = None
 
+    @property
+    def atoms(self) -> tuple[ResolvedEvent, ...]:
+        """This one, as of several events."""
+        return (self,)
+
+
+class AnyEvent(Record):
+    """Any of several events, of which only the last may be a condition."""
+
+    atoms: tuple[ResolvedEvent, ...]
+
+    @property
+    def condition(self) -> Condition | None:
+        """The condition that is one of them."""
+        return self.atoms[-1].condition
+
 
 class Interval(Record):
     """The time from each `first` to the next `last`."""
 
-    first: ResolvedEvent
-    last: ResolvedEvent
+    first: ResolvedEvent | AnyEvent
+    last: ResolvedEvent | AnyEvent
+
+
+class EachEvent(Record):
+    """Each occurrence of an event."""
+
+    event: ResolvedEvent | AnyEvent
 
 
 class DurationSum(Record):
@@ -271,7 +293,7 @@ class EveryNode(Record):
     name: str
 
 
-Subject: TypeAlias = NodeTarget | MissionRun | EveryNode | Interval | DurationSum
+Subject: TypeAlias = NodeTarget | MissionRun | EveryNode | Interval | DurationSum | EachEvent
 
 
 class ResolvedClaim(Record):
@@ -280,10 +302,10 @@ class ResolvedClaim(Record):
     Attributes:
         subject: the claim's own; None: what the requirement is attached to.
         limit: of takes, uses, tries, runs; of `within d` and `runs every d` as `<= d`.
-        condition: of needs, keeps, never, leaves.
+        condition: of needs, keeps, never, leaves, and of followed if it is followed by one.
         signal: of uses.
         per: of tries a node, of runs a duration.
-        event: of starts, ends, follows.
+        event: of starts, ends, follows, followed.
         every: `runs every d`.
         text: the clause as typed, blanks folded.
     """
@@ -296,8 +318,14 @@ class ResolvedClaim(Record):
     condition: Condition | None = None
     signal: ResolvedSignal | None = None
     per: NodeTarget | Quantity | None = None
-    event: ResolvedEvent | None = None
+    event: ResolvedEvent | AnyEvent | None = None
     every: bool = False
+
+    @property
+    def subject_text(self) -> str:
+        """What is before its verb, as typed."""
+        verb = "is followed" if isinstance(self.subject, EachEvent) else self.verb
+        return self.text.partition(f" {verb} ")[0]
 
     @property
     def highest(self) -> tuple[float, str] | None:
@@ -477,20 +505,20 @@ class Applied(Record):
 
     Attributes:
         requirement: with arguments in place of its parameters, and only the claims that apply to `subject`.
-        subject: a node, the mission, a span or a sum.
+        subject: a node, the mission, a span, a sum, or each occurrence of an event.
         place: of what attached it: the reference at the node, the `apply`, or the claim that names its subject.
         how: `subject`, `satisfies` or `apply`.
     """
 
     requirement: ResolvedRequirement
-    subject: NodeTarget | MissionRun | Interval | DurationSum
+    subject: NodeTarget | MissionRun | Interval | DurationSum | EachEvent
     arguments: tuple[ResolvedArgument, ...]
     place: Place
     how: Literal["subject", "satisfies", "apply"]
 
     @property
     def node(self) -> ResolvedNode | None:
-        """The node that it applies to; None for a span, a sum, and an unknown mission."""
+        """The node that it applies to; None for a span, a sum, an event, and an unknown mission."""
         return self.subject.node if isinstance(self.subject, NodeTarget | MissionRun) else None
 
     @property
@@ -521,12 +549,21 @@ class Applied(Record):
 
     @property
     def nodes(self) -> tuple[ResolvedNode, ...]:
-        """The nodes that its subject names; for a span those of its events."""
+        """The nodes that its subject names; for a span, and for an event, those of the events."""
         if isinstance(self.subject, DurationSum):
             return tuple(target.node for target in self.subject.targets)
-        events = (self.subject.first, self.subject.last) if isinstance(self.subject, Interval) else ()
-        parts = [event.subject for event in events] if isinstance(self.subject, Interval) else [self.subject]
+        events = events_of(self.subject)
+        parts: list[NodeTarget | MissionRun | None] = [atom.subject for event in events for atom in event.atoms]
+        if isinstance(self.subject, NodeTarget | MissionRun):
+            parts.append(self.subject)
         return tuple(part.node for part in parts if part is not None and part.node is not None)
+
+
+def events_of(subject: Subject | None) -> tuple[ResolvedEvent | AnyEvent, ...]:
+    """The events that a subject names."""
+    if isinstance(subject, Interval):
+        return subject.first, subject.last
+    return (subject.event,) if isinstance(subject, EachEvent) else ()
 
 
 class Trace(Record):

@@ -81,6 +81,17 @@ class Event(Part):
     happening: str
     condition: Condition | None = None
 
+    @property
+    def atoms(self) -> tuple[Event | None, ...]:
+        """This one, as of several events."""
+        return (self,)
+
+
+class AnyEvent(Part):
+    """`Pick fails or Place fails`: any of several events, of which only the last may be a condition."""
+
+    atoms: tuple[Event | None, ...]
+
 
 class Mission(Part):
     """The subject `mission`: the whole run."""
@@ -95,8 +106,8 @@ class Every(Part):
 class Between(Part):
     """The subject `from Pick starts to Place succeeds`."""
 
-    first: Event | None
-    last: Event | None
+    first: Event | AnyEvent | None
+    last: Event | AnyEvent | None
 
 
 class Sum(Part):
@@ -105,19 +116,25 @@ class Sum(Part):
     paths: tuple[Path, ...]
 
 
-Subject: TypeAlias = Path | Mission | Every | Between | Sum
+class EachEvent(Part):
+    """The subject `each Pick fails`: each occurrence of an event."""
+
+    event: Event | AnyEvent | None
+
+
+Subject: TypeAlias = Path | Mission | Every | Between | Sum | EachEvent
 
 
 class Claim(Part):
     """A demand of a requirement: a subject (None: the node it is attached to), a verb and its operands.
 
     Attributes:
-        verb: takes, succeeds, needs, keeps, never, leaves, uses, tries, runs, starts, ends or follows.
+        verb: takes, succeeds, needs, keeps, never, leaves, uses, tries, runs, starts, ends, follows or followed.
         bound: of takes, uses, tries, runs; for `within d` and `runs every d`, `<= d`.
-        condition: of needs, keeps, never, leaves.
+        condition: of needs, keeps, never, leaves, and of followed if it is followed by one.
         resource: of uses: the signal.
         per: of tries: the path; of runs: the quantity.
-        event: of starts, ends, follows.
+        event: of starts, ends, follows, followed.
         every: `runs every d`.
     """
 
@@ -127,7 +144,7 @@ class Claim(Part):
     condition: Condition | None = None
     resource: Word | None = None
     per: Path | Word | None = None
-    event: Event | None = None
+    event: Event | AnyEvent | None = None
     every: bool = False
 
 

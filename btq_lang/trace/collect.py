@@ -372,8 +372,7 @@ def _subject(applied: Applied) -> str:
         return "/".join((*subject.through, applied.tree or _name(subject.node)))
     if isinstance(subject, MissionRun):
         return "mission"
-    claim = applied.requirement.claims[0]
-    return claim.text.partition(f" {claim.verb} ")[0]
+    return applied.requirement.claims[0].subject_text
 
 
 def _node(key: str, source: ResolvedNode, location: At) -> NodeRow:

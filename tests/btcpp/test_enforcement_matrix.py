@@ -39,7 +39,13 @@ CLAUSES = {
     "follows": (
         *(f"follows Other {happening}" for happening in ("starts", "succeeds", "fails", "finishes", "halts")),
         "follows mission starts",
+        "follows Other succeeds or Other starts",
+        "follows Other succeeds or when door",
         "follows when door",
+    ),
+    "followed": (
+        "each Other fails is followed by Work starts within 2 s",
+        "each Other fails or when door is followed by battery > 15 %",
     ),
 }
 QUALIFIERS = {
@@ -118,8 +124,8 @@ def matrix() -> Iterator[str]:
         for clause in clauses:
             for qualifier, written in QUALIFIERS.items() if clause is clauses[0] else [("", "")]:
                 for action in ("fail", "halt") if not qualifier else ("fail",):
-                    for kind, subject in SUBJECTS.items():
-                        comes_of_it = outcome(f"{subject} {clause}", written, action)
+                    for kind, subject in {"event": ""}.items() if clause.startswith("each ") else SUBJECTS.items():
+                        comes_of_it = outcome(f"{subject} {clause}".strip(), written, action)
                         yield f"{kind} {clause}; {qualifier or 'always'}; {action}: {comes_of_it}"
 
 

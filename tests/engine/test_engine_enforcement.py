@@ -391,6 +391,9 @@ def test_tries_are_counted_anew_for_each_activation(engine: Engine) -> None:
         ("Look fails", {"Look": ["SUCCESS"]}, {"Look": ["RUNNING", "FAILURE"]}),
         ("Look finishes", {"Pick": ["SUCCESS"]}, {"Pick": ["FAILURE"]}),
         ("Look starts", {"Pick": ["SUCCESS"]}, {"Pick": ["FAILURE"]}),
+        ("Look fails or Pick succeeds", {"Look": ["SUCCESS"]}, {"Look": ["FAILURE"]}),
+        ("Look fails or Look succeeds", {"Pick": ["SUCCESS"]}, {"Look": ["RUNNING", "SUCCESS"]}),
+        ("Look fails or Look starts", {"Pick": ["SUCCESS"]}, {}),
     ],
 )
 def test_order(engine: Engine, action: str, event: str, broken: Parts, kept: Parts) -> None:

@@ -15,7 +15,7 @@ from literal_verbs import OPEN, OUT, Judged, counted
 
 from btq_lang.evidence.model import ROOT
 from btq_lang.evidence.odds import lower_limit, upper_limit
-from btq_lang.requirements.model import DurationSum, Interval, MissionRun, NodeTarget
+from btq_lang.requirements.model import DurationSum, EachEvent, Interval, MissionRun, NodeTarget
 
 if TYPE_CHECKING:
     from literal_log import Truth
@@ -85,6 +85,8 @@ class Session:
                 claim, [world.spans(applied.subject, claim, applied.requirement) for world in self.worlds]
             )
             return [each for each in found if each.verdict != OUT]
+        if isinstance(applied.subject, EachEvent):
+            return self.followed(applied.subject, claim, applied.requirement)
         if isinstance(applied.subject, DurationSum):
             return self.total(applied.subject, claim, applied.requirement)
         found = self.at_both_ends(applied, claim)
@@ -96,9 +98,17 @@ class Session:
                 found += self.spent(claim, [world.reactions(uid, claim, applied.requirement) for world in self.worlds])
         return [each for each in found if each.verdict != OUT or claim.verb not in ("starts", "ends", "follows")]
 
+    def followed(self, each: EachEvent, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Judged]:
+        """each e is followed by f: what both ends of the begins say of each e."""
+        early, late = (world.followed(each, claim, requirement) for world in self.worlds)
+        return [each for each in self.both_ends(early, late) if each.verdict != OUT]
+
     def at_both_ends(self, applied: Applied, claim: ResolvedClaim, part: Part = None) -> list[Judged]:
         """What it comes to, for each instance of the node and run, if the ends of the begins agree."""
-        early, late = (world.judged(applied, claim, part) for world in self.worlds)
+        return self.both_ends(*(world.judged(applied, claim, part) for world in self.worlds))
+
+    def both_ends(self, early: Sequence[Judged], late: Sequence[Judged]) -> list[Judged]:
+        """What both say, for each instance of a node and run."""
         found = []
         for run, uid in dict.fromkeys((each.run, each.uid) for each in [*late, *early]):
             ones, others = ([each for each in judged if (each.run, each.uid) == (run, uid)] for judged in (early, late))

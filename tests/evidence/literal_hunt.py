@@ -24,7 +24,15 @@ from btq_lang.evidence.evaluate import MissionEvaluation
 from btq_lang.evidence.model import LogSession
 from btq_lang.evidence.odds import lower_limit, upper_limit
 from btq_lang.evidence.verdicts import ClauseVerdict
-from btq_lang.requirements.model import Applied, DurationSum, Interval, NodeTarget, ResolvedClaim, ResolvedRequirement
+from btq_lang.requirements.model import (
+    Applied,
+    DurationSum,
+    EachEvent,
+    Interval,
+    NodeTarget,
+    ResolvedClaim,
+    ResolvedRequirement,
+)
 
 NOT_JUDGED = ("the clause applies to no node", "it has a mistake; run btq check")
 WORST_FIRST = ("violated", "unknown", "undecided", "satisfied", "never exercised")
@@ -78,7 +86,7 @@ class Hunt:
         judged = literal.clause(applied, claim)
         what = {Interval: "from … to", DurationSum: "sum of"}.get(type(applied.subject), claim.verb)
         self.compared[f"{what}: {judged.verdict}"] += 1
-        has_path = streamed.unit != "runs" and not isinstance(applied.subject, Interval | DurationSum)
+        has_path = streamed.unit != "runs" and not isinstance(applied.subject, Interval | DurationSum | EachEvent)
         expected, got = expected_of(made, applied.requirement, judged, has_path), got_of(streamed, has_path)
         if expected != got:
             of_node = [f"{each}" for each in literal.activations if each.uid in {one.uid for one in judged.judged}]

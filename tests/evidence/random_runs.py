@@ -234,9 +234,13 @@ def requirement(chance: random.Random, name: str, labels: list[str]) -> str:
 def claim(chance: random.Random, labels: list[str]) -> str:
     """A subject and a verb."""
     subject = chance.choice([*labels, *labels, "mission", "Part", *(f"every {action}" for action in ACTIONS)])
-    verb = chance.choice([*_VERBS, *_VERBS, "span", "sum" if len({*labels}) > 1 else "span"])
+    verb = chance.choice([*_VERBS, *_VERBS, "span", "each", "sum" if len({*labels}) > 1 else "span"])
     if verb == "span":
         return f"from {event(chance, labels)} to {event(chance, labels)} takes at most {seconds(chance)}"
+    if verb == "each":
+        answer = event(chance, labels) if chance.random() < 0.6 else condition(chance, labels)
+        within = f" within {value(chance, labels, lambda: seconds(chance))}" if chance.random() < 0.7 else ""
+        return f"each {event(chance, labels)} is followed by {answer}{within}"
     if verb == "sum":
         return f"sum of {', '.join(chance.sample(sorted({*labels}), 2))} takes at most {seconds(chance)}"
     operand = {
@@ -293,6 +297,8 @@ def seconds(chance: random.Random) -> str:
 def event(chance: random.Random, labels: list[str]) -> str:
     if chance.random() < 0.2:
         return f"when {condition(chance, labels)}"
+    if chance.random() < 0.2:
+        return f"{chance.choice(labels)} {chance.choice(_HAPPENINGS)} or {event(chance, labels)}"
     return f"{chance.choice(labels)} {chance.choice(_HAPPENINGS)}"
 
 
