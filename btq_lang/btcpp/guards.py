@@ -263,6 +263,19 @@ def _leaves(guard: ClauseGuard) -> None:
     guard.wrap(CHECK, "Sequence", "leaves", after=(guard.condition("check", code),))
 
 
+def _ends_with(guard: ClauseGuard) -> None:
+    """`<Sequence>X<ScriptCondition code="φ"/></Sequence>`; a failure fails anyway, and halts the mission if φ does
+    not hold then.
+    """
+    code = guard.script(_condition(guard))
+    if (when := guard.when()) is not None:
+        code = f"((!{when}) || {code})"
+    guard.wrap(CHECK, "Sequence", "ends", after=(guard.condition("check", code),))
+    if guard.stop:
+        failed = f"{guard.stop} := ({guard.stop} || (!{code}))"
+        guard.wrap(INSIDE, "Sequence", "failed", attributes=(("_onFailure", failed),))
+
+
 def _uses(guard: ClauseGuard) -> None:
     """The signal's value at the start, and two conditions: while the node runs, and when it has succeeded."""
     signal = guard.claim.signal
@@ -364,6 +377,7 @@ _BY_VERB: Final[dict[str, Callable[[ClauseGuard], None]]] = {
     "keeps": _keeps,
     "never": _keeps,
     "leaves": _leaves,
+    "ends with": _ends_with,
     "uses": _uses,
     "tries": _tries,
     "follows": _follows,

@@ -23,6 +23,7 @@ class Verb(Record):
     """A verb.
 
     Attributes:
+        word: one, or the first word of its clauses and what tells them from those of another verb: `ends with`.
         operand: what it is followed by: a bound of a duration, perhaps a deadline, a condition, a bound of the use of a
             signal, a bound of a count, a period or a rate, a deadline after an event, an event.
         measures: what is compared with the bound, or evaluated.
@@ -181,6 +182,22 @@ VERBS: Final = {
                     "leaves battery >= 3 %",
                     "a condition when it has succeeded",
                     "it is false when the node has succeeded. Activations that fail or are halted are not counted",
+                ),
+            ),
+            enforced="check",
+        ),
+        Verb(
+            word="ends with",
+            operand="condition",
+            measures="a condition",
+            judged=_END,
+            said="{} at the end",
+            phrases=(
+                (
+                    "ends with",
+                    "ends with gripper_empty",
+                    "a condition when it has ended",
+                    "it is false when the node has succeeded or failed. Activations that are halted are not counted",
                 ),
             ),
             enforced="check",

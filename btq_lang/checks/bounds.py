@@ -28,7 +28,7 @@ from btq_lang.util.text import Span
 def impossible_bound(view: View) -> Iterator[Diagnostic]:
     """A fractional number of attempts, a negative time, and a claim that every run answers alike."""
     for requirement, claim in _claims(view):
-        bound, verb = claim.bound, claim.verb.raw
+        bound, verb = claim.bound, claim.row
         operand = VERBS[verb].operand
         is_count = operand in _COUNTED
         if (diagnostic := same_in_every_run(view, claim)) is not None:

@@ -412,7 +412,7 @@ class JudgedClause:
     def _count(self, judgement: Judgement | None, activation: Activation, path: str) -> None:
         if judgement is None:
             self._tally.cut_off += activation.outcome == "O"
-            if self.claim.verb == "leaves" and activation.outcome in _WITHOUT_SUCCESS:
+            if self.claim.verb in ("leaves", "ends with") and activation.outcome in _WITHOUT_SUCCESS:
                 self.findings.left_out[_WITHOUT_SUCCESS[activation.outcome]] += 1
         else:
             if judgement.note:

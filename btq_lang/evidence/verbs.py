@@ -188,6 +188,14 @@ def leaves(claim: ResolvedClaim, activation: Activation, observed: Observed) -> 
     return _of(_result(claim.condition, activation.ended, observed), activation.ended, claim, observed)
 
 
+def ends_with(claim: ResolvedClaim, activation: Activation, observed: Observed) -> Judgement | None:
+    """`ends with φ`: a condition at the end of an activation that succeeded or failed."""
+    assert claim.condition is not None, "it ends with a condition"
+    if activation.outcome not in ("S", "F"):
+        return None
+    return _of(_result(claim.condition, activation.ended, observed), activation.ended, claim, observed)
+
+
 def keeps(claim: ResolvedClaim, activation: Activation, observed: Observed) -> Judgement:
     """`keeps φ`: a condition from the start of an activation to its end, at each moment at which it may change.
 
@@ -262,6 +270,7 @@ JUDGES: Final[dict[str, Judge]] = {
     "uses": uses,
     "needs": needs,
     "leaves": leaves,
+    "ends with": ends_with,
     "keeps": keeps,
     "never": keeps,
 }

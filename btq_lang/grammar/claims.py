@@ -46,7 +46,7 @@ from btq_lang.syntax.tree import (
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 
-VERB_WORDS: Final = frozenset(VERBS)
+VERB_WORDS: Final = frozenset(verb.partition(" ")[0] for verb in VERBS)
 HAPPENINGS: Final = frozenset(("starts", "succeeds", "fails", "finishes", "halts"))
 MAX_CASES: Final = 100  # in one value: each case of a table may be another table
 
@@ -111,6 +111,8 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
                 per = cursor.quantity("a duration: 1 s") if cursor.expect_word("per") else None
     elif operand == "event":
         event = parse_event(cursor)
+    elif verb.raw == "ends" and cursor.accept_word("with"):
+        condition = None if signal_last(cursor, "ends with") else parse_cond(cursor)
     else:
         bound = parse_within(cursor) if cursor.expect_word("within") else None
         event = parse_event(cursor) if cursor.expect_word("after", ("of", "from", "since")) else None

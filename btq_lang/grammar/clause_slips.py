@@ -163,6 +163,11 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
     (f"{_IF} CONDITION", ("while {condition}", "when {condition}"), _SITUATION),
     ("until OTHER EVENT", (), "no clause ends at an event; limit it with a condition: `while not docked`"),
     (rf"{_NOT} (?!\d)CONDITION", ("while not {condition}",), ""),
+    (
+        rf"SUBJECT(?:{_MODAL} )?(?:end|finish(?:es)?|completes?|stops?) with (?!\d)CONDITION",
+        ("{subject}ends with {condition}",),
+        "",
+    ),
     # in which order
     (
         f"SUBJECT(?P<event>starts|succeeds|fails) (?:only )?before OTHER{_STARTS}",

@@ -44,7 +44,7 @@ def expected(words: Sequence[Token]) -> Expected:
         return _in_brackets(words, opened)
     last = words[-1]
     before = words[-2].text if len(words) > 1 else ""
-    earlier = [word.text for word in words]
+    earlier = joined([word.text for word in words])
     text = last.text if last.kind not in (STRING, BRACED) else ""
     if text == "of" and _begins_last(earlier, (*_USES, "sum", "in", "with")) in _USES:
         return Expected(signal=True)
@@ -52,6 +52,8 @@ def expected(words: Sequence[Token]) -> Expected:
         return Expected(node=True) if before == "sum" else Expected(_EXPERIMENTS)
     if text == "and" and _begins_last(earlier, ("between", *_CONDITIONS)) == "between":
         return Expected(value=True)
+    if text == "with" and earlier[-1] == "ends with":
+        return _CONDITION
     if text in _AFTER:
         return _AFTER[text]
     if text in COMPARISONS or text in ("+", "-", "*", "/"):
@@ -73,10 +75,21 @@ def opens_condition(words: Sequence[Token]) -> bool:
     """Whether a bracket after these words belongs to a condition: around a part of it, or after a function."""
     if words and words[-1].kind == OPEN:
         return True
-    if not any(word.text in _BEFORE_CONDITIONS for word in words):
+    if not any(word in _BEFORE_CONDITIONS for word in joined([word.text for word in words])):
         return False
     wanted = _at_bracket(words[:-1] if _is_function(words[-1]) else words)
     return wanted.condition or wanted.operand
+
+
+def joined(words: Sequence[str]) -> list[str]:
+    """The words of a clause, a verb of two words as one."""
+    together: list[str] = []
+    for word in words:
+        if together and f"{together[-1]} {word}" in VERBS:
+            together[-1] += f" {word}"
+        else:
+            together.append(word)
+    return together
 
 
 def is_count(words: Sequence[str]) -> bool:
@@ -177,6 +190,7 @@ _OPERANDS = {
 _OF_MISSIONS = [verb.word for verb in VERBS.values() if verb.judged in ("at its end", "while it runs")]
 _AFTER = {
     **{verb.word: _OPERANDS[verb.operand] for verb in VERBS.values()},
+    "ends": Expected(("within", "with")),
     **dict.fromkeys(("within", "goal", "most", "least", "than", "between", "else"), _VALUE),
     "at": Expected(("most", "least")),
     "less": Expected(("than",)),

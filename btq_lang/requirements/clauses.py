@@ -88,7 +88,7 @@ def claim_of(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | Non
 
 def _verb(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | None:
     place = reader.place(Span(written.start, written.end))
-    claim = model.ResolvedClaim(written.verb.raw, reader.text(written.start, written.end), place)
+    claim = model.ResolvedClaim(written.row, reader.text(written.start, written.end), place)
     operand = VERBS[claim.verb].operand
     if operand == "condition":
         condition = reader.condition(written.condition)

@@ -280,7 +280,8 @@ class ResolvedClaim(Record):
     Attributes:
         subject: the claim's own; None: what the requirement is attached to.
         limit: of takes, uses, tries, runs; of `within d` and `runs every d` as `<= d`.
-        condition: of needs, keeps, never, leaves.
+        verb: the word of its row in `catalog.verbs`.
+        condition: of needs, keeps, never, leaves, ends with.
         signal: of uses.
         per: of tries a node, of runs a duration.
         event: of starts, ends, follows.

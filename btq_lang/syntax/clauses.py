@@ -114,7 +114,7 @@ class Claim(Part):
     Attributes:
         verb: takes, succeeds, needs, keeps, never, leaves, uses, tries, runs, starts, ends or follows.
         bound: of takes, uses, tries, runs; for `within d` and `runs every d`, `<= d`.
-        condition: of needs, keeps, never, leaves.
+        condition: of needs, keeps, never, leaves, ends with.
         resource: of uses: the signal.
         per: of tries: the path; of runs: the quantity.
         event: of starts, ends, follows.
@@ -129,6 +129,11 @@ class Claim(Part):
     per: Path | Word | None = None
     event: Event | None = None
     every: bool = False
+
+    @property
+    def row(self) -> str:
+        """The verb's row in `catalog.verbs`: of `ends with battery_low` the one of `ends with`."""
+        return "ends with" if self.verb.raw == "ends" and self.condition is not None else self.verb.raw
 
 
 class ScopeClause(Part):

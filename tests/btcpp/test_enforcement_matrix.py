@@ -31,6 +31,7 @@ CLAUSES = {
     "keeps": ("keeps battery > 15 %",),
     "never": ("never low and door",),
     "leaves": ("leaves battery > 3 %",),
+    "ends with": ("ends with battery > 3 %",),
     "uses": ("uses at most 20 % of battery", "uses at least 1 % of battery", "uses at most 3 of load"),
     "tries": ("tries at most 3", "tries at most 3 per Top", "tries at least 2"),
     "runs": ("runs every 500 ms", "runs at most 9 per 10 s"),

@@ -115,7 +115,7 @@ class OfActivations(Log):
                 if not guards or guards[-1].last < check.first:  # the log is cut off before the only row of the guard
                     guards.append(replace(check, uid=above, first=guards[-1].last + 1 if guards else 0))
                 word = self.tree.nodes[above].path.rpartition("_")[2]
-                found.append(("uses" if word == "used" else word, guards[-1], check))
+                found.append(({"used": "uses", "ends": "ends with"}.get(word, word), guards[-1], check))
         return found
 
     def held(self, uid: int, guard: Activation, check: Activation) -> list[Activation]:
@@ -156,6 +156,9 @@ class OfActivations(Log):
         if claim.verb == "leaves":
             holds = self.holds(claim.condition, a.stop, a)
             return holds if a.outcome == "S" else OPEN if a.outcome == "O" else OUT
+        if claim.verb == "ends with":
+            holds = self.holds(claim.condition, a.stop, a)
+            return holds if a.outcome in ("S", "F") else OPEN if a.outcome == "O" else OUT
         assert claim.verb == "uses"
         return self.bounded(a, self.used(claim, a), claim.limit, part)
 

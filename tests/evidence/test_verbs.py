@@ -117,6 +117,14 @@ SAMPLES = {-5: 50, 10: 30, 20: 5, 25: 30, 31: 1}
         ("Move leaves battery >= 31 %", FAILED, "never exercised 0/0"),
         ("Move leaves battery >= 31 %", HALTED, "never exercised 0/0"),
         ("Move leaves battery >= 31 %", OPEN, "never exercised 0/0 |1"),
+        ("Move ends with battery >= 30 %", LONG, "satisfied 0/1"),
+        ("Move ends with battery >= 31 %", LONG, "violated 1/1"),
+        ("Move ends with battery >= 31 %", FAILED, "violated 1/1"),
+        ("Move ends with battery >= 30 %", FAILED, "satisfied 0/1"),
+        ("Move ends with battery >= 31 %", HALTED, "never exercised 0/0"),
+        ("Move ends with battery >= 31 %", UNWRITTEN, "never exercised 0/0"),
+        ("Move ends with battery >= 31 %", OPEN, "never exercised 0/0 |1"),
+        ("mission ends with battery >= 31 %", FAILED, "violated 1/1"),
         ("Move keeps battery >= 5 %", LONG, "satisfied 0/1"),
         ("Move keeps battery >= 6 %", LONG, "violated 1/1"),
         ("Move keeps battery >= 6 %", HALTED, "violated 1/1"),
@@ -593,14 +601,14 @@ def test_the_example_of_a_verb_is_a_clause_with_it(word: str) -> None:
     (requirement,) = (entry.item for entry in parsed.entries if isinstance(entry.item, RequirementItem))
     (clause,) = requirement.clauses
     assert isinstance(clause, Claim)
-    assert clause.verb.raw == word
+    assert clause.row == word
 
 
 TOO_SHORT = "the run ended before the time was over"
 SIGNALS = (
     "signal battery : % from {battery}\nsignal energy : Wh from {energy} counter\nsignal speed : m/s from {speed}\n"
     "signal rear_is_clear : bool from {rear_is_clear}\nsignal lamp_on : bool from {lamp_on}\n"
-    "signal humans_near : bool from {humans_near}\n"
+    "signal humans_near : bool from {humans_near}\nsignal gripper_empty : bool from {gripper_empty}\n"
 )
 
 
@@ -609,6 +617,7 @@ def test_every_verb_is_judged(word: str, verify: Verify) -> None:
     example = re.sub("Batch|PickTray|SlotFree", "Pick", VERBS[word].example)
     found = verify.clause(f"Move {example}", LONG, samples("battery", {-1: 50}), before=SIGNALS)
     lacks = {"needs": "no samples of `rear_is_clear`", "never": "no samples of `lamp_on`"}
+    lacks["ends with"] = "no samples of `gripper_empty`"
     lacks["uses"] = "no samples of `energy`"
     nothing = (
         "it was not running when Pick succeeds (1 time)"

@@ -62,6 +62,12 @@ LINES: list[tuple[str, str, str, str]] = [  # verb, demand, runs, line
         "Move::3: `battery` was 50 % at the end, bound 60 %; sampled 31 ms before",
     ),
     (
+        "ends with",
+        "Move ends with battery >= 60 %",
+        TWICE,
+        "Move::3: `battery` was 50 % at the end, bound 60 %; sampled 11 ms before",
+    ),
+    (
         "uses",
         "Pick uses at most 3 % of battery",
         TWICE,

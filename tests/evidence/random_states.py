@@ -1,0 +1,31 @@
+"""Random requirements about states, beside those of `random_runs`: they draw from a sequence of their own, so that the
+missions, trees and logs of a seed are the same with and without them.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Sequence
+
+
+def of_states(chance: random.Random, labels: Sequence[str], condition: Callable[[random.Random], str]) -> list[str]:
+    """A requirement or two.
+
+    Args:
+        labels: of nodes.
+        condition: draws a condition.
+    """
+    return [_requirement(chance, f"s{number}", labels, condition) for number in range(chance.choice([1, 2]))]
+
+
+def _requirement(
+    chance: random.Random, name: str, labels: Sequence[str], condition: Callable[[random.Random], str]
+) -> str:
+    subject = chance.choice([*labels, *labels, "mission", "Part"])
+    lines = [f"QualityReq {name} : reliability", f"{subject} ends with {condition(chance)}"]
+    lines += [f"{word} {condition(chance)}" for word in ("while", "when") if chance.random() < 0.15]
+    if chance.random() < 0.3:
+        of = chance.choice(["activations", "runs"])
+        lines.append(f"in at least {chance.choice(['50 %', '80 %'])} of {of}")
+        lines += [f"confidence {chance.choice(['60 %', '90 %'])}"] if chance.random() < 0.7 else []
+    return "\n    ".join(lines)
