@@ -53,6 +53,11 @@ def phrase_at(line: str, index: int) -> tuple[int, str] | None:
     )
 
 
+def in_line(words: str, line: str) -> str:
+    """The phrase that a word belongs to in its line: of `never near for more than 30 s`, `never` to `never for`."""
+    return "never for" if words == "never" and " for more than " in line else words
+
+
 def beginning(words: str) -> Phrase:
     """The longest phrase that begins a clause: `takes` for `takes at most`.
 
@@ -153,6 +158,7 @@ bound
     less than | takes less than 30 s | an upper bound | less than this
     more than | takes more than 1 s | a lower bound | more than this
     between | takes between 0.2 s and 1 s | a lower and an upper bound | from the first value to the second
+    for more than | never lamp_on for more than 30 s | the longest time | no longer than this at a stretch
     within | succeeds within 30 s | an upper bound | no later than this
     if | takes at most 6 min if night else 8 min | a value for a situation | the value while that holds
     else | takes at most 6 min if night else 8 min | the value otherwise | the value in all other situations

@@ -213,7 +213,7 @@ def _path_text(path: syntax.Path) -> str:
 
 
 _COUNTED: Final = ("count", "rate")
-_TIMED: Final = ("duration", "deadline", "rate", "reaction")
+_TIMED: Final = ("duration", "deadline", "rate", "reaction", "stretch")
 # Verbs about when, and how often, a node starts.
 _STARTS: Final = words(operands=("count", "rate", "event")) | {"starts"}
 _SEEN_FIRST: Final = ("sequence", "fallback", "parallel", "parallel-all", "choice", "retry", "repeat")

@@ -213,7 +213,7 @@ class JudgedClause:
         if in_scope(starts, verb, observed) is not True:
             return False
         started, until = self._looked.get(uid, (None, activation.started))
-        if self._is_at_any_time and started == activation.started:
+        if self._is_at_any_time and VERBS[verb].operand != "stretch" and started == activation.started:
             observed = observed.between(until, activation.ended)
         self._looked[uid] = activation.started, activation.ended
         judgement = self._judge(self.judged, activation, observed)
@@ -507,7 +507,7 @@ class JudgedClause:
         return ClauseVerdict(
             text=self.text,
             path=", ".join(findings.paths),
-            of=self.claim.text.partition(f" {self.claim.verb} ")[0]
+            of=self.claim.text.partition(f" {self.claim.head} ")[0]
             if isinstance(self._subject, Interval | DurationSum)
             else "",
             verdict=verdict,
@@ -577,4 +577,4 @@ def _clocked(judgement: Judgement | None, root: Activation | None) -> Judgement 
 
 
 _WITHOUT_SUCCESS: Final[dict[Outcome, str]] = {"F": "failed", "H": "halted"}
-_OF_TIME: Final = ("duration", "deadline", "reaction")  # operands that bound the time since something began
+_OF_TIME: Final = ("duration", "deadline", "reaction", "stretch")  # operands that bound the time since something began

@@ -13,6 +13,7 @@ from btq_lang.catalog.verbs import VERBS, words
 from btq_lang.diagnostics.model import Fix, replace_fix, write_fix
 from btq_lang.grammar.clause_slips import clause_slip
 from btq_lang.grammar.conditions import (
+    BOUNDS,
     COMPARISONS,
     HEADS,
     RELATIONS,
@@ -91,6 +92,7 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
             cursor.recover()
         elif not signal_last(cursor, verb.raw):
             condition = parse_cond(cursor)
+            bound = parse_stretch(cursor) if verb.raw == "never" and cursor.raw == "for" else None
     elif operand == "use":
         bound = parse_bound(cursor)
         resource = cursor.plain_name("a signal") if cursor.expect_word("of", forgotten=cursor.kind == NAME) else None
@@ -190,6 +192,20 @@ def parse_within(cursor: Cursor) -> Bound:
     value = parse_bounded(cursor)
     end = cursor.last_end()
     return Bound(min(start, end), end, "<=", value)
+
+
+def parse_stretch(cursor: Cursor) -> Bound | None:
+    """ "for" "more" "than" Bounded; other words for `more than` are reported"""
+    start = cursor.start()
+    relation = BOUNDS.get(tuple(cursor.raws[cursor.index + 1 : cursor.index + 3]))
+    if relation not in (("more", "than"), ("at", "least")):
+        return None
+    cursor.advance()
+    if not cursor.at_word("more"):
+        written_otherwise(cursor, "this time", 2, "more than")
+    cursor.go_to(cursor.index + 2)
+    value = parse_bounded(cursor)
+    return Bound(start, cursor.last_end(), "<=", value)
 
 
 def parse_bounded(cursor: Cursor) -> Bounded | None:

@@ -148,8 +148,10 @@ def _after_value(words: Sequence[str]) -> tuple[str, ...]:
         return ("of runs", "of activations")
     if head == "over":
         return _EXPERIMENTS
+    if head == "never" and "for" in words[last_index(words, head) :]:
+        return ("if",)
     if head in _CONDITIONS:
-        return _AFTER_OPERAND
+        return (*_AFTER_OPERAND, "for more than") if head == "never" else _AFTER_OPERAND
     if "if" in words:
         return ("and", "or", "else")
     return ("if",) if head in _TIMED or head == "goal" else ()
@@ -183,11 +185,15 @@ _OPERANDS = {
     "rate": Expected(("every", *_BOUNDS)),
     "deadline": Expected(("within",), clause=True),
     "reaction": Expected(("within",)),
-    "condition": _CONDITION,
+    **dict.fromkeys(("condition", "stretch"), _CONDITION),
     "event": _EVENT,
 }
 # The verbs of things that a mission does once, from its start to its end.
-_OF_MISSIONS = [verb.word for verb in VERBS.values() if verb.judged in ("at its end", "while it runs")]
+_OF_MISSIONS = [
+    verb.word
+    for verb in VERBS.values()
+    if verb.judged in ("at its end", "while it runs") and verb.operand != "stretch"  # it begins as `never` does
+]
 _AFTER = {
     **{verb.word: _OPERANDS[verb.operand] for verb in VERBS.values()},
     "ends": Expected(("within", "with")),
@@ -195,6 +201,7 @@ _AFTER = {
     "at": Expected(("most", "least")),
     "less": Expected(("than",)),
     "more": Expected(("than",)),
+    "for": Expected(("more than",)),
     **dict.fromkeys(("while", "when", "if", "and", "or", "not"), _CONDITION),
     "on": Expected(("violation",)),
     "violation": Expected(ACTIONS),

@@ -93,6 +93,9 @@ def _verb(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | None:
     if operand == "condition":
         condition = reader.condition(written.condition)
         return replace(claim, condition=condition) if condition is not None else None
+    if operand == "stretch":
+        condition, limit = reader.condition(written.condition), _limit(reader, written.bound, DURATION)
+        return replace(claim, condition=condition, limit=limit) if condition is not None and limit is not None else None
     if operand == "event":
         event = _event(reader, written.event)
         return replace(claim, event=event) if event is not None else None
@@ -250,6 +253,6 @@ def parameter_of(reader: Reader, written: syntax.Parameter) -> model.ResolvedPar
     return replace(parameter, default=default)
 
 
-_TIMED: Final = ("duration", "deadline", "reaction")
+_TIMED: Final = ("duration", "deadline", "reaction", "stretch")
 _COUNTED: Final = Wanted("a number", (model.NO_DIMENSION, COUNT), None)
 _SHARE: Final = Wanted("a percentage", (PERCENT,), "%")

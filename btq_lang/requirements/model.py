@@ -279,9 +279,9 @@ class ResolvedClaim(Record):
 
     Attributes:
         subject: the claim's own; None: what the requirement is attached to.
-        limit: of takes, uses, tries, runs; of `within d` and `runs every d` as `<= d`.
         verb: the word of its row in `catalog.verbs`.
-        condition: of needs, keeps, never, leaves, ends with.
+        limit: of takes, uses, tries, runs; of `within d`, `runs every d` and `never φ for more than d` as `<= d`.
+        condition: of needs, keeps, never, leaves, ends with, never for.
         signal: of uses.
         per: of tries a node, of runs a duration.
         event: of starts, ends, follows.
@@ -299,6 +299,11 @@ class ResolvedClaim(Record):
     per: NodeTarget | Quantity | None = None
     event: ResolvedEvent | None = None
     every: bool = False
+
+    @property
+    def head(self) -> str:
+        """The first word of its verb, which is in its text."""
+        return self.verb.partition(" ")[0]
 
     @property
     def highest(self) -> tuple[float, str] | None:
@@ -455,7 +460,7 @@ class Applied(Record):
         if self.how != "subject" or isinstance(self.subject, MissionRun) or node is None or node.parent is not None:
             return None
         claim = self.requirement.claims[0]
-        last = claim.text.partition(f" {claim.verb} ")[0].rpartition("/")[2]
+        last = claim.text.partition(f" {claim.head} ")[0].rpartition("/")[2]
         return node.tree if last == node.tree else None
 
     @property

@@ -113,7 +113,7 @@ class Claim(Part):
 
     Attributes:
         verb: takes, succeeds, needs, keeps, never, leaves, uses, tries, runs, starts, ends or follows.
-        bound: of takes, uses, tries, runs; for `within d` and `runs every d`, `<= d`.
+        bound: of takes, uses, tries, runs; for `within d`, `runs every d` and `never φ for more than d`, `<= d`.
         condition: of needs, keeps, never, leaves, ends with.
         resource: of uses: the signal.
         per: of tries: the path; of runs: the quantity.
@@ -133,7 +133,11 @@ class Claim(Part):
     @property
     def row(self) -> str:
         """The verb's row in `catalog.verbs`: of `ends with battery_low` the one of `ends with`."""
-        return "ends with" if self.verb.raw == "ends" and self.condition is not None else self.verb.raw
+        if self.condition is None:
+            return self.verb.raw
+        if self.verb.raw == "never" and self.bound is not None:
+            return "never for"
+        return "ends with" if self.verb.raw == "ends" else self.verb.raw
 
 
 class ScopeClause(Part):

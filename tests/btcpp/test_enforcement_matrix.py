@@ -30,6 +30,7 @@ CLAUSES = {
     "needs": ("needs battery > 15 %", "needs low"),
     "keeps": ("keeps battery > 15 %",),
     "never": ("never low and door",),
+    "never for": ("never low for more than 30 s",),
     "leaves": ("leaves battery > 3 %",),
     "ends with": ("ends with battery > 3 %",),
     "uses": ("uses at most 20 % of battery", "uses at least 1 % of battery", "uses at most 3 of load"),

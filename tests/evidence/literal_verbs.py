@@ -56,6 +56,8 @@ class OfActivations(Log):
             if self.is_stopped(each, claim, requirement) or self.is_refuted(each, claim, requirement)
             else judged(each, self.keeps(each, claim, requirement))
             if claim.verb in ("keeps", "never")
+            else judged(each, self.never_for(each, claim, requirement))
+            if claim.verb == "never for"
             else judged(each, self.scoped(each, self.whole(each, claim, part), requirement))
             for each in self.of(uid)
         ]
@@ -197,6 +199,27 @@ class OfActivations(Log):
         counts = both(self.holds_all("when", requirement, a.start, a), either(*(counts for counts, _ in moments)))
         kept = both(*(either(negated(counts, True), holds) for counts, holds in moments))
         return counted(counts, OPEN if kept and a.outcome == "O" else kept)
+
+    def never_for(self, a: Activation, claim: ResolvedClaim, requirement: ResolvedRequirement) -> Verdict:
+        """never φ for more than d: each part of the activation in which φ (and C) holds; what is unknown may hold."""
+        moments = self.moments(a)
+        in_scope = [self.holds_all("while", requirement, moment, a) for moment in moments]
+        held = [
+            both(counts, self.holds(claim.condition, moment, a))
+            for counts, moment in zip(in_scope, moments, strict=True)
+        ]
+        times = [*(time for time, _ in moments), a.end]
+        kept: list[Truth] = []
+        for first in range(len(held)):
+            for last in range(first, len(held)):
+                holds = both(*held[first : last + 1])
+                if holds is not False:
+                    is_short = self.within((times[last + 1] - times[first]) / 1e6, claim.limit, a)[0]
+                    kept.append(is_short if is_short is None or is_short or holds else None)
+        verdict: Verdict = both(*kept, True if False in kept or {*held} != {None} else None)
+        verdict = None if verdict is False and not a.is_exact else verdict
+        counts = both(self.holds_all("when", requirement, a.start, a), either(*in_scope))
+        return counted(counts, OPEN if verdict and a.outcome == "O" else verdict)
 
     def bounded(self, a: Activation, measured: float | None, limit: Limit | None, part: Part = None) -> Verdict:
         """A measure that grows while the activation lasts, against its bound."""

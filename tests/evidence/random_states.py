@@ -22,7 +22,13 @@ def _requirement(
     chance: random.Random, name: str, labels: Sequence[str], condition: Callable[[random.Random], str]
 ) -> str:
     subject = chance.choice([*labels, *labels, "mission", "Part"])
-    lines = [f"QualityReq {name} : reliability", f"{subject} ends with {condition(chance)}"]
+    claim = chance.choice(
+        [
+            f"ends with {condition(chance)}",
+            f"never {condition(chance)} for more than {chance.randint(1, 12) / 4:g} s",
+        ]
+    )
+    lines = [f"QualityReq {name} : reliability", f"{subject} {claim}"]
     lines += [f"{word} {condition(chance)}" for word in ("while", "when") if chance.random() < 0.15]
     if chance.random() < 0.3:
         of = chance.choice(["activations", "runs"])

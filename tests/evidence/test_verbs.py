@@ -134,6 +134,17 @@ SAMPLES = {-5: 50, 10: 30, 20: 5, 25: 30, 31: 1}
         ("Move keeps battery < 50 %", LONG, "violated 1/1"),
         ("Move never battery < 5 %", LONG, "satisfied 0/1"),
         ("Move never battery < 6 %", LONG, "violated 1/1"),
+        ("Move never battery < 40 % for more than 20 ms", LONG, "satisfied 0/1"),
+        ("Move never battery < 40 % for more than 19 ms", LONG, "violated 1/1"),
+        ("Move never battery < 20 % for more than 5 ms", LONG, "satisfied 0/1"),
+        ("Move never battery < 20 % for more than 4 ms", LONG, "violated 1/1"),
+        ("Move never battery < 40 % for more than 19 ms", HALTED, "violated 1/1"),
+        ("Move never battery < 40 % for more than 20 ms", HALTED, "satisfied 0/1"),
+        ("Move never battery < 40 % for more than 19 ms", UNWRITTEN, "unknown 0/0 ?1"),
+        ("Move never battery < 40 % for more than 19 ms", OPEN, "violated 1/1"),
+        ("Move never battery < 40 % for more than 20 ms", OPEN, "never exercised 0/0 |1"),
+        ("Move never battery < 40 % for more than 15 ms\n while battery > 20 %", LONG, "satisfied 0/1"),
+        ("Move never battery < 40 % for more than 9 ms if battery < 10 % else 25 ms", LONG, "satisfied 0/1"),
         ("Move takes at most 29 ms if battery < 40 % else 31 ms", LONG, "satisfied 0/1"),
         ("Move takes at most 29 ms if battery > 40 % else 31 ms", LONG, "violated 1/1"),
     ],
@@ -604,6 +615,15 @@ def test_the_example_of_a_verb_is_a_clause_with_it(word: str) -> None:
     assert clause.row == word
 
 
+@pytest.mark.parametrize(
+    ("bound", "expected"), [("19 ms", "violated 1/1"), ("25 ms", "unknown 0/0 ?1"), ("30 ms", "satisfied 0/1")]
+)
+def test_a_stretch_that_is_unknown_between(bound: str, expected: str, verify: Verify) -> None:
+    """It held from the start to 5 ms and from 10 ms to 30 ms; between, the sample is too old."""
+    demand = f"Move never battery < 60 % for more than {bound}"
+    assert count(verify.clause(demand, LONG, samples("battery", SAMPLES), before=FRESH)) == expected
+
+
 TOO_SHORT = "the run ended before the time was over"
 SIGNALS = (
     "signal battery : % from {battery}\nsignal energy : Wh from {energy} counter\nsignal speed : m/s from {speed}\n"
@@ -617,6 +637,7 @@ def test_every_verb_is_judged(word: str, verify: Verify) -> None:
     example = re.sub("Batch|PickTray|SlotFree", "Pick", VERBS[word].example)
     found = verify.clause(f"Move {example}", LONG, samples("battery", {-1: 50}), before=SIGNALS)
     lacks = {"needs": "no samples of `rear_is_clear`", "never": "no samples of `lamp_on`"}
+    lacks["never for"] = "no samples of `lamp_on`"
     lacks["ends with"] = "no samples of `gripper_empty`"
     lacks["uses"] = "no samples of `energy`"
     nothing = (

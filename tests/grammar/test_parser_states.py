@@ -28,11 +28,23 @@ def claim(text: str) -> Claim:
     [
         ("Move ends with battery >= 3 %", "ends with"),
         ("ends with calm", "ends with"),
+        ("never calm for more than 3 s", "never for"),
+        ("Move never speed > 3 m/s for more than 3 s if calm else 5 s", "never for"),
+        ("never calm", "never"),
+        ("never for", "never"),  # a signal of that name
+        ("never for for more than 3 s", "never for"),
         ("Move ends within 2 s after Pick succeeds", "ends"),
     ],
 )
 def test_the_row_of_a_verb(text: str, row: str) -> None:
     assert claim(text).row == row
+
+
+def test_a_node_that_is_called_for() -> None:
+    first, second = clauses("never calm for takes at most 3 s")
+    assert isinstance(first, Claim)
+    assert isinstance(second, Claim)
+    assert (first.row, second.row) == ("never", "takes")
 
 
 @pytest.mark.parametrize(
@@ -41,6 +53,11 @@ def test_the_row_of_a_verb(text: str, row: str) -> None:
         ("Move finishes with battery >= 3 %", "this clause is written `Move ends with battery >= 3 %`"),
         ("Move shall end with calm", "this clause is written `Move ends with calm`"),
         ("Move ends with at least 3 % battery", "expected a condition, which begins with its signal, found `at`"),
+        ("never calm for longer than 3 s", "this time is written `more than`"),
+        (
+            "keeps calm for 3 s",
+            "only `never` says how long a condition may hold: `never low for more than 30 s`",
+        ),
         ("Move ends in 3 s", "this clause is written `Move succeeds within 3 s` or `Move takes at most 3 s`"),
     ],
 )
