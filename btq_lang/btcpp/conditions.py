@@ -89,6 +89,15 @@ def table_script(table: ResolvedTable, spelt: Callable[[Bounded], str], stored: 
     return script
 
 
+def table_in_condition(table: ResolvedTable, unit: Unit | None) -> str:
+    """The script of a table as a part of a condition, in a unit (None: SI).
+
+    Raises:
+        NoScript: with the reason.
+    """
+    return table_script(table, lambda value: number_script(value, unit, table_in_condition), table_in_condition)
+
+
 def all_of(scripts: Iterable[str]) -> str:
     """The script that holds if each of some does; at least one."""
     return reduce("({} && {})".format, scripts)

@@ -17,6 +17,7 @@ from btq_lang.btcpp.conditions import (
     number_script,
     real,
     signal_script,
+    table_in_condition,
     table_script,
 )
 from btq_lang.btcpp.document import Element
@@ -132,7 +133,8 @@ class ClauseGuard:
         return self.leaf("ScriptCondition", what, code, f"{self.stop} := true" if self.stop else None)
 
     def script(self, condition: Condition) -> str:
-        return condition_script(condition, self.stored)
+        """The script of a condition; its tables are read with it, not when the node starts."""
+        return condition_script(condition, table_in_condition)
 
     def at_start(self, what: str, script: str) -> str:
         """A variable of the tree that is set to this value when the node starts."""

@@ -18,8 +18,10 @@ from btq_lang.grammar.conditions import (
     HEADS,
     RELATIONS,
     bound_ahead,
+    parse_cases,
     parse_cond,
     parse_path,
+    parse_simple,
     written_otherwise,
 )
 from btq_lang.grammar.cursor import Cursor, shown
@@ -31,7 +33,6 @@ from btq_lang.syntax.tree import (
     Between,
     Bound,
     Bounded,
-    Case,
     Claim,
     Condition,
     Event,
@@ -40,7 +41,6 @@ from btq_lang.syntax.tree import (
     Path,
     Subject,
     Sum,
-    Table,
     Word,
     quote,
 )
@@ -49,7 +49,6 @@ from btq_lang.util.text import Span
 
 VERB_WORDS: Final = frozenset(verb.partition(" ")[0] for verb in VERBS)
 HAPPENINGS: Final = frozenset(("starts", "succeeds", "fails", "finishes", "halts"))
-MAX_CASES: Final = 100  # in one value: each case of a table may be another table
 
 
 def parse_claim(cursor: Cursor) -> Claim | None:
@@ -215,40 +214,7 @@ def parse_bounded(cursor: Cursor) -> Bounded | None:
     ):
         return choice_in_other_words(cursor)
     value = parse_simple(cursor)
-    if value is None or not cursor.at_word("if"):
-        return value
-    cases: list[Case] = []
-    while cursor.accept_word("if"):
-        cases.append(Case(value, parse_cond(cursor)))
-        if not cursor.accept(","):
-            break
-        if len(cases) == MAX_CASES:
-            note = "compute the value in a node, and declare a signal for its output"
-            cursor.complain(
-                cursor.here(), f"more than {MAX_CASES} cases in one value", notes=(note,), rule="nested-too-deep"
-            )
-            cursor.recover()
-            return Table(tuple(cases))
-        value = parse_simple(cursor)
-        if value is None:
-            return Table(tuple(cases))
-        if not cursor.at_word("if"):
-            cursor.expected("`if` and a condition, or `else` instead of the comma")
-            return Table(tuple(cases))
-    otherwise = parse_simple(cursor) if cursor.expect_word("else") else None
-    return Table(tuple(cases), otherwise)
-
-
-def parse_simple(cursor: Cursor, strings: bool = False) -> Amount | None:
-    """Simple = [ "-" ] ( QUANTITY | NUMBER ) | NAME;  with `strings` a STRING too"""
-    cursor.skip_sign(":")
-    negative = cursor.accept("-")
-    if cursor.kind == QUANTITY or cursor.kind == NUMBER:
-        return Amount(cursor.take(), negative)
-    if not negative and (cursor.kind == NAME or (strings and cursor.kind == STRING)):
-        return Amount(cursor.take())
-    cursor.expected("a value with its unit: 30 s")
-    return None
+    return parse_cases(cursor, value) if value is not None and cursor.at_word("if") else value
 
 
 # ---- what productions ask and report ----

@@ -114,6 +114,12 @@ def _in_brackets(words: Sequence[Token], opened: int) -> Expected:
     if not is_after:
         return _at_bracket(words)
     wanted = replace(expected([word for word in words if word.kind != OPEN]), clause=False)
+    inside = [word.text for word in words[opened + 1 :]]
+    if words[opened - 1].text in _BEFORE_VALUES and words[-1].kind in (NAME, NUMBER, QUANTITY):
+        if len(inside) == 1:
+            return replace(wanted, words=(*_AFTER_OPERAND, "if"))
+        if "if" in inside and "else" not in inside and inside[-1] not in _AFTER:
+            return replace(wanted, words=("and", "or", "else"))
     return replace(wanted, words=_AFTER_OPERAND) if "else" in wanted.words else wanted
 
 
@@ -172,6 +178,7 @@ _USES = words_of(operands=("use",))
 _CONDITIONS = (*words_of(operands=("condition",)), "while", "when", "context")
 _BEFORE_CONDITIONS = frozenset((*_CONDITIONS, "if"))
 _AFTER_OPERAND = ("and", "or", "<=", ">=", "<", ">", "==", "!=")
+_BEFORE_VALUES = frozenset((*COMPARISONS, "+", "-", "*", "/"))
 _EVENTS = (*words_of(operands=("event",)), "after", "from", "to")
 _CLAUSES = (
     *VERBS,

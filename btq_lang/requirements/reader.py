@@ -498,6 +498,8 @@ class Reader(PathReader):
             return term and Term(model.Minus(term.value), term.sort, term.dimension, term.unit, term.span, term.level)
         if isinstance(written, syntax.Call):
             return self._call(written)
+        if isinstance(written, syntax.Choice):
+            return self._choice(written)
         if isinstance(written, syntax.Binary) and written.operator in "+-*/":
             return self._arithmetic(written)
         if self.condition(written) is not None:
@@ -526,6 +528,26 @@ class Reader(PathReader):
         if unit is not None and function in ("change", "stddev"):
             return Term(value, "number", unit.dimension, "K" if unit.offset else unit.symbol, span, "difference")
         return term_of(value, signal, span)
+
+    def _choice(self, written: syntax.Choice) -> Term | None:
+        amounts = [*(case.value for case in written.table.cases), written.table.otherwise]
+        conditions = [self.condition(case.condition) for case in written.table.cases]
+        terms = [self._amount(amount, None) for amount in amounts if amount is not None]
+        understood = [term for term in terms if term is not None]
+        if len(understood) < len(amounts) or None in conditions:
+            return None
+        first = understood[0]
+        alike = [self._comparable(first, other, "==") for other in understood[1:]]
+        if not all(alike):
+            return None
+        values = [simple(term.value) for term in understood]
+        cases = [
+            model.ResolvedCase(value, condition)
+            for value, condition in zip(values, (*conditions, None), strict=True)
+            if value is not None
+        ]
+        table = model.ResolvedTable(tuple(cases))
+        return Term(table, first.sort, first.dimension, first.unit, Span(written.start, written.end), first.level)
 
     def _arithmetic(self, written: syntax.Binary) -> Term | None:
         left, right = self._expression(written.left), self._expression(written.right)

@@ -219,6 +219,12 @@ class Call(Part):
     signal: Word | None
 
 
+class Choice(Part):
+    """`(0.5 m/s if near else 1 m/s)`: a value for each context."""
+
+    table: Table
+
+
 class NodeRuns(Part):
     """`node BatteryCheck/MoveBase`: true while that node runs."""
 
@@ -252,4 +258,4 @@ class Comparison(Part):
     operands: tuple[Condition, ...]
 
 
-Condition: TypeAlias = Operand | Call | NodeRuns | Negative | Not | Binary | Comparison
+Condition: TypeAlias = Operand | Call | Choice | NodeRuns | Negative | Not | Binary | Comparison

@@ -21,6 +21,7 @@ from btq_lang.syntax.clauses import Bound as Bound
 from btq_lang.syntax.clauses import Bounded as Bounded
 from btq_lang.syntax.clauses import Call as Call
 from btq_lang.syntax.clauses import Case as Case
+from btq_lang.syntax.clauses import Choice as Choice
 from btq_lang.syntax.clauses import Claim as Claim
 from btq_lang.syntax.clauses import Clause as Clause
 from btq_lang.syntax.clauses import Comparison as Comparison

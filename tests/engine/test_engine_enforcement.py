@@ -166,6 +166,12 @@ CASES: dict[str, tuple[str, str, Parts, Parts]] = {
         {"Move": [step("RUNNING", people=0.0), step("RUNNING", speed=1.0), "RUNNING", "SUCCESS"]},
         {"First": [step("SUCCESS", people=0.0)], "Move": [step("RUNNING", people=1.0, speed=1.0), "SUCCESS"]},
     ),
+    "keeps_choice": (
+        SPEED + PEOPLE,
+        "keeps speed <= (900 m/h if near else 1 m/s)",
+        {"Move": [step("RUNNING", speed=1.0), step("RUNNING", people=2.0), "RUNNING", "SUCCESS"]},
+        {"Move": [step("RUNNING", speed=1.0), step("RUNNING", people=1.0, speed=0.25), "RUNNING", "SUCCESS"]},
+    ),
     "keeps_other_units": (
         "signal heat : degC from {heat} initially 20 degC\nsignal limit : K from {limit} initially 300 K\n",
         "keeps heat < limit",

@@ -22,12 +22,8 @@ def _requirement(
     chance: random.Random, name: str, labels: Sequence[str], condition: Callable[[random.Random], str]
 ) -> str:
     subject = chance.choice([*labels, *labels, "mission", "Part"])
-    claim = chance.choice(
-        [
-            f"ends with {condition(chance)}",
-            f"never {condition(chance)} for more than {chance.randint(1, 12) / 4:g} s",
-        ]
-    )
+    state = condition(chance) if chance.random() < 0.7 else _measured(chance, condition)
+    claim = chance.choice([f"ends with {state}", f"never {state} for more than {chance.randint(1, 12) / 4:g} s"])
     lines = [f"QualityReq {name} : reliability", f"{subject} {claim}"]
     lines += [f"{word} {condition(chance)}" for word in ("while", "when") if chance.random() < 0.15]
     if chance.random() < 0.3:
@@ -35,3 +31,9 @@ def _requirement(
         lines.append(f"in at least {chance.choice(['50 %', '80 %'])} of {of}")
         lines += [f"confidence {chance.choice(['60 %', '90 %'])}"] if chance.random() < 0.7 else []
     return "\n    ".join(lines)
+
+
+def _measured(chance: random.Random, condition: Callable[[random.Random], str]) -> str:
+    """A signal compared with what depends on the situation."""
+    low, high = (chance.randint(0, 20) * 5 for _ in range(2))
+    return f"battery >= ({low} % if {condition(chance)} else {high} %)"

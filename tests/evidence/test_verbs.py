@@ -132,6 +132,8 @@ SAMPLES = {-5: 50, 10: 30, 20: 5, 25: 30, 31: 1}
         ("Move keeps battery >= 6 %", OPEN, "violated 1/1"),
         ("Move keeps battery >= 5 %", OPEN, "never exercised 0/0 |1"),
         ("Move keeps battery < 50 %", LONG, "violated 1/1"),
+        ("Move keeps battery >= (40 % if battery > 45 % else 5 %)", LONG, "satisfied 0/1"),
+        ("Move keeps battery >= (40 % if battery > 20 % else 5 %)", LONG, "violated 1/1"),
         ("Move never battery < 5 %", LONG, "satisfied 0/1"),
         ("Move never battery < 6 %", LONG, "violated 1/1"),
         ("Move never battery < 40 % for more than 20 ms", LONG, "satisfied 0/1"),

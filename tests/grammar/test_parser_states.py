@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from btq_lang.parser import parse
-from btq_lang.syntax.tree import Claim, Clause, Requirement
+from btq_lang.syntax.tree import Choice, Claim, Clause, Requirement, walk
 
 
 def clauses(text: str) -> tuple[Clause, ...]:
@@ -40,6 +40,19 @@ def test_the_row_of_a_verb(text: str, row: str) -> None:
     assert claim(text).row == row
 
 
+@pytest.mark.parametrize(
+    ("condition", "cases"),
+    [
+        ("speed <= (1 m/s if near else 2 m/s)", 1),
+        ("(-1 m/s if near, limit if far and calm else - 2 m/s) < speed", 2),
+        ("speed * (2 if near else 3) < 6 m/s or calm", 1),
+    ],
+)
+def test_a_choice_in_a_condition(condition: str, cases: int) -> None:
+    found = [each for each in walk(claim(f"keeps {condition}")) if isinstance(each, Choice)]
+    assert [(len(each.table.cases), each.table.otherwise is not None) for each in found] == [(cases, True)]
+
+
 def test_a_node_that_is_called_for() -> None:
     first, second = clauses("never calm for takes at most 3 s")
     assert isinstance(first, Claim)
@@ -58,6 +71,8 @@ def test_a_node_that_is_called_for() -> None:
             "keeps calm for 3 s",
             "only `never` says how long a condition may hold: `never low for more than 30 s`",
         ),
+        ("keeps speed <= (1 m/s if near)", "expected `else`, found `)`"),
+        ("keeps speed <= (2 * speed if near else 3 m/s)", "expected `)`, found `if`"),
         ("Move ends in 3 s", "this clause is written `Move succeeds within 3 s` or `Move takes at most 3 s`"),
     ],
 )

@@ -17,6 +17,12 @@ BEFORE = "signal battery : % from {level} level\ncontext calm : battery > 50 %\n
         ("never calm ", ("and", "for more than"), ("if",)),
         ("never calm for ", ("more than",), ("calm",)),
         ("never calm for more than 30 s ", ("if",), ("<=",)),
+        ("keeps battery >= (", ("battery",), ("if",)),
+        ("keeps battery >= (30 % ", ("if",), ("takes",)),
+        ("keeps battery >= (30 % if ", ("calm", "battery"), ("else",)),
+        ("keeps battery >= (30 % if calm ", ("and", "else"), ("if",)),
+        ("keeps battery >= (30 % if calm else ", ("battery",), ("calm",)),
+        ("takes at most 3 s if (calm ", ("and",), ("else", "if")),
         ("ends with (", ("battery",), ("station =",)),
     ],
 )
