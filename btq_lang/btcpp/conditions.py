@@ -16,6 +16,7 @@ from typing import Final, TypeAlias
 
 from btq_lang.catalog.units import Unit, from_si
 from btq_lang.requirements.model import (
+    Age,
     Aggregate,
     All,
     Any,
@@ -185,6 +186,8 @@ def number_script(number: Number, unit: Unit | None, stored: Stored) -> str:
         return f"({left} {number.operator} {right})"
     if isinstance(number, ResolvedTable):
         return stored(number, unit)
+    if isinstance(number, Age):
+        raise NoScript(f"a script cannot tell how old `{number.signal.name}` is")
     if isinstance(number, Aggregate):
         raise NoScript(f"a script cannot read the samples of `{number.function}({number.signal.name})`")
     raise NoScript(f"`{number.name}` has no value")

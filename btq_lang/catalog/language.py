@@ -218,6 +218,8 @@ part of a condition
     p95 | leaves p95(force) < 8 N | the 95th percentile | the 95th percentile, over the node's activation
     stddev | leaves stddev(force) < 8 N | the standard deviation | the standard deviation, over the node's activation
     change | leaves change(force) < 8 N | how much it changes | how much it changes, over the node's activation
+    age | keeps age(position) <= 1 s | how old a value is | \
+        the time since the last reading of a signal; before its first, since the node started
     count | leaves count(force) < 8 N | the number of readings | the number of readings, over the node's activation
 """
 

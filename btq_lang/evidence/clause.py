@@ -37,6 +37,7 @@ from btq_lang.evidence.verbs import duration as lasted
 from btq_lang.evidence.verdicts import NEVER, VIOLATED, CauseLink, ClauseVerdict, Measures
 from btq_lang.evidence.wording import duration
 from btq_lang.requirements.model import (
+    Age,
     Aggregate,
     DurationSum,
     Interval,
@@ -110,7 +111,8 @@ class JudgedClause:
         self._is_about_mission: Final = any(isinstance(each, MissionRun) for each in subjects)
         parts = (claim.condition, claim.limit, *self._events, *(scope.condition for scope in requirement.scopes))
         self._running: Final = [part.target for part in parts_in(parts) if isinstance(part, Running)]
-        measures_time = VERBS[claim.verb].operand not in ("condition", "use")
+        has_age = any(isinstance(part, Age) for part in parts_in(parts))  # which counts from the start
+        measures_time = has_age or VERBS[claim.verb].operand not in ("condition", "use")
         self._bounds_time: Final = VERBS[claim.verb].operand in _OF_TIME and not isinstance(subject, DurationSum)
         self._reads: Final = None if measures_time else [*signals_in((parts, claim.signal))]
         self._is_at_any_time: Final = VERBS[claim.verb].judged == "while it runs"

@@ -16,7 +16,7 @@ from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.signals import UnknownValue
 from btq_lang.evidence.use import fallen, risen
 from btq_lang.evidence.wording import quantity
-from btq_lang.requirements.model import Aggregate, Condition, Negation, ResolvedClaim, parts_in, signals_in
+from btq_lang.requirements.model import Age, Aggregate, Condition, Negation, ResolvedClaim, parts_in, signals_in
 
 Judge: TypeAlias = Callable[[ResolvedClaim, Activation, Observed], "Judgement | None"]
 
@@ -214,6 +214,7 @@ def keeps(claim: ResolvedClaim, activation: Activation, observed: Observed) -> J
         elif answer is False or (isinstance(answer, Measure) and not answer.holds):
             if activation.timing != "exact" and moment != observed.begin:
                 return Judgement(None, moment[0], "the log does not say whether it was still running")
+            answer = _at_worst(condition, answer, moment, observed)
             is_of_all = any(isinstance(part, Aggregate) for part in parts_in(condition))  # known only at the end
             return _of(answer, (activation.end, 0) if is_of_all else moment, claim, observed)
         else:
@@ -267,6 +268,15 @@ def _result(condition: Condition, moment: Moment, observed: Observed) -> Measure
     """Whether a condition holds at a moment, as a measure if it compares a signal with a bound."""
     measure = measure_of(condition, observed, moment)
     return measure if measure is not None else truth(condition, observed, moment)
+
+
+def _at_worst(condition: Condition, answer: Measure | bool, moment: Moment, observed: Observed) -> Measure | bool:
+    """The measure of a violation; of an age when it was largest, before the next sample."""
+    age = next((part for part in parts_in(condition) if isinstance(part, Age)), None)
+    if age is None or not isinstance(answer, Measure) or answer.name != f"age({age.signal.name})":
+        return answer
+    later = measure_of(condition, observed, observed.oldest(age.signal, moment))
+    return later if later is not None and not later.holds else answer
 
 
 def _of(result: Measure | bool | UnknownValue, moment: Moment, claim: ResolvedClaim, observed: Observed) -> Judgement:

@@ -33,7 +33,7 @@ SUBJECT_HEADS: Final = frozenset(("mission", "every", "from", "sum"))
 HEADS: Final = SUBJECT_HEADS.union(
     ("while", "when", "in", "with", "confidence", "over", "on", "goal", "because", "verified")
 )
-FUNCTIONS: Final = frozenset(("max", "min", "mean", "p95", "stddev", "change", "count"))
+FUNCTIONS: Final = frozenset(("max", "min", "mean", "p95", "stddev", "change", "count", "age"))
 _OTHER_FUNCTIONS: Final = {
     **dict.fromkeys(("avg", "average"), "mean"),
     **{"maximum": "max", "minimum": "min", "std": "stddev", "delta": "change", "diff": "change"},

@@ -138,6 +138,12 @@ class Aggregate(Record):
     signal: ResolvedSignal
 
 
+class Age(Record):
+    """`age(position)`: the time since the last sample of a signal; before the first one, since the activation began."""
+
+    signal: ResolvedSignal
+
+
 class Minus(Record):
     """`-x`."""
 
@@ -172,7 +178,7 @@ class ResolvedTable(Record):
 
 Simple: TypeAlias = Quantity | Flag | TextValue | SignalRead | ResolvedParameter
 Bounded: TypeAlias = Simple | ResolvedTable
-Number: TypeAlias = Bounded | Aggregate | Minus | Arithmetic
+Number: TypeAlias = Bounded | Aggregate | Age | Minus | Arithmetic
 
 
 # ---- Conditions -----------------------------------------------------------------------------------------------------

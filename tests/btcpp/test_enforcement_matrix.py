@@ -28,7 +28,7 @@ CLAUSES = {
     ),
     "succeeds": ("succeeds", "succeeds within 30 s"),
     "needs": ("needs battery > 15 %", "needs low"),
-    "keeps": ("keeps battery > 15 %",),
+    "keeps": ("keeps battery > 15 %", "keeps age(battery) <= 1 s"),
     "never": ("never low and door",),
     "never for": ("never low for more than 30 s",),
     "leaves": ("leaves battery > 3 %",),

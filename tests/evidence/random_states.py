@@ -22,10 +22,12 @@ def _requirement(
     chance: random.Random, name: str, labels: Sequence[str], condition: Callable[[random.Random], str]
 ) -> str:
     subject = chance.choice([*labels, *labels, "mission", "Part"])
-    state = condition(chance) if chance.random() < 0.7 else _measured(chance, condition)
-    claim = chance.choice([f"ends with {state}", f"never {state} for more than {chance.randint(1, 12) / 4:g} s"])
+    state = _state(chance, condition)
+    claim = chance.choice(
+        [f"ends with {state}", f"keeps {state}", f"never {state} for more than {chance.randint(1, 12) / 4:g} s"]
+    )
     lines = [f"QualityReq {name} : reliability", f"{subject} {claim}"]
-    lines += [f"{word} {condition(chance)}" for word in ("while", "when") if chance.random() < 0.15]
+    lines += [f"{word} {_state(chance, condition)}" for word in ("while", "when") if chance.random() < 0.15]
     if chance.random() < 0.3:
         of = chance.choice(["activations", "runs"])
         lines.append(f"in at least {chance.choice(['50 %', '80 %'])} of {of}")
@@ -33,7 +35,16 @@ def _requirement(
     return "\n    ".join(lines)
 
 
+def _state(chance: random.Random, condition: Callable[[random.Random], str]) -> str:
+    return condition(chance) if chance.random() < 0.7 else _measured(chance, condition)
+
+
 def _measured(chance: random.Random, condition: Callable[[random.Random], str]) -> str:
-    """A signal compared with what depends on the situation."""
+    """A signal compared with what depends on the situation, or its age with a time."""
+    signal = chance.choice(["speed", "near", "state"])
+    if chance.random() < 0.5:
+        sign = chance.choice(["<=", "<=", "<", ">"])
+        old = f"age({signal}) {sign} {chance.randint(0, 12) / 4:g} s"
+        return old if chance.random() < 0.6 else f"({condition(chance)} or {old})"
     low, high = (chance.randint(0, 20) * 5 for _ in range(2))
     return f"battery >= ({low} % if {condition(chance)} else {high} %)"

@@ -626,6 +626,39 @@ def test_a_stretch_that_is_unknown_between(bound: str, expected: str, verify: Ve
     assert count(verify.clause(demand, LONG, samples("battery", SAMPLES), before=FRESH)) == expected
 
 
+@pytest.mark.parametrize(
+    ("demand", "given", "runs", "expected", "why"),
+    [
+        ("keeps age(battery) <= 15 ms", SAMPLES, LONG, "satisfied 0/1", ""),
+        ("keeps age(battery) <= 9 ms", SAMPLES, LONG, "violated 1/1", "`age(battery)` was 15 ms"),
+        ("keeps age(battery) <= 9 ms", {-1: 50}, LONG, "violated 1/1", "`age(battery)` was 31 ms"),
+        ("keeps age(battery) <= 29 ms", {31: 50}, LONG, "violated 1/1", "`age(battery)` was 30 ms"),
+        ("keeps age(battery) <= 30 ms", {31: 50}, LONG, "satisfied 0/1", ""),
+        ("keeps age(battery) <= 9 ms", SAMPLES, OPEN, "violated 1/1", "`age(battery)` was 15 ms"),
+        ("keeps age(battery) <= 20 ms", SAMPLES, OPEN, "never exercised 0/0 |1", ""),
+        ("keeps age(battery) <= 9 ms", SAMPLES, UNWRITTEN, "unknown 0/0 ?1", ""),
+        ("needs age(battery) <= 4 ms", SAMPLES, LONG, "violated 1/1", "`age(battery)` was 5 ms at the start"),
+        ("ends with age(battery) < 6 ms", SAMPLES, LONG, "satisfied 0/1", ""),
+        (
+            "never age(battery) > 5 ms for more than 4 ms",
+            SAMPLES,
+            LONG,
+            "violated 1/1",
+            "`age(battery) > 5 ms` held for 10 ms",
+        ),
+        ("keeps age(battery) <= 10 ms\n while battery < 40 %", SAMPLES, LONG, "satisfied 0/1", ""),
+    ],
+)
+def test_ages(demand: str, given: dict[int, int], runs: str, expected: str, why: str, verify: Verify) -> None:
+    found = verify.clause(f"Move {demand}", runs, samples("battery", given), before=LEVEL)
+    assert (count(found), [each["why"] for each in found["violations"]]) == (expected, [why] if why else [])
+
+
+def test_the_age_of_a_signal_without_samples_is_unknown(verify: Verify) -> None:
+    found = verify.clause("Move keeps age(battery) <= 9 ms", LONG, before=LEVEL)
+    assert (found["verdict"], found["why"]) == ("unknown", "no samples of `battery`")
+
+
 TOO_SHORT = "the run ended before the time was over"
 SIGNALS = (
     "signal battery : % from {battery}\nsignal energy : Wh from {energy} counter\nsignal speed : m/s from {speed}\n"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from btq_lang.parser import parse
-from btq_lang.syntax.tree import Choice, Claim, Clause, Requirement, walk
+from btq_lang.syntax.tree import Choice, Claim, Clause, Operand, Requirement, walk
 
 
 def clauses(text: str) -> tuple[Clause, ...]:
@@ -48,6 +48,10 @@ def test_the_row_of_a_verb(text: str, row: str) -> None:
         ("speed * (2 if near else 3) < 6 m/s or calm", 1),
     ],
 )
+def test_a_signal_that_is_called_age() -> None:
+    assert [each.word.text for each in walk(claim("keeps age <= 3 s")) if isinstance(each, Operand)] == ["age", "3 s"]
+
+
 def test_a_choice_in_a_condition(condition: str, cases: int) -> None:
     found = [each for each in walk(claim(f"keeps {condition}")) if isinstance(each, Choice)]
     assert [(len(each.table.cases), each.table.otherwise is not None) for each in found] == [(cases, True)]
