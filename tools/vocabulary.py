@@ -28,7 +28,7 @@ MODELS = "TreeNodesModel"
 PARTICLES = (
     "at", "most", "least", "less", "more", "than", "between", "and", "to", "of",
     "per", "every", "within", "after", "with", "probability", "last", "violation", "by", "if",
-    "else", "for", "sum", "under", "except", "node", "tagged", "from",
+    "assuming", "else", "for", "sum", "under", "except", "node", "tagged", "from",
 )  # fmt: skip
 SIGNAL_WORDS = ("from", "level", "counter", "gauge", "fresh", "within", "initially")
 LOGIC = ("and", "or", "not")

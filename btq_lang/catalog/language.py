@@ -176,6 +176,8 @@ clause
     while | while humans_near | only while a condition holds | \
         counts only the time (or the activations) in which the condition holds
     when | when fragile | only when a condition holds | counts only activations at whose start the condition holds
+    assuming | assuming visibility >= 1 m | not applicable otherwise | \
+        runs, or activations of a node, in which the condition does not hold all along are counted apart
     in at least | in at least 98 % of activations | how often | \
         allows some violations; also `of runs` and `with probability >= 98 %`
     with probability | with probability >= 98 % of runs | how often | allows some violations

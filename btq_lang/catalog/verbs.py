@@ -307,5 +307,5 @@ _UNITS: Final[dict[str, str | None]] = {
     **dict.fromkeys((*words(operands=("duration",)), "within", "every", "per", "for"), "s"),
     **dict.fromkeys(("in", "probability", "confidence"), "%"),
     **dict.fromkeys(words(operands=("condition", "use", "count", "rate"))),
-    **dict.fromkeys(("while", "when", "if", "context", "over", "goal", "initially")),
+    **dict.fromkeys(("while", "when", "assuming", "if", "context", "over", "goal", "initially")),
 }

@@ -263,6 +263,7 @@ def bare_title(cursor: Cursor, has_quality: bool) -> Word | None:
         or cursor.raw in VERB_WORDS
         or cursor.raw in HEADS
         or cursor.raw in ENDS_CLAUSES
+        or cursor.raw == "assuming"
     ):
         return None
     is_word = cursor.kinds[following] == NEWLINE

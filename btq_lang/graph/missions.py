@@ -134,7 +134,7 @@ def clauses_in_words(applied: Applied) -> tuple[str, ...]:
     requirement = applied.requirement
     is_of_several = isinstance(applied.subject, Interval | DurationSum)
     lines = [claim.text if is_of_several else _predicate(claim) for claim in requirement.claims]
-    lines += [scope.text for scope in requirement.scopes]
+    lines += [scope.text for scope in (*requirement.scopes, *requirement.assumptions)]
     if requirement.odds is not None:
         lines.append(requirement.odds.text)
     if requirement.action is not None and not requirement.classic:

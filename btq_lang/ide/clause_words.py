@@ -175,14 +175,28 @@ _COUNTED = words_of(operands=("count", "rate"))
 _REACTIONS = words_of(operands=("reaction",))
 _TIMED = words_of(operands=("duration", "deadline"))
 _USES = words_of(operands=("use",))
-_CONDITIONS = (*words_of(operands=("condition",)), "while", "when", "context")
+_CONDITIONS = (*words_of(operands=("condition",)), "while", "when", "assuming", "context")
 _BEFORE_CONDITIONS = frozenset((*_CONDITIONS, "if"))
 _AFTER_OPERAND = ("and", "or", "<=", ">=", "<", ">", "==", "!=")
 _BEFORE_VALUES = frozenset((*COMPARISONS, "+", "-", "*", "/"))
 _EVENTS = (*words_of(operands=("event",)), "after", "from", "to")
 _CLAUSES = (
     *VERBS,
-    *("in", "with", "confidence", "over", "on", "goal", "because", "verified", "from", "while", "when", "context"),
+    *(
+        "assuming",
+        "in",
+        "with",
+        "confidence",
+        "over",
+        "on",
+        "goal",
+        "because",
+        "verified",
+        "from",
+        "while",
+        "when",
+        "context",
+    ),
 )
 _CONDITION = Expected(condition=True)
 _VALUE = Expected(value=True)
@@ -209,7 +223,7 @@ _AFTER = {
     "less": Expected(("than",)),
     "more": Expected(("than",)),
     "for": Expected(("more than",)),
-    **dict.fromkeys(("while", "when", "if", "and", "or", "not"), _CONDITION),
+    **dict.fromkeys(("while", "when", "assuming", "if", "and", "or", "not"), _CONDITION),
     "on": Expected(("violation",)),
     "violation": Expected(ACTIONS),
     "verified": Expected(("by",)),

@@ -27,6 +27,7 @@ def with_clauses(
     claims: list[model.ResolvedClaim] = []
     unread: list[str] = []
     scopes: list[model.ResolvedScope] = []
+    assumptions: list[model.ResolvedScope] = []
     once: dict[str, object] = {}
     reasons: list[str] = []
     goals: list[syntax.Goal] = []
@@ -47,6 +48,11 @@ def with_clauses(
             if condition is not None:
                 word = "while" if clause.word.raw == "while" else "when"
                 scopes.append(model.ResolvedScope(word, condition, reader.text(clause.start, clause.end)))  # type: ignore[arg-type]  # one of the two
+        elif isinstance(clause, syntax.Assuming):
+            condition = reader.condition(clause.condition)
+            if condition is not None:
+                text = reader.text(clause.start, clause.end)
+                assumptions.append(model.ResolvedScope("assuming", condition, text))
         elif isinstance(clause, syntax.Odds):
             keep("odds", _odds(reader, clause))
         elif isinstance(clause, syntax.Confidence):
@@ -68,6 +74,7 @@ def with_clauses(
         claims=(*requirement.claims, *claims),
         unread=(*requirement.unread, *unread),
         scopes=(*requirement.scopes, *scopes),
+        assumptions=(*requirement.assumptions, *assumptions),
         reasons=(*requirement.reasons, *reasons),
         **once,
     )

@@ -335,9 +335,10 @@ def _values(bounded: Bounded) -> list[tuple[float, str]]:
 
 
 class ResolvedScope(Record):
-    """`while φ`: only time (or activations) with φ; `when φ`: only activations with φ at their start."""
+    """`while φ`: only time (or activations) with φ; `when φ`: only activations with φ at their start; `assuming φ`:
+    others than runs, or activations, with φ all along are not applicable."""
 
-    word: Literal["while", "when"]
+    word: Literal["while", "when", "assuming"]
     condition: Condition
     text: str
 
@@ -390,6 +391,7 @@ class ResolvedRequirement(Record):
     reasons: tuple[str, ...] = ()
     method: Method | None = None
     unread: tuple[str, ...] = ()
+    assumptions: tuple[ResolvedScope, ...] = ()
 
     @property
     def demands_enforcement(self) -> bool:
@@ -406,6 +408,7 @@ class ResolvedRequirement(Record):
         """Whether the engine is to enforce the claims, as far as the requirement itself decides that; a claim or its
         node may still prevent it."""
         is_single = self.odds is None and self.window is None  # else many experiments decide, which the engine forgets
+        is_single = is_single and not self.assumptions  # whether they hold is known only at the end
         return self.demands_enforcement and is_single and not self.is_verified_by_people
 
 

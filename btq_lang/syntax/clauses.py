@@ -147,6 +147,12 @@ class ScopeClause(Part):
     condition: Condition | None
 
 
+class Assuming(Part):
+    """`assuming φ`: runs, or activations, without φ all along are not applicable."""
+
+    condition: Condition | None
+
+
 class Odds(Part):
     """`in at least 98 % of runs`, `with probability >= 98 %`. experiments: None if omitted."""
 
@@ -192,7 +198,7 @@ class How(Part):
     method: Word | None
 
 
-Clause: TypeAlias = Claim | ScopeClause | Odds | Confidence | Window | OnViolation | Goal | Because | How
+Clause: TypeAlias = Claim | ScopeClause | Assuming | Odds | Confidence | Window | OnViolation | Goal | Because | How
 
 
 # ---- Conditions -----------------------------------------------------------------------------------------------------

@@ -51,6 +51,7 @@ QUALIFIERS = {
     "while": "while door",
     "when": "when door",
     "context": "when night",
+    "assuming": "assuming door",
     "review": "verified by review",
 }
 # What the clause is about, as it is named in it.

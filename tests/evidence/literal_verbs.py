@@ -51,7 +51,7 @@ class OfActivations(Log):
         Args:
             part: the only end of `between` that counts.
         """
-        return [
+        found = [
             judged(each, False)  # what the requirement's own guard stops, or finds wrong at the end, is violated
             if self.is_stopped(each, claim, requirement) or self.is_refuted(each, claim, requirement)
             else judged(each, self.keeps(each, claim, requirement))
@@ -61,6 +61,17 @@ class OfActivations(Log):
             else judged(each, self.scoped(each, self.whole(each, claim, part), requirement))
             for each in self.of(uid)
         ]
+        return [
+            replace(each, verdict=self.applicable(a, each.verdict, requirement))
+            for a, each in zip(self.of(uid), found, strict=True)
+        ]
+
+    def applicable(self, a: Activation, verdict: Verdict, requirement: ResolvedRequirement) -> Verdict:
+        """What an activation, or a run, comes to that is not applicable unless each assumption holds all along."""
+        first, *later = (self.holds_all("assuming", requirement, moment, a) for moment in self.moments(a))
+        if not a.is_exact:  # it may have ended right after its start
+            later = [None if each is False else each for each in later]
+        return counted(both(first, *later), verdict)
 
     def is_stopped(self, a: Activation, claim: ResolvedClaim, requirement: ResolvedRequirement) -> bool:
         """Whether the guard around the node for this clause has halted it: the nearest one above it that was not halted
@@ -90,7 +101,13 @@ class OfActivations(Log):
         """The starts of a node that guards around it have refused: each is a case of the clause that its guard
         enforces, unless that is judged by the run, and of `succeeds`, whosever guard it is."""
         return [
-            Judged(check.run, uid, False, check.end, check.end, True)
+            Judged(
+                check.run,
+                uid,
+                self.applicable(replace(check, start=check.stop), False, requirement),
+                *2 * (check.end,),
+                True,
+            )
             for verb, guard, check in self.refusals(uid)
             if claim.verb == "succeeds"
             or (claim.verb == verb != "tries" and self.guards[guard.uid] == requirement.name)
@@ -139,7 +156,8 @@ class OfActivations(Log):
             written = [each for each in self.of(uid) if each.run == run.run]
             a = replace(written[-1] if written else replace(run, uid=uid), outcome=run.outcome, is_exact=run.is_exact)
             is_stopped = any(self.is_stopped(each, claim, requirement) for each in written)
-            found.append(judged(a, False if is_stopped else self.scoped(a, self.whole(a, claim), requirement)))
+            verdict = False if is_stopped else self.scoped(a, self.whole(a, claim), requirement)
+            found.append(judged(a, self.applicable(a, verdict, requirement)))
         return found
 
     def whole(self, a: Activation, claim: ResolvedClaim, part: Part = None) -> Verdict:
@@ -257,7 +275,8 @@ class OfActivations(Log):
 
     def holds_all(self, word: str, requirement: ResolvedRequirement, moment: Moment, a: Activation) -> Truth:
         """The conditions of `while`, or of `when`, at a moment."""
-        conditions = [each.condition for each in requirement.scopes if each.word == word]
+        scopes = (*requirement.scopes, *requirement.assumptions)
+        conditions = [each.condition for each in scopes if each.word == word]
         return both(*(self.holds(each, moment, a, initially=True) for each in conditions))
 
 

@@ -127,7 +127,8 @@ def mission(chance: random.Random) -> str:
     demands = [requirement(chance, f"r{number}", labels) for number in range(chance.randint(2, 6))]
     known = declarations(chance)
     apart = random.Random(repr(chance.getstate()))
-    demands += of_states(apart, labels, lambda drawn: condition(drawn, labels))
+    draws = lambda drawn: condition(drawn, labels), lambda drawn: claim(drawn, labels)
+    demands += of_states(apart, labels, *draws)
     return "\n".join(["Root Main", *known, *demands, *main]) + "\n"
 
 

@@ -8,14 +8,25 @@ import random
 from collections.abc import Callable, Sequence
 
 
-def of_states(chance: random.Random, labels: Sequence[str], condition: Callable[[random.Random], str]) -> list[str]:
-    """A requirement or two.
+def of_states(
+    chance: random.Random,
+    labels: Sequence[str],
+    condition: Callable[[random.Random], str],
+    claim: Callable[[random.Random], str],
+) -> list[str]:
+    """A requirement or two about states, and perhaps one of any kind with an assumption.
 
     Args:
         labels: of nodes.
-        condition: draws a condition.
+        condition, claim: draw one.
     """
-    return [_requirement(chance, f"s{number}", labels, condition) for number in range(chance.choice([1, 2]))]
+    found = [_requirement(chance, f"s{number}", labels, condition) for number in range(chance.choice([1, 2]))]
+    if chance.random() < 0.4:
+        found.append(f"QualityReq assumed : safety\n    {claim(chance)}\n    assuming {_state(chance, condition)}")
+        found[-1] += (
+            f"\n    in at least 50 % of {chance.choice(['activations', 'runs'])}" if chance.random() < 0.3 else ""
+        )
+    return found
 
 
 def _requirement(
@@ -27,7 +38,8 @@ def _requirement(
         [f"ends with {state}", f"keeps {state}", f"never {state} for more than {chance.randint(1, 12) / 4:g} s"]
     )
     lines = [f"QualityReq {name} : reliability", f"{subject} {claim}"]
-    lines += [f"{word} {_state(chance, condition)}" for word in ("while", "when") if chance.random() < 0.15]
+    words = ("while", "when", "assuming")
+    lines += [f"{word} {_state(chance, condition)}" for word in words if chance.random() < 0.15]
     if chance.random() < 0.3:
         of = chance.choice(["activations", "runs"])
         lines.append(f"in at least {chance.choice(['50 %', '80 %'])} of {of}")

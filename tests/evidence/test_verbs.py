@@ -659,6 +659,49 @@ def test_the_age_of_a_signal_without_samples_is_unknown(verify: Verify) -> None:
     assert (found["verdict"], found["why"]) == ("unknown", "no samples of `battery`")
 
 
+@pytest.mark.parametrize(
+    ("demand", "runs", "expected", "not_applicable"),
+    [
+        ("Move takes at most 29 ms\n assuming battery >= 5 %", LONG, "violated 1/1", 0),
+        ("Move takes at most 29 ms\n assuming battery > 5 %", LONG, "never exercised 0/0", 1),
+        ("Move takes at most 29 ms\n assuming battery > 5 %", OPEN, "never exercised 0/0", 1),
+        ("Move takes at most 29 ms\n assuming battery > 5 %", UNWRITTEN, "unknown 0/0 ?1", 0),
+        ("Move takes at most 90 ms\n assuming battery > 40 %", f"{LONG} 50 1R 2R 90 2S 1S", "never exercised 0/0", 2),
+        ("Move takes at most 29 ms\n assuming battery >= 5 %\n in at least 50 % of runs", LONG, "violated 1/1", 0),
+        ("Move needs battery >= 5 %\n when battery > 60 %\n assuming battery > 5 %", LONG, "never exercised 0/0", 0),
+        ("mission succeeds\n assuming battery >= 5 %", FAILED, "violated 1/1", 0),
+        ("mission succeeds\n assuming battery > 5 %", FAILED, "never exercised 0/0", 1),
+        ("Move tries at most 0\n assuming battery >= 5 %", LONG, "violated 1/1", 0),
+        ("Move tries at most 0\n assuming battery > 5 %", LONG, "never exercised 0/0", 1),
+        (
+            "from Move starts to Pick succeeds takes at most 9 ms\n assuming battery > 5 %",
+            LONG,
+            "never exercised 0/0",
+            1,
+        ),
+    ],
+)
+def test_assumptions(demand: str, runs: str, expected: str, not_applicable: int, verify: Verify) -> None:
+    given = samples("battery", {-5: 50, 10: 30, 20: 5, 25: 30})
+    found = verify.clause(demand, runs, given, before=LEVEL)
+    assert (count(found), found.get("not_applicable")) == (expected, not_applicable)
+    if not_applicable:
+        assert found["why"] == f"its assumption did not hold ({not_applicable} time{'s' * (not_applicable > 1)})"
+
+
+def test_what_is_not_applicable_is_counted_apart(verify: Verify) -> None:
+    runs = f"{LONG} 50 1R 2R 90 2S 3S 1S"
+    given = samples("battery", {-5: 5, 40: 30})
+    verify.clause("Move takes at most 90 ms\n assuming battery > 5 %", runs, given, before=LEVEL)
+    output = verify.text("run.btlog", "--mission", "main.btq", "--signals", "samples.csv")
+    assert "held so far in 1 activation, worst 40 ms in run 2, 1 not applicable" in output
+
+
+def test_an_unknown_assumption_is_unknown(verify: Verify) -> None:
+    found = verify.clause("Move takes at most 29 ms\n assuming battery > 5 %", LONG, before=LEVEL)
+    assert (found["verdict"], found["why"]) == ("unknown", "no samples of `battery`")
+
+
 TOO_SHORT = "the run ended before the time was over"
 SIGNALS = (
     "signal battery : % from {battery}\nsignal energy : Wh from {energy} counter\nsignal speed : m/s from {speed}\n"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from btq_lang.parser import parse
-from btq_lang.syntax.tree import Choice, Claim, Clause, Operand, Requirement, walk
+from btq_lang.syntax.tree import Assuming, Binary, Choice, Claim, Clause, Operand, Path, Requirement, walk
 
 
 def clauses(text: str) -> tuple[Clause, ...]:
@@ -48,6 +48,26 @@ def test_the_row_of_a_verb(text: str, row: str) -> None:
         ("speed * (2 if near else 3) < 6 m/s or calm", 1),
     ],
 )
+def test_an_assumption() -> None:
+    first, second = clauses("Move takes at most 3 s assuming visible and not node Pick")
+    assert isinstance(first, Claim)
+    assert isinstance(second, Assuming)
+    assert isinstance(second.condition, Binary)
+
+
+@pytest.mark.parametrize(
+    "text", ["assuming takes at most 3 s", "assuming/Move takes at most 3 s", "Go/assuming needs calm"]
+)
+def test_a_node_that_is_called_assuming(text: str) -> None:
+    subject = claim(text).subject
+    assert isinstance(subject, Path)
+    assert "assuming" in [name.raw for name in subject.names]
+
+
+def test_a_tree_with_a_node_that_is_called_assuming() -> None:
+    assert parse("BehaviorTree Main\n    ->\n        assuming\n        assuming (a = 1)\n").diagnostics == ()
+
+
 def test_a_signal_that_is_called_age() -> None:
     assert [each.word.text for each in walk(claim("keeps age <= 3 s")) if isinstance(each, Operand)] == ["age", "3 s"]
 
@@ -77,6 +97,10 @@ def test_a_node_that_is_called_for() -> None:
         ),
         ("keeps speed <= (1 m/s if near)", "expected `else`, found `)`"),
         ("keeps speed <= (2 * speed if near else 3 m/s)", "expected `)`, found `if`"),
+        (
+            "takes at most 3 s assumption visible",
+            "`assumption` is not in btq; nearest is `assuming` with a condition",
+        ),
         ("Move ends in 3 s", "this clause is written `Move succeeds within 3 s` or `Move takes at most 3 s`"),
     ],
 )

@@ -23,6 +23,8 @@ BEFORE = "signal battery : % from {level} level\ncontext calm : battery > 50 %\n
         ("keeps battery >= (30 % if calm ", ("and", "else"), ("if",)),
         ("keeps battery >= (30 % if calm else ", ("battery",), ("calm",)),
         ("takes at most 3 s if (calm ", ("and",), ("else", "if")),
+        ("assuming ", ("calm", "battery"), ("takes",)),
+        ("assuming calm ", ("and",), ("if",)),
         ("ends with (", ("battery",), ("station =",)),
     ],
 )
