@@ -105,6 +105,8 @@ class Enforceability:
             raise NotEnforced("a window is evaluated in the logs of many runs")
         if isinstance(subject, EachEvent):
             raise NotEnforced(VERBS[claim.verb].why_monitored)
+        if requirement.assumptions:
+            raise NotEnforced("whether its assumption holds all along is known only at the end")
         if isinstance(subject, NodeTarget) and subject.through:
             raise NotEnforced("its path names only some instances of a node")
         if (

@@ -17,6 +17,7 @@ from btq_lang.btcpp.conditions import (
     number_script,
     real,
     signal_script,
+    table_in_condition,
     table_script,
 )
 from btq_lang.btcpp.document import Element
@@ -134,7 +135,8 @@ class ClauseGuard:
         return self.leaf("ScriptCondition", what, code, f"{self.stop} := true" if self.stop else None)
 
     def script(self, condition: Condition) -> str:
-        return condition_script(condition, self.stored)
+        """The script of a condition; its tables are read with it, not when the node starts."""
+        return condition_script(condition, table_in_condition)
 
     def at_start(self, what: str, script: str) -> str:
         """A variable of the tree that is set to this value when the node starts."""
@@ -265,6 +267,19 @@ def _leaves(guard: ClauseGuard) -> None:
     guard.wrap(CHECK, "Sequence", "leaves", after=(guard.condition("check", code),))
 
 
+def _ends_with(guard: ClauseGuard) -> None:
+    """`<Sequence>X<ScriptCondition code="φ"/></Sequence>`; a failure fails anyway, and halts the mission if φ does
+    not hold then.
+    """
+    code = guard.script(_condition(guard))
+    if (when := guard.when()) is not None:
+        code = f"((!{when}) || {code})"
+    guard.wrap(CHECK, "Sequence", "ends", after=(guard.condition("check", code),))
+    if guard.stop:
+        failed = f"{guard.stop} := ({guard.stop} || (!{code}))"
+        guard.wrap(INSIDE, "Sequence", "failed", attributes=(("_onFailure", failed),))
+
+
 def _uses(guard: ClauseGuard) -> None:
     """The signal's value at the start, and two conditions: while the node runs, and when it has succeeded."""
     signal = guard.claim.signal
@@ -385,6 +400,7 @@ _BY_VERB: Final[dict[str, Callable[[ClauseGuard], None]]] = {
     "keeps": _keeps,
     "never": _keeps,
     "leaves": _leaves,
+    "ends with": _ends_with,
     "uses": _uses,
     "tries": _tries,
     "follows": _follows,

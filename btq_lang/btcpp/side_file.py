@@ -307,6 +307,7 @@ _KINDS: Final[dict[type, str]] = {
     model.SignalRead: "read",
     model.ResolvedParameter: "parameter",
     model.Aggregate: "aggregate",
+    model.Age: "age",
     model.Minus: "minus",
     model.Arithmetic: "arithmetic",
     model.ResolvedCase: "case",

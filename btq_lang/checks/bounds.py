@@ -28,7 +28,7 @@ from btq_lang.util.text import Span
 def impossible_bound(view: View) -> Iterator[Diagnostic]:
     """A fractional number of attempts, a negative time, and a claim that every run answers alike."""
     for requirement, claim in _claims(view):
-        bound, verb = claim.bound, claim.verb.raw
+        bound, verb = claim.bound, claim.row
         operand = VERBS[verb].operand
         is_count = operand in _COUNTED
         if (diagnostic := same_in_every_run(view, claim)) is not None:
@@ -222,7 +222,7 @@ def _path_text(path: syntax.Path) -> str:
 
 
 _COUNTED: Final = ("count", "rate")
-_TIMED: Final = ("duration", "deadline", "rate", "reaction", "answer")
+_TIMED: Final = ("duration", "deadline", "rate", "reaction", "answer", "stretch")
 # Verbs about when, and how often, a node starts.
 _STARTS: Final = words(operands=("count", "rate", "event")) | {"starts"}
 _SEEN_FIRST: Final = ("sequence", "fallback", "parallel", "parallel-all", "choice", "retry", "repeat")

@@ -74,7 +74,7 @@ def edge_of(claim: ResolvedClaim, subject: Subject | None, requirement: Resolved
 def key_of(requirement: ResolvedRequirement, claim: ResolvedClaim, edge: Edge | None) -> str:
     """What a clause demands apart from its bound and its odds: judgements of equal keys count the same."""
     text = claim.text.replace(edge.value.text, "…", 1) if edge is not None else claim.text
-    parts = [text, *(scope.text for scope in requirement.scopes)]
+    parts = [text, *(scope.text for scope in (*requirement.scopes, *requirement.assumptions))]
     parts += [requirement.window.text] if requirement.window is not None else []
     of_runs = requirement.odds is not None and requirement.odds.experiments == "runs"
     return " ".join([*parts, "of runs"] if of_runs else parts)

@@ -13,14 +13,17 @@ from btq_lang.catalog.verbs import VERBS, words
 from btq_lang.diagnostics.model import Fix, replace_fix, write_fix
 from btq_lang.grammar.clause_slips import clause_slip
 from btq_lang.grammar.conditions import (
+    BOUNDS,
     COMPARISONS,
     HEADS,
     METADATA_HEADS,
     RELATIONS,
     accept_one,
     bound_ahead,
+    parse_cases,
     parse_cond,
     parse_path,
+    parse_simple,
     written_otherwise,
 )
 from btq_lang.grammar.cursor import Cursor, shown
@@ -33,7 +36,6 @@ from btq_lang.syntax.tree import (
     Between,
     Bound,
     Bounded,
-    Case,
     Claim,
     Condition,
     EachEvent,
@@ -43,7 +45,6 @@ from btq_lang.syntax.tree import (
     Path,
     Subject,
     Sum,
-    Table,
     Word,
     quote,
 )
@@ -51,9 +52,9 @@ from btq_lang.util.record import replace
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 
-VERB_WORDS: Final = frozenset(VERBS) - words(operands=("answer",))  # `followed` is one only after `each … is`
+# Those that follow a subject; `followed` is one only after `each … is`.
+VERB_WORDS: Final = frozenset(verb.partition(" ")[0] for verb in VERBS.keys() - words(operands=("answer",)))
 HAPPENINGS: Final = frozenset(("starts", "succeeds", "fails", "finishes", "halts"))
-MAX_CASES: Final = 100  # in one value: each case of a table may be another table
 
 
 def parse_claim(cursor: Cursor) -> Claim | None:
@@ -98,6 +99,7 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
             cursor.recover()
         elif not signal_last(cursor, verb.raw):
             condition = parse_cond(cursor)
+            bound = parse_stretch(cursor) if verb.raw == "never" and cursor.raw == "for" else None
     elif operand == "use":
         bound = parse_bound(cursor)
         resource = cursor.plain_name("a signal") if cursor.expect_word("of", forgotten=cursor.kind == NAME) else None
@@ -118,6 +120,8 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
                 per = cursor.quantity("a duration: 1 s") if cursor.expect_word("per") else None
     elif operand == "event":
         event = parse_event(cursor)
+    elif verb.raw == "ends" and cursor.accept_word("with"):
+        condition = None if signal_last(cursor, "ends with") else parse_cond(cursor)
     else:
         bound = parse_within(cursor) if cursor.expect_word("within") else None
         event = parse_event(cursor) if cursor.expect_word("after", ("of", "from", "since")) else None
@@ -237,6 +241,20 @@ def parse_within(cursor: Cursor) -> Bound:
     return Bound(min(start, end), end, "<=", value)
 
 
+def parse_stretch(cursor: Cursor) -> Bound | None:
+    """ "for" "more" "than" Bounded; other words for `more than` are reported"""
+    start = cursor.start()
+    relation = BOUNDS.get(tuple(cursor.raws[cursor.index + 1 : cursor.index + 3]))
+    if relation not in (("more", "than"), ("at", "least")):
+        return None
+    cursor.advance()
+    if not cursor.at_word("more"):
+        written_otherwise(cursor, "this time", 2, "more than")
+    cursor.go_to(cursor.index + 2)
+    value = parse_bounded(cursor)
+    return Bound(start, cursor.last_end(), "<=", value)
+
+
 def parse_bounded(cursor: Cursor) -> Bounded | None:
     """Bounded = Simple | Simple "if" Cond { "," Simple "if" Cond } "else" Simple"""
     if cursor.at_word("if") or (
@@ -244,40 +262,7 @@ def parse_bounded(cursor: Cursor) -> Bounded | None:
     ):
         return choice_in_other_words(cursor)
     value = parse_simple(cursor)
-    if value is None or not cursor.at_word("if"):
-        return value
-    cases: list[Case] = []
-    while cursor.accept_word("if"):
-        cases.append(Case(value, parse_cond(cursor)))
-        if not cursor.accept(","):
-            break
-        if len(cases) == MAX_CASES:
-            note = "compute the value in a node, and declare a signal for its output"
-            cursor.complain(
-                cursor.here(), f"more than {MAX_CASES} cases in one value", notes=(note,), rule="nested-too-deep"
-            )
-            cursor.recover()
-            return Table(tuple(cases))
-        value = parse_simple(cursor)
-        if value is None:
-            return Table(tuple(cases))
-        if not cursor.at_word("if"):
-            cursor.expected("`if` and a condition, or `else` instead of the comma")
-            return Table(tuple(cases))
-    otherwise = parse_simple(cursor) if cursor.expect_word("else") else None
-    return Table(tuple(cases), otherwise)
-
-
-def parse_simple(cursor: Cursor, strings: bool = False) -> Amount | None:
-    """Simple = [ "-" ] ( QUANTITY | NUMBER ) | NAME;  with `strings` a STRING too"""
-    cursor.skip_sign(":")
-    negative = cursor.accept("-")
-    if cursor.kind == QUANTITY or cursor.kind == NUMBER:
-        return Amount(cursor.take(), negative)
-    if not negative and (cursor.kind == NAME or (strings and cursor.kind == STRING)):
-        return Amount(cursor.take())
-    cursor.expected("a value with its unit: 30 s")
-    return None
+    return parse_cases(cursor, value) if value is not None and cursor.at_word("if") else value
 
 
 # ---- what productions ask and report ----

@@ -170,10 +170,16 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
         for within, deadline in ((" (?:within|in) TIME", " within {time}"), ("", ""))
     ),
     # in which situation
+    ("for (?:BOUND)?TIME", (), "only `never` says how long a condition may hold: `never low for more than 30 s`"),
     (f"{_IN_WORDS} CONDITION", ("while {condition}",), ""),
     (f"{_IF} CONDITION", ("while {condition}", "when {condition}"), _SITUATION),
     ("until OTHER EVENT", (), "no clause ends at an event; limit it with a condition: `while not docked`"),
     (rf"{_NOT} (?!\d)CONDITION", ("while not {condition}",), ""),
+    (
+        rf"SUBJECT(?:{_MODAL} )?(?:end|finish(?:es)?|completes?|stops?) with (?!\d)CONDITION",
+        ("{subject}ends with {condition}",),
+        "",
+    ),
     # in which order
     (
         f"SUBJECT(?P<event>starts|succeeds|fails) (?:only )?before OTHER{_STARTS}",

@@ -28,6 +28,7 @@ def with_clauses(
     claims: list[model.ResolvedClaim] = []
     unread: list[str] = []
     scopes: list[model.ResolvedScope] = []
+    assumptions: list[model.ResolvedScope] = []
     once: dict[str, object] = {}
     reasons: list[str] = []
     metadata: list[syntax.Clause] = []
@@ -49,6 +50,11 @@ def with_clauses(
             if condition is not None:
                 word = "while" if clause.word.raw == "while" else "when"
                 scopes.append(model.ResolvedScope(word, condition, reader.text(clause.start, clause.end)))  # type: ignore[arg-type]  # one of the two
+        elif isinstance(clause, syntax.Assuming):
+            condition = reader.condition(clause.condition)
+            if condition is not None:
+                text = reader.text(clause.start, clause.end)
+                assumptions.append(model.ResolvedScope("assuming", condition, text))
         elif isinstance(clause, syntax.Odds):
             keep("odds", _odds(reader, clause))
         elif isinstance(clause, syntax.Confidence):
@@ -74,6 +80,7 @@ def with_clauses(
         claims=(*requirement.claims, *claims),
         unread=(*requirement.unread, *unread),
         scopes=(*requirement.scopes, *scopes),
+        assumptions=(*requirement.assumptions, *assumptions),
         reasons=(*requirement.reasons, *reasons),
         **once,
     )
@@ -98,11 +105,14 @@ def claim_of(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | Non
 
 def _verb(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | None:
     place = reader.place(Span(written.start, written.end))
-    claim = model.ResolvedClaim(written.verb.raw, reader.text(written.start, written.end), place)
+    claim = model.ResolvedClaim(written.row, reader.text(written.start, written.end), place)
     operand = VERBS[claim.verb].operand
     if operand == "condition":
         condition = reader.condition(written.condition)
         return replace(claim, condition=condition) if condition is not None else None
+    if operand == "stretch":
+        condition, limit = reader.condition(written.condition), _limit(reader, written.bound, DURATION)
+        return replace(claim, condition=condition, limit=limit) if condition is not None and limit is not None else None
     if operand == "event":
         event = _event(reader, written.event)
         return replace(claim, event=event) if event is not None else None
@@ -285,6 +295,6 @@ def parameter_of(reader: Reader, written: syntax.Parameter) -> model.ResolvedPar
     return replace(parameter, default=default)
 
 
-_TIMED: Final = ("duration", "deadline", "reaction", "answer")
+_TIMED: Final = ("duration", "deadline", "reaction", "answer", "stretch")
 _COUNTED: Final = Wanted("a number", (model.NO_DIMENSION, COUNT), None)
 _SHARE: Final = Wanted("a percentage", (PERCENT,), "%")

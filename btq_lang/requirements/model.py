@@ -138,6 +138,12 @@ class Aggregate(Record):
     signal: ResolvedSignal
 
 
+class Age(Record):
+    """`age(position)`: the time since the last sample of a signal; before the first one, since the activation began."""
+
+    signal: ResolvedSignal
+
+
 class Minus(Record):
     """`-x`."""
 
@@ -172,7 +178,7 @@ class ResolvedTable(Record):
 
 Simple: TypeAlias = Quantity | Flag | TextValue | SignalRead | ResolvedParameter
 Bounded: TypeAlias = Simple | ResolvedTable
-Number: TypeAlias = Bounded | Aggregate | Minus | Arithmetic
+Number: TypeAlias = Bounded | Aggregate | Age | Minus | Arithmetic
 
 
 # ---- Conditions -----------------------------------------------------------------------------------------------------
@@ -301,8 +307,9 @@ class ResolvedClaim(Record):
 
     Attributes:
         subject: the claim's own; None: what the requirement is attached to.
-        limit: of takes, uses, tries, runs; of `within d` and `runs every d` as `<= d`.
-        condition: of needs, keeps, never, leaves, and of followed if it is followed by one.
+        verb: the word of its row in `catalog.verbs`.
+        limit: of takes, uses, tries, runs; of `within d`, `runs every d` and `never φ for more than d` as `<= d`.
+        condition: of needs, keeps, never, leaves, ends with, never for, and of followed if it is followed by one.
         signal: of uses.
         per: of tries a node, of runs a duration.
         event: of starts, ends, follows, followed.
@@ -322,9 +329,14 @@ class ResolvedClaim(Record):
     every: bool = False
 
     @property
+    def head(self) -> str:
+        """The first word of its verb, which is in its text."""
+        return self.verb.partition(" ")[0]
+
+    @property
     def subject_text(self) -> str:
         """What is before its verb, as typed."""
-        verb = "is followed" if isinstance(self.subject, EachEvent) else self.verb
+        verb = "is followed" if isinstance(self.subject, EachEvent) else self.head
         return self.text.partition(f" {verb} ")[0]
 
     @property
@@ -351,9 +363,10 @@ def _values(bounded: Bounded) -> list[tuple[float, str]]:
 
 
 class ResolvedScope(Record):
-    """`while φ`: only time (or activations) with φ; `when φ`: only activations with φ at their start."""
+    """`while φ`: only time (or activations) with φ; `when φ`: only activations with φ at their start; `assuming φ`:
+    others than runs, or activations, with φ all along are not applicable."""
 
-    word: Literal["while", "when"]
+    word: Literal["while", "when", "assuming"]
     condition: Condition
     text: str
 
@@ -459,6 +472,8 @@ class ResolvedRequirement(Record):
         """The clause about the ways to verify it; empty without any."""
         return f"verified by {', '.join(way.text for way in self.ways)}" if self.ways else ""
 
+    assumptions: tuple[ResolvedScope, ...] = ()
+
     @property
     def demands_enforcement(self) -> bool:
         """Whether `on violation` demands that the engine enforces the claims."""
@@ -474,6 +489,7 @@ class ResolvedRequirement(Record):
         """Whether the engine is to enforce the claims, as far as the requirement itself decides that; a claim or its
         node may still prevent it."""
         is_single = self.odds is None and self.window is None  # else many experiments decide, which the engine forgets
+        is_single = is_single and not self.assumptions  # whether they hold is known only at the end
         return self.demands_enforcement and is_single and not self.is_verified_by_people
 
 
@@ -534,7 +550,7 @@ class Applied(Record):
         if self.how != "subject" or isinstance(self.subject, MissionRun) or node is None or node.parent is not None:
             return None
         claim = self.requirement.claims[0]
-        last = claim.text.partition(f" {claim.verb} ")[0].rpartition("/")[2]
+        last = claim.text.partition(f" {claim.head} ")[0].rpartition("/")[2]
         return node.tree if last == node.tree else None
 
     @property

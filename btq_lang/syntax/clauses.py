@@ -130,8 +130,8 @@ class Claim(Part):
 
     Attributes:
         verb: takes, succeeds, needs, keeps, never, leaves, uses, tries, runs, starts, ends, follows or followed.
-        bound: of takes, uses, tries, runs; for `within d` and `runs every d`, `<= d`.
-        condition: of needs, keeps, never, leaves, and of followed if it is followed by one.
+        bound: of takes, uses, tries, runs; for `within d`, `runs every d` and `never φ for more than d`, `<= d`.
+        condition: of needs, keeps, never, leaves, ends with, and of followed if it is followed by one.
         resource: of uses: the signal.
         per: of tries: the path; of runs: the quantity.
         event: of starts, ends, follows, followed.
@@ -147,11 +147,26 @@ class Claim(Part):
     event: Event | AnyEvent | None = None
     every: bool = False
 
+    @property
+    def row(self) -> str:
+        """The verb's row in `catalog.verbs`: of `ends with battery_low` the one of `ends with`."""
+        if self.condition is None:
+            return self.verb.raw
+        if self.verb.raw == "never" and self.bound is not None:
+            return "never for"
+        return "ends with" if self.verb.raw == "ends" else self.verb.raw
+
 
 class ScopeClause(Part):
     """`while φ` or `when φ`."""
 
     word: Word
+    condition: Condition | None
+
+
+class Assuming(Part):
+    """`assuming φ`: runs, or activations, without φ all along are not applicable."""
+
     condition: Condition | None
 
 
@@ -248,6 +263,7 @@ class Severity(Part):
 Clause: TypeAlias = (
     Claim
     | ScopeClause
+    | Assuming
     | Odds
     | Confidence
     | Window
@@ -290,6 +306,12 @@ class Call(Part):
     signal: Word | None
 
 
+class Choice(Part):
+    """`(0.5 m/s if near else 1 m/s)`: a value for each context."""
+
+    table: Table
+
+
 class NodeRuns(Part):
     """`node BatteryCheck/MoveBase`: true while that node runs."""
 
@@ -323,4 +345,4 @@ class Comparison(Part):
     operands: tuple[Condition, ...]
 
 
-Condition: TypeAlias = Operand | Call | NodeRuns | Negative | Not | Binary | Comparison
+Condition: TypeAlias = Operand | Call | Choice | NodeRuns | Negative | Not | Binary | Comparison

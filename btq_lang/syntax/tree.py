@@ -17,6 +17,7 @@ from btq_lang.syntax.clauses import Amount as Amount
 from btq_lang.syntax.clauses import AnyEvent as AnyEvent
 from btq_lang.syntax.clauses import Approval as Approval
 from btq_lang.syntax.clauses import Argument as Argument
+from btq_lang.syntax.clauses import Assuming as Assuming
 from btq_lang.syntax.clauses import Because as Because
 from btq_lang.syntax.clauses import Between as Between
 from btq_lang.syntax.clauses import Binary as Binary
@@ -24,6 +25,7 @@ from btq_lang.syntax.clauses import Bound as Bound
 from btq_lang.syntax.clauses import Bounded as Bounded
 from btq_lang.syntax.clauses import Call as Call
 from btq_lang.syntax.clauses import Case as Case
+from btq_lang.syntax.clauses import Choice as Choice
 from btq_lang.syntax.clauses import Claim as Claim
 from btq_lang.syntax.clauses import Clause as Clause
 from btq_lang.syntax.clauses import Comparison as Comparison

@@ -28,9 +28,11 @@ CLAUSES = {
     ),
     "succeeds": ("succeeds", "succeeds within 30 s"),
     "needs": ("needs battery > 15 %", "needs low"),
-    "keeps": ("keeps battery > 15 %",),
+    "keeps": ("keeps battery > 15 %", "keeps age(battery) <= 1 s"),
     "never": ("never low and door",),
+    "never for": ("never low for more than 30 s",),
     "leaves": ("leaves battery > 3 %",),
+    "ends with": ("ends with battery > 3 %",),
     "uses": ("uses at most 20 % of battery", "uses at least 1 % of battery", "uses at most 3 of load"),
     "tries": ("tries at most 3", "tries at most 3 per Top", "tries at least 2"),
     "runs": ("runs every 500 ms", "runs at most 9 per 10 s"),
@@ -55,6 +57,7 @@ QUALIFIERS = {
     "while": "while door",
     "when": "when door",
     "context": "when night",
+    "assuming": "assuming door",
     "review": "verified by review",
 }
 # What the clause is about, as it is named in it.

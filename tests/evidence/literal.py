@@ -79,7 +79,22 @@ class Session:
         self.activations = self.late.activations
 
     def judged(self, applied: Applied, claim: ResolvedClaim) -> list[Judged]:
-        """What a claim comes to."""
+        """What a claim comes to; of a run, if it is applicable."""
+        found = self.anyhow(applied, claim)
+        if claim.verb not in OVER_RUNS and not isinstance(applied.subject, Interval | DurationSum):
+            return found
+        return [each for one in found if (each := self.in_run(one, applied.requirement)).verdict != OUT]
+
+    def in_run(self, one: Judged, requirement: ResolvedRequirement) -> Judged:
+        """A part of a run, which is not applicable unless each assumption holds all along in the run."""
+        runs = [replace(world.runs[one.run], uid=one.uid) for world in self.worlds]
+        verdicts = [
+            world.applicable(run, one.verdict, requirement) for world, run in zip(self.worlds, runs, strict=True)
+        ]
+        return replace(one, verdict=alike(*verdicts))
+
+    def anyhow(self, applied: Applied, claim: ResolvedClaim) -> list[Judged]:
+        """What a claim comes to; of a run, also if that is not applicable."""
         if isinstance(applied.subject, Interval):
             found = self.spent(
                 claim, [world.spans(applied.subject, claim, applied.requirement) for world in self.worlds]
@@ -182,6 +197,9 @@ class Session:
             for spent in times
             for world, at in ((self.early, one), (self.late, other))
         }
+
+
+OVER_RUNS = ("tries", "runs", "follows", "starts", "ends")
 
 
 def alike(one: Verdict, other: Verdict) -> Verdict:

@@ -25,13 +25,17 @@ from btq_lang.evidence.model import LogSession
 from btq_lang.evidence.odds import lower_limit, upper_limit
 from btq_lang.evidence.verdicts import ClauseVerdict
 from btq_lang.requirements.model import (
+    Age,
     Applied,
+    Compare,
     DurationSum,
     EachEvent,
     Interval,
     NodeTarget,
+    Quantity,
     ResolvedClaim,
     ResolvedRequirement,
+    parts_in,
 )
 
 NOT_JUDGED = ("the clause applies to no node", "it has a mistake; run btq check")
@@ -119,7 +123,14 @@ def literal_of(made: Case) -> Literal:
     def instances(target: NodeTarget) -> list[int]:
         return [uid for _, uid in made.joined.instances(target) if uid is not None]
 
-    of_tree, known = (made.joined.tree, made.subtrees, made.delays), (samples, signals, instances, made.guards)
+    ages: dict[str, set[int]] = {}
+    for compare in parts_in((made.mission.requirements.applied, (*made.mission.requirements.contexts.values(),))):
+        numbers = compare.operands if isinstance(compare, Compare) else ()
+        for age in numbers:
+            if isinstance(age, Age):
+                times = [round(each.si * 1e6) for each in parts_in(numbers) if isinstance(each, Quantity)]
+                ages.setdefault(age.signal.name, set()).update(times)
+    of_tree, known = (made.joined.tree, made.subtrees, made.delays), (samples, signals, instances, made.guards, ages)
     return Literal([literal.Session(*of_tree, rows, *known) for rows in made.sessions])
 
 

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import engine_simulator as engine
 from check_asserts import workspace_of
 from random_guards import Guarded
+from random_states import of_states
 from requirement_problems import problems_of
 
 from btq_lang.btcpp.marks import MARK
@@ -124,7 +125,11 @@ def mission(chance: random.Random) -> str:
     main = [f"BehaviorTree {name}\n" + "\n".join(lines) for name, lines in tree.all().items()]
     labels = [*tree.labels, *tree.labels[: len(tree.labels) // 2 + 1]]  # what comes first runs more often
     demands = [requirement(chance, f"r{number}", labels) for number in range(chance.randint(2, 6))]
-    return "\n".join(["Root Main", *declarations(chance), *demands, *main]) + "\n"
+    known = declarations(chance)
+    apart = random.Random(repr(chance.getstate()))
+    draws = lambda drawn: condition(drawn, labels), lambda drawn: claim(drawn, labels)
+    demands += of_states(apart, labels, *draws)
+    return "\n".join(["Root Main", *known, *demands, *main]) + "\n"
 
 
 class Trees:

@@ -37,6 +37,7 @@ WORDS = (
     *("each", "is", "followed", "occurrences"),
     *("at", "most", "least", "less", "than", "more", "between", "and", "or", "not", "if", "else", "of", "per", "every"),
     *("within", "after", "mission", "from", "to", "sum", "when", "while", "in", "with", "probability", "confidence"),
+    *("for", "assuming"),
     *("over", "last", "activations", "on", "violation", "fail", "goal", "because", "verified", "by", "review", "node"),
     *(
         "except",

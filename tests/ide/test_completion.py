@@ -50,7 +50,7 @@ BehaviorTree Far
 MAIN, LIB = FILES.split("//- lib.btq\n")
 
 
-FUNCTIONS = ("max()", "min()", "mean()", "p95()")
+FUNCTIONS = ("max()", "min()", "mean()", "p95()", "age()")
 CONDITION = ("low", "battery", "not", "node", *FUNCTIONS)
 SPEEDS = ("m/s", "kmh", "mph")
 DURATIONS = ("s", "ns", "us", "ms", "min", "h", "d", "week")
@@ -107,7 +107,7 @@ def typed(line: str) -> str:
         ('QualityReq a "t"\n    on violation $0', ("fail", "halt", "warn", "log")),
         ('QualityReq a "t"\n    verified by $0', ("monitor", "analysis", "test", "review")),
         ('QualityReq a "t"\n    uses at most 3 Wh of $0', ("battery",)),
-        ('QualityReq a "t"\n    keeps $0', ("low", "battery", "not", "node", "max()", "min()", "mean()", "p95()")),
+        ('QualityReq a "t"\n    keeps $0', ("low", "battery", "not", "node", *FUNCTIONS)),
         ('QualityReq a "t"\n    starts within 1 s after Dock $0', ("fails", "finishes", "halts", "starts", "succeeds")),
         (
             'QualityReq a "t"\n    starts within 1 s after Wait fails or Dock $0',
