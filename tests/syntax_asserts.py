@@ -39,6 +39,7 @@ from btq_lang.syntax.tree import (
     Goal,
     Hazard,
     HazardClause,
+    HazardSeverity,
     How,
     Include,
     Item,
@@ -70,7 +71,6 @@ from btq_lang.syntax.tree import (
     Satisfies,
     ScopeClause,
     Selector,
-    Severity,
     Signal,
     SkippedLines,
     Source,
@@ -550,7 +550,7 @@ def _(clause: Priority) -> str:
 
 
 @show_clause.register
-def _(clause: Severity) -> str:
+def _(clause: HazardSeverity) -> str:
     return words("severity", show(clause.tag))
 
 

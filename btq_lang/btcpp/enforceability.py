@@ -16,11 +16,11 @@ from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.model import (
     Applied,
-    EachEvent,
     Interval,
     MissionRun,
     NodeTarget,
     ResolvedClaim,
+    ResolvedEachEvent,
     ResolvedRequirement,
     ResolvedSignal,
 )
@@ -103,7 +103,7 @@ class Enforceability:
             raise NotEnforced("a probability is evaluated in the logs of many runs")
         if requirement.window is not None:
             raise NotEnforced("a window is evaluated in the logs of many runs")
-        if isinstance(subject, EachEvent):
+        if isinstance(subject, ResolvedEachEvent):
             raise NotEnforced(VERBS[claim.verb].why_monitored)
         if requirement.assumptions:
             raise NotEnforced("whether its assumption holds all along is known only at the end")

@@ -27,7 +27,6 @@ from btq_lang.catalog.units import Unit
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements.classic import entries_in
 from btq_lang.requirements.model import (
-    AnyEvent,
     Bounded,
     Condition,
     Interval,
@@ -35,6 +34,7 @@ from btq_lang.requirements.model import (
     MissionRun,
     NodeTarget,
     Quantity,
+    ResolvedAnyEvent,
     ResolvedClaim,
     ResolvedEvent,
     ResolvedRequirement,
@@ -329,7 +329,7 @@ def _follows(guard: ClauseGuard) -> None:
     _record(guard, event, "event", "seen", f"{flag} := true")
 
 
-def _is_recorded(event: ResolvedEvent | AnyEvent) -> bool:
+def _is_recorded(event: ResolvedEvent | ResolvedAnyEvent) -> bool:
     """Whether an event has happened when the mission starts.
 
     Raises:
@@ -346,7 +346,9 @@ def _is_recorded(event: ResolvedEvent | AnyEvent) -> bool:
     return has_happened
 
 
-def _record(guard: ClauseGuard, event: ResolvedEvent | AnyEvent, what: str, script_name: str, script: str) -> None:
+def _record(
+    guard: ClauseGuard, event: ResolvedEvent | ResolvedAnyEvent, what: str, script_name: str, script: str
+) -> None:
     """Have a script run at an event; none does at the start of the mission."""
     for number, atom in enumerate(event.atoms, 1):
         if not isinstance(atom.subject, NodeTarget):

@@ -409,5 +409,5 @@ _ASPECTS: Final[dict[type, str]] = {
     syntax.Mitigates: "mitigates",
     syntax.Priority: "priority",
     syntax.Approval: "approved by",
-    syntax.Severity: "severity",
+    syntax.HazardSeverity: "severity",
 }

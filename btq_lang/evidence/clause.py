@@ -40,11 +40,11 @@ from btq_lang.requirements.model import (
     Age,
     Aggregate,
     DurationSum,
-    EachEvent,
     Interval,
     MissionRun,
     NodeTarget,
     Quantity,
+    ResolvedEachEvent,
     Running,
     events_of,
     parts_in,
@@ -60,7 +60,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.model import Outcome
     from btq_lang.evidence.odds import Limits
     from btq_lang.evidence.outline import Demand
-    from btq_lang.requirements.model import AnyEvent, ResolvedClaim, ResolvedEvent, Subject
+    from btq_lang.requirements.model import ResolvedAnyEvent, ResolvedClaim, ResolvedEvent, Subject
 
 
 class _Place(Record):
@@ -497,7 +497,7 @@ class JudgedClause:
                 together = tuple(near(uid, of_atom, joined.tree) for of_atom in lasts)
                 groups[together] = (*groups.get(together, ()), uid)
             return [*groups.values()] if not self.findings.missing else []
-        if isinstance(subject, EachEvent):
+        if isinstance(subject, ResolvedEachEvent):
             answers = self.claim.event.atoms if self.claim.event is not None else ()
             firsts = [*self._instances_of(joined, subject.event)]
             for atom in answers:
@@ -508,7 +508,7 @@ class JudgedClause:
             return [tuple(uids)] if uids and not self.findings.missing else []
         return [(uid,) for uid in self._instances(joined, _node_of(subject))]
 
-    def _instances_of(self, joined: Joined, event: ResolvedEvent | AnyEvent) -> Iterable[int]:
+    def _instances_of(self, joined: Joined, event: ResolvedEvent | ResolvedAnyEvent) -> Iterable[int]:
         """The uids of the nodes of an event; that of the root for a condition."""
         uids: dict[int, None] = {}
         for atom in event.atoms:
@@ -529,7 +529,7 @@ class JudgedClause:
 
     def _is_own(self, guard: Guard) -> bool:
         """Whether a guard enforces this clause; spans and sums have no guards."""
-        if isinstance(self._subject, Interval | DurationSum | EachEvent):
+        if isinstance(self._subject, Interval | DurationSum | ResolvedEachEvent):
             return False
         return guard.requirement == self.requirement.name and self.claim.verb in guard.verbs
 
@@ -576,12 +576,12 @@ class JudgedClause:
         is_of_run = VERBS[self.claim.verb].operand == "count" and self.claim.per is None
         is_once_a_run = isinstance(self._subject, DurationSum) or (is_of_run and len(findings.paths) == 1)
         of_each: Literal["activations", "occurrences"] = "activations"
-        if isinstance(self._subject, EachEvent):
+        if isinstance(self._subject, ResolvedEachEvent):
             of_each = "occurrences"
         return ClauseVerdict(
             text=self.text,
             path=", ".join(findings.paths),
-            of=self.claim.subject_text if isinstance(self._subject, Interval | DurationSum | EachEvent) else "",
+            of=self.claim.subject_text if isinstance(self._subject, Interval | DurationSum | ResolvedEachEvent) else "",
             verdict=verdict,
             why=why,
             unit="runs" if tally.counts_runs or is_once_a_run else of_each,

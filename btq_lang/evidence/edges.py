@@ -15,10 +15,10 @@ from btq_lang.requirements.model import (
     Aggregate,
     Compare,
     DurationSum,
-    EachEvent,
     Limit,
     Quantity,
     ResolvedClaim,
+    ResolvedEachEvent,
     ResolvedRequirement,
     SignalRead,
     Subject,
@@ -59,7 +59,7 @@ class Edge(Record):
 
 def edge_of(claim: ResolvedClaim, subject: Subject | None, requirement: ResolvedRequirement) -> Edge | None:
     """The bound of a claim at a subject; None if it has none that may be moved."""
-    if requirement.window is not None or isinstance(subject, DurationSum | EachEvent):
+    if requirement.window is not None or isinstance(subject, DurationSum | ResolvedEachEvent):
         # A window holds other judgements for another bound; parts of a sum, and earlier answers, may be unknown.
         return None
     if claim.limit is not None:

@@ -11,10 +11,10 @@ from btq_lang.evidence.scopes import in_scope
 from btq_lang.evidence.signals import UnknownValue
 from btq_lang.requirements.model import (
     All,
-    AnyEvent,
     Condition,
     MissionRun,
     NodeTarget,
+    ResolvedAnyEvent,
     ResolvedEvent,
     ResolvedScope,
 )
@@ -112,7 +112,7 @@ class OverRun(Record):
             return True
         return in_scope(self.scopes, self.verb, self.observed.during(activation))
 
-    def begins(self, event: ResolvedEvent | AnyEvent) -> list[Moment]:
+    def begins(self, event: ResolvedEvent | ResolvedAnyEvent) -> list[Moment]:
         """When the clause's nodes began, to be compared with an event: a moment, or the row of another node."""
         is_by_row = event.condition is None
         return [activation.shown if is_by_row else activation.begun(self.observed.is_early) for activation in self.own]
@@ -151,7 +151,7 @@ class OverRun(Record):
         return stretches
 
     def happenings(
-        self, event: ResolvedEvent | AnyEvent, is_own: bool = False, is_by_row: bool = True
+        self, event: ResolvedEvent | ResolvedAnyEvent, is_own: bool = False, is_by_row: bool = True
     ) -> list[Happening]:
         """The certain and possible occurrences of an event, in order.
 
@@ -159,7 +159,7 @@ class OverRun(Record):
             is_own: only those of the clause's nodes, not of all that the event names.
             is_by_row: begins are in the order of their rows, not of their times.
         """
-        if not isinstance(event, AnyEvent):
+        if not isinstance(event, ResolvedAnyEvent):
             return self._happenings(event, self.own if is_own else None, is_by_row)
         is_by_row = is_by_row and event.condition is None
         occurrences: dict[Happening, None] = {}  # each once: what succeeds finishes, too

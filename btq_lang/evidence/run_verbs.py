@@ -21,14 +21,14 @@ from btq_lang.evidence.over_run import Happening, OverRun, Stretch
 from btq_lang.evidence.signals import UnknownValue
 from btq_lang.evidence.verbs import OUT, Judgement, between, is_same
 from btq_lang.requirements.model import (
-    AnyEvent,
     Condition,
     DurationSum,
-    EachEvent,
     Interval,
     NodeTarget,
     Quantity,
+    ResolvedAnyEvent,
     ResolvedClaim,
+    ResolvedEachEvent,
     ResolvedEvent,
     Subject,
 )
@@ -150,7 +150,7 @@ def _followed(claim: ResolvedClaim, run: OverRun) -> Judgements:
     """`each e is followed by f within d`: for each event, whether the other one happens, or the condition holds, in
     time."""
     each, answer = claim.subject, claim.event
-    assert isinstance(each, EachEvent), "the verb has no other subject"
+    assert isinstance(each, ResolvedEachEvent), "the verb has no other subject"
     if answer is None:
         assert claim.condition is not None, "an event or a condition follows"
         next_of = _next_true(claim.condition, run)
@@ -164,12 +164,12 @@ def _followed(claim: ResolvedClaim, run: OverRun) -> Judgements:
         yield from _followed_by(claim, run, event, *next_of(event))
 
 
-def _names_nodes(event: ResolvedEvent | AnyEvent) -> bool:
+def _names_nodes(event: ResolvedEvent | ResolvedAnyEvent) -> bool:
     return event.atoms[0].condition is None
 
 
 def _next_true(condition: Condition, run: OverRun) -> NextOf:
-    """Finds when a demanded condition holds next; `initially` is no measurement of it."""
+    """Finds when a demanded condition holds next; `initially` does not count, for it is not measured."""
     stretches = [
         Happening(part.begin, part.begin, part.why, not part.why)
         for part in run.with_all_along(condition, run.observed)

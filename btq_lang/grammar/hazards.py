@@ -12,7 +12,7 @@ from btq_lang.grammar.cursor import Cursor
 from btq_lang.grammar.metadata import parse_requirement_id, parse_source, parse_tag, parse_text
 from btq_lang.grammar.nodes import no_block
 from btq_lang.syntax.tokens import NEWLINE, STRING
-from btq_lang.syntax.tree import Hazard, HazardClause, Severity
+from btq_lang.syntax.tree import Hazard, HazardClause, HazardSeverity
 
 
 def parse_hazard(cursor: Cursor, level: int) -> Hazard:
@@ -54,11 +54,11 @@ def parse_hazard_clause(cursor: Cursor) -> HazardClause | None:
     return None
 
 
-def parse_severity(cursor: Cursor) -> Severity:
+def parse_severity(cursor: Cursor) -> HazardSeverity:
     """ "severity" Name"""
     start = cursor.take().start
     tag = parse_tag(cursor, "a severity: high, catastrophic, …")
-    return Severity(start, cursor.last_end(), tag)
+    return HazardSeverity(start, cursor.last_end(), tag)
 
 
 HAZARD_HEADS: Final = ("source", "because", "severity")

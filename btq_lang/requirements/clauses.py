@@ -189,12 +189,12 @@ _RUN = frozenset(("mission", "run", "execution", "trial", "tree"))
 
 def _event(
     reader: Reader, written: syntax.Event | syntax.AnyEvent | None
-) -> model.ResolvedEvent | model.AnyEvent | None:
+) -> model.ResolvedEvent | model.ResolvedAnyEvent | None:
     if not isinstance(written, syntax.AnyEvent):
         return _event_atom(reader, written)
     atoms = [_event_atom(reader, atom) for atom in written.atoms]
     understood = tuple(atom for atom in atoms if atom is not None)
-    return model.AnyEvent(understood) if len(understood) == len(atoms) else None
+    return model.ResolvedAnyEvent(understood) if len(understood) == len(atoms) else None
 
 
 def _event_atom(reader: Reader, written: syntax.Event | None) -> model.ResolvedEvent | None:
@@ -222,7 +222,7 @@ def _subject(reader: Reader, written: syntax.Subject) -> model.Subject | None:
         return model.Interval(first, last) if first is not None and last is not None else None
     if isinstance(written, syntax.EachEvent):
         event = _event(reader, written.event)
-        return model.EachEvent(event) if event is not None else None
+        return model.ResolvedEachEvent(event) if event is not None else None
     assert isinstance(written, syntax.Sum), "the last kind of subject"
     targets = [reader.target(path) for path in written.paths]
     nodes_named = tuple(target for target in targets if target is not None)

@@ -263,7 +263,7 @@ class ResolvedEvent(Record):
         return (self,)
 
 
-class AnyEvent(Record):
+class ResolvedAnyEvent(Record):
     """Any of several events, of which only the last may be a condition."""
 
     atoms: tuple[ResolvedEvent, ...]
@@ -277,14 +277,14 @@ class AnyEvent(Record):
 class Interval(Record):
     """The time from each `first` to the next `last`."""
 
-    first: ResolvedEvent | AnyEvent
-    last: ResolvedEvent | AnyEvent
+    first: ResolvedEvent | ResolvedAnyEvent
+    last: ResolvedEvent | ResolvedAnyEvent
 
 
-class EachEvent(Record):
+class ResolvedEachEvent(Record):
     """Each occurrence of an event."""
 
-    event: ResolvedEvent | AnyEvent
+    event: ResolvedEvent | ResolvedAnyEvent
 
 
 class DurationSum(Record):
@@ -299,7 +299,7 @@ class EveryNode(Record):
     name: str
 
 
-Subject: TypeAlias = NodeTarget | MissionRun | EveryNode | Interval | DurationSum | EachEvent
+Subject: TypeAlias = NodeTarget | MissionRun | EveryNode | Interval | DurationSum | ResolvedEachEvent
 
 
 class ResolvedClaim(Record):
@@ -325,7 +325,7 @@ class ResolvedClaim(Record):
     condition: Condition | None = None
     signal: ResolvedSignal | None = None
     per: NodeTarget | Quantity | None = None
-    event: ResolvedEvent | AnyEvent | None = None
+    event: ResolvedEvent | ResolvedAnyEvent | None = None
     every: bool = False
 
     @property
@@ -336,7 +336,7 @@ class ResolvedClaim(Record):
     @property
     def subject_text(self) -> str:
         """What is before its verb, as typed."""
-        verb = "is followed" if isinstance(self.subject, EachEvent) else self.head
+        verb = "is followed" if isinstance(self.subject, ResolvedEachEvent) else self.head
         return self.text.partition(f" {verb} ")[0]
 
     @property
@@ -527,7 +527,7 @@ class Applied(Record):
     """
 
     requirement: ResolvedRequirement
-    subject: NodeTarget | MissionRun | Interval | DurationSum | EachEvent
+    subject: NodeTarget | MissionRun | Interval | DurationSum | ResolvedEachEvent
     arguments: tuple[ResolvedArgument, ...]
     place: Place
     how: Literal["subject", "satisfies", "apply"]
@@ -575,11 +575,11 @@ class Applied(Record):
         return tuple(part.node for part in parts if part is not None and part.node is not None)
 
 
-def events_of(subject: Subject | None) -> tuple[ResolvedEvent | AnyEvent, ...]:
+def events_of(subject: Subject | None) -> tuple[ResolvedEvent | ResolvedAnyEvent, ...]:
     """The events that a subject names."""
     if isinstance(subject, Interval):
         return subject.first, subject.last
-    return (subject.event,) if isinstance(subject, EachEvent) else ()
+    return (subject.event,) if isinstance(subject, ResolvedEachEvent) else ()
 
 
 class Trace(Record):

@@ -254,7 +254,7 @@ class Approval(Part):
     of: Word | None = None
 
 
-class Severity(Part):
+class HazardSeverity(Part):
     """`severity high` of a hazard: a free tag."""
 
     tag: Word | None
@@ -277,7 +277,7 @@ Clause: TypeAlias = (
     | Priority
     | Approval
 )
-HazardClause: TypeAlias = Source | Because | Severity
+HazardClause: TypeAlias = Source | Because | HazardSeverity
 # The clauses that demand nothing.
 METADATA: Final = frozenset((Source, Refines, Mitigates, Priority, Approval))
 

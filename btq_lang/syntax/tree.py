@@ -36,6 +36,7 @@ from btq_lang.syntax.clauses import Event as Event
 from btq_lang.syntax.clauses import Every as Every
 from btq_lang.syntax.clauses import Goal as Goal
 from btq_lang.syntax.clauses import HazardClause as HazardClause
+from btq_lang.syntax.clauses import HazardSeverity as HazardSeverity
 from btq_lang.syntax.clauses import How as How
 from btq_lang.syntax.clauses import Mission as Mission
 from btq_lang.syntax.clauses import Mitigates as Mitigates
@@ -50,7 +51,6 @@ from btq_lang.syntax.clauses import Path as Path
 from btq_lang.syntax.clauses import Priority as Priority
 from btq_lang.syntax.clauses import Refines as Refines
 from btq_lang.syntax.clauses import ScopeClause as ScopeClause
-from btq_lang.syntax.clauses import Severity as Severity
 from btq_lang.syntax.clauses import Source as Source
 from btq_lang.syntax.clauses import Subject as Subject
 from btq_lang.syntax.clauses import Sum as Sum

@@ -9,7 +9,7 @@ from typing import Any
 
 from btq_lang.requirements.approval import ApprovalState
 from btq_lang.requirements.model import ResolvedRequirement
-from btq_lang.syntax.tree import Because, Hazard, Severity, Source
+from btq_lang.syntax.tree import Because, Hazard, HazardSeverity, Source
 from btq_lang.trace.overview import ApprovalRow, At, HazardRow, RequirementRow, VerificationRow
 from btq_lang.util.record import replace
 
@@ -31,7 +31,7 @@ def metadata_fields(requirement: ResolvedRequirement, approval: ApprovalState) -
 def hazard_row(key: str, name: str, hazard: Hazard, location: At) -> HazardRow:
     """The row of a hazard, without the requirements that mitigate it."""
     severities = [
-        clause.tag.text for clause in hazard.clauses if isinstance(clause, Severity) and clause.tag is not None
+        clause.tag.text for clause in hazard.clauses if isinstance(clause, HazardSeverity) and clause.tag is not None
     ]
     texts = [clause for clause in hazard.clauses if isinstance(clause, Source | Because) and clause.text is not None]
     return HazardRow(

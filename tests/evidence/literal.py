@@ -15,7 +15,7 @@ from literal_verbs import OPEN, OUT, Judged, counted
 
 from btq_lang.evidence.model import ROOT
 from btq_lang.evidence.odds import lower_limit, upper_limit
-from btq_lang.requirements.model import DurationSum, EachEvent, Interval, MissionRun, NodeTarget
+from btq_lang.requirements.model import DurationSum, Interval, MissionRun, NodeTarget, ResolvedEachEvent
 
 if TYPE_CHECKING:
     from literal_log import Truth
@@ -100,7 +100,7 @@ class Session:
                 claim, [world.spans(applied.subject, claim, applied.requirement) for world in self.worlds]
             )
             return [each for each in found if each.verdict != OUT]
-        if isinstance(applied.subject, EachEvent):
+        if isinstance(applied.subject, ResolvedEachEvent):
             return self.followed(applied.subject, claim, applied.requirement)
         if isinstance(applied.subject, DurationSum):
             return self.total(applied.subject, claim, applied.requirement)
@@ -113,7 +113,7 @@ class Session:
                 found += self.spent(claim, [world.reactions(uid, claim, applied.requirement) for world in self.worlds])
         return [each for each in found if each.verdict != OUT or claim.verb not in ("starts", "ends", "follows")]
 
-    def followed(self, each: EachEvent, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Judged]:
+    def followed(self, each: ResolvedEachEvent, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Judged]:
         """each e is followed by f: what both ends of the begins say of each e."""
         early, late = (world.followed(each, claim, requirement) for world in self.worlds)
         return [each for each in self.both_ends(early, late) if each.verdict != OUT]

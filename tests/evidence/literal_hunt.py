@@ -29,11 +29,11 @@ from btq_lang.requirements.model import (
     Applied,
     Compare,
     DurationSum,
-    EachEvent,
     Interval,
     NodeTarget,
     Quantity,
     ResolvedClaim,
+    ResolvedEachEvent,
     ResolvedRequirement,
     parts_in,
 )
@@ -90,7 +90,9 @@ class Hunt:
         judged = literal.clause(applied, claim)
         what = {Interval: "from … to", DurationSum: "sum of"}.get(type(applied.subject), claim.verb)
         self.compared[f"{what}: {judged.verdict}"] += 1
-        has_path = streamed.unit != "runs" and not isinstance(applied.subject, Interval | DurationSum | EachEvent)
+        has_path = streamed.unit != "runs" and not isinstance(
+            applied.subject, Interval | DurationSum | ResolvedEachEvent
+        )
         expected, got = expected_of(made, applied.requirement, judged, has_path), got_of(streamed, has_path)
         if expected != got:
             of_node = [f"{each}" for each in literal.activations if each.uid in {one.uid for one in judged.judged}]

@@ -21,12 +21,12 @@ if TYPE_CHECKING:
     from literal_verbs import Verdict
 
     from btq_lang.requirements.model import (
-        AnyEvent,
         Condition,
         DurationSum,
-        EachEvent,
         Interval,
+        ResolvedAnyEvent,
         ResolvedClaim,
+        ResolvedEachEvent,
         ResolvedEvent,
         ResolvedRequirement,
     )
@@ -280,7 +280,7 @@ class OverRuns(OfActivations):
                     )
         return found
 
-    def followed(self, each: EachEvent, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Judged]:
+    def followed(self, each: ResolvedEachEvent, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Judged]:
         """each e is followed by f: after each e the next f, or the first moment from then on at which f is true."""
         by_rows = each.event.condition is None and claim.condition is None
         by_rows = by_rows and (claim.event is None or claim.event.condition is None)
@@ -294,7 +294,12 @@ class OverRuns(OfActivations):
         return found
 
     def answered(
-        self, e: Happening, each: EachEvent, claim: ResolvedClaim, requirement: ResolvedRequirement, run: Activation
+        self,
+        e: Happening,
+        each: ResolvedEachEvent,
+        claim: ResolvedClaim,
+        requirement: ResolvedRequirement,
+        run: Activation,
     ) -> Decided:
         """What one e comes to: the times to f, at the least and at the most, and what may have been f before."""
         at = between(run, run.uid, e.moment, run.stop)
@@ -376,7 +381,7 @@ class OverRuns(OfActivations):
             found.append((between(run, run.uid, moments[index], end), now is True))
         return found
 
-    def places(self, event: ResolvedEvent | AnyEvent) -> list[int]:
+    def places(self, event: ResolvedEvent | ResolvedAnyEvent) -> list[int]:
         """The instances of the nodes of an event; the root for a condition."""
         uids = [
             uid for each in event.atoms for uid in ([ROOT] if each.condition is not None else self.uids(each.subject))
@@ -384,7 +389,7 @@ class OverRuns(OfActivations):
         return [*dict.fromkeys(uids)]
 
     def events(
-        self, event: ResolvedEvent | AnyEvent, run: Activation, *, only: bool = False, by_rows: bool = True
+        self, event: ResolvedEvent | ResolvedAnyEvent, run: Activation, *, only: bool = False, by_rows: bool = True
     ) -> list[Happening]:
         """Those of any of several events, in order, each once."""
         by_rows = by_rows and event.condition is None
@@ -429,7 +434,7 @@ def spent(since: tuple[int, int], until: tuple[int, int]) -> tuple[int, int]:
     return max(until[0] - since[1], 0), until[1] - since[0]
 
 
-def has_node(event: ResolvedEvent | AnyEvent) -> bool:
+def has_node(event: ResolvedEvent | ResolvedAnyEvent) -> bool:
     """Whether something that a node does is among several events."""
     return any(each.condition is None for each in event.atoms)
 
