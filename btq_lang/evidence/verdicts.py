@@ -234,6 +234,7 @@ class ClauseVerdict(Record):
         by_run: the last 60 runs with a judgement, the earliest first.
         failed, halted: activations left out because the clause is about those that succeed.
         idle: in how many runs its node did not start, if it is about activations of one.
+        not_applicable: how many activations, or runs, were left out because an assumption did not hold.
     """
 
     text: str
@@ -241,7 +242,7 @@ class ClauseVerdict(Record):
     of: str
     verdict: Verdict
     why: str
-    unit: Literal["activations", "runs"]
+    unit: Literal["activations", "runs", "occurrences"]
     counted: int
     violated: int
     unknown: int
@@ -260,6 +261,7 @@ class ClauseVerdict(Record):
     failed: int = 0
     halted: int = 0
     idle: int = 0
+    not_applicable: int = 0
 
 
 class RequirementLinks(Record):

@@ -458,7 +458,7 @@ def _in_list(workspace: Workspace, path: str, place: CursorPlace, word: str) -> 
         yield from offer.tags(workspace, path)
 
 
-_FUNCTIONS = ("max()", "min()", "mean()", "p95()")
+_FUNCTIONS = ("max()", "min()", "mean()", "p95()", "age()")
 _DECLARED = {
     "BehaviorTree": (Kind.TREE, What.TREE),
     "SubTree": (Kind.TREE, What.TREE),

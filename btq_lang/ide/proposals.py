@@ -453,6 +453,7 @@ _CLAUSES = (
     ("sum of", None),
     ("while", None),
     ("when", None),
+    ("assuming", None),
     ("in at least", "in at least ${1:95 %} of ${0:runs}"),
     ("with probability", "with probability >= ${1:95 %} of ${0:runs}"),
     ("confidence", "confidence ${0:95 %}"),

@@ -372,8 +372,7 @@ def _subject(applied: Applied) -> str:
         return "/".join((*subject.through, applied.tree or _name(subject.node)))
     if isinstance(subject, MissionRun):
         return "mission"
-    claim = applied.requirement.claims[0]
-    return claim.text.partition(f" {claim.verb} ")[0]
+    return applied.requirement.claims[0].subject_text
 
 
 def _node(key: str, source: ResolvedNode, location: At) -> NodeRow:
@@ -397,7 +396,7 @@ def _note(key: str, applied: Applied, use: AppliedRequirement, measured: tuple[M
 
 def _stated(requirement: ResolvedRequirement) -> Iterator[str]:
     yield from (claim.text for claim in requirement.claims)
-    yield from (scope.text for scope in requirement.scopes)
+    yield from (scope.text for scope in (*requirement.scopes, *requirement.assumptions))
     if requirement.odds is not None:
         yield requirement.odds.text
     if requirement.confidence is not None:
