@@ -1,0 +1,14 @@
+"""A model of BehaviorTree.CPP: what the engine does with a tree, tick by tick, version by version.
+
+One invariant: every status change is the engine's, in its order; what is not modelled raises `NotModelled` and is never
+guessed.
+
+    blackboard.py   entries, their types and numbers, and how subtrees remap them
+    scripts.py      what a script does with entries
+    nodes.py        a node: its status and its memory
+    ticking.py      one tick of a node, its conditions, and how it is halted
+    controls.py     what each control node does with its children
+    decorators.py   what each decorator does with its child
+    leaves.py       the engine's own leaves, and those of a program
+    loading.py      XML to nodes
+"""

@@ -1,0 +1,157 @@
+"""From XML to the nodes of a tree that can be ticked, with the entries that the engine creates for them.
+
+Source: facts about BehaviorTree.CPP 4.6 to 4.10, seen in runs of the engine.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from typing import Final
+
+from btq_lang.btcpp.document import Document, Element
+from btq_lang.catalog.nodes import BUILTINS, of_version
+from btq_lang.catalog.versions import ONE_ASYNC_SEQUENCE
+from btq_lang.simulator.blackboard import DOUBLE, STRING, Board
+from btq_lang.simulator.errors import EngineError, NotModelled
+from btq_lang.simulator.nodes import SimulatedNode
+from btq_lang.simulator.ports import key_of
+from btq_lang.simulator.ticking import Machine, Program
+from btq_lang.simulator.versions import Dialect
+from btq_lang.syntax.script.parser import parse_script
+
+
+def load(
+    documents: list[Document],
+    main: str,
+    dialect: Dialect,
+    program: Program,
+    changes: Callable[[SimulatedNode, int, int], None],
+    board: Board | None = None,
+) -> Machine:
+    """The tree `main` of some documents, ready to be ticked.
+
+    Args:
+        program: has the custom leaves.
+        changes: called with each change of a status, and the status before.
+        board: the root blackboard, with the entries that the program sets before it creates the tree.
+
+    Raises:
+        EngineError: the engine refuses the tree.
+        NotModelled: the tree has a node that is not known here.
+    """
+    loader = _Loader(documents, dialect)
+    return Machine(loader.tree(main, board or Board(), ""), dialect, program, changes)
+
+
+class _Loader:
+    def __init__(self, documents: list[Document], dialect: Dialect) -> None:
+        tops = [element for document in documents for element in document.root.elements]
+        self._trees: Final = {name: tree for tree in tops if tree.tag == "BehaviorTree" and (name := tree.get("ID"))}
+        self._dialect: Final = dialect
+        self._open: Final[list[str]] = []
+        self._last = 0  # uid
+
+    def tree(self, name: str, board: Board, prefix: str) -> SimulatedNode:
+        """The root of a tree."""
+        tree = self._trees.get(name)
+        if tree is None:
+            raise EngineError(f"Can't find a tree with name: {name}")
+        if name in self._open:
+            raise EngineError(
+                f"Recursive behavior tree cycle detected: tree '{name}' references itself (directly or indirectly)"
+            )
+        self._open.append(name)
+        (root,) = tree.elements
+        if ONE_ASYNC_SEQUENCE.holds(self._dialect.version):
+            _refuse_two_async(root)
+        node = self._node(root, board, prefix)
+        self._open.pop()
+        return node
+
+    def _node(self, element: Element, board: Board, prefix: str) -> SimulatedNode:
+        """A node and all below it."""
+        self._last += 1
+        values = {attribute.name: attribute.value for attribute in element.attributes}
+        id_ = element.tag if element.tag not in _CATEGORIES else values.get("ID", "")
+        is_subtree = element.tag == "SubTree"
+        plain = values.get("ID", "") if is_subtree else id_
+        name = values.get("name", plain)
+        path = prefix + values.get("name", f"{plain}::{self._last}")
+        ports = {port: value for port, value in values.items() if not (port in _NO_PORTS or port.startswith("_"))}
+        node = SimulatedNode(self._last, "SubTree" if is_subtree else id_, name, path, ports, board)
+        for attribute in ("_failureIf", "_successIf", "_skipIf", "_while"):
+            if attribute in values:
+                node.conditions.append((attribute, parse_script(values[attribute])))
+        for attribute in ("_onSuccess", "_onFailure", "_post", "_onHalted"):
+            if attribute in values:
+                node.scripts[attribute] = parse_script(values[attribute])
+        if is_subtree:
+            inner = self._inner_board(values, board)
+            node.children.append(self.tree(plain, inner, f"{path}/"))
+            return node
+        self._declare(node)
+        for child in element.elements:
+            node.children.append(self._node(child, board, prefix))
+        return node
+
+    def _inner_board(self, values: Mapping[str, str], board: Board) -> Board:
+        """The blackboard of a SubTree: remapped ports, and constants as entries of its own."""
+        inner = Board(board, values.get("_autoremap", "").lower() in ("1", "true"))
+        for port, value in values.items():
+            if port in _NO_PORTS or port.startswith("_"):
+                continue
+            key = key_of(value, port)
+            if key is not None:
+                inner.remapped[port] = key
+            else:
+                number = _constant(value) if self._dialect.types_constants else None
+                if number is None:
+                    inner.define(port, value, "")
+                else:
+                    inner.define(port, number, "int" if isinstance(number, int) else DOUBLE)
+        return inner
+
+    def _declare(self, node: SimulatedNode) -> None:
+        """Create the entries of a built-in's ports, and fill in its defaults."""
+        kind = BUILTINS.get(node.id)
+        for port in kind.ports if kind is not None else ():
+            declared = of_version(port, self._dialect.version)
+            written = node.ports.get(port.name)
+            if written is None:
+                if declared.default is not None:
+                    node.ports[port.name] = declared.default
+            elif (key := key_of(written, port.name)) is not None:
+                node.board.create(key, _TYPES.get(declared.type, declared.type))
+        if kind is None:
+            for name, written in node.ports.items():
+                if (key := key_of(written, name)) is not None:
+                    node.board.create(key)
+        for name in ("code", "if"):
+            if name in node.ports and kind is not None:
+                if key_of(node.ports[name], name) is not None:
+                    raise NotModelled(f"the script of {node.path} is an entry")
+                node.scripts[name] = parse_script(node.ports[name])
+
+
+def _refuse_two_async(root: Element) -> None:
+    for element in root.walk():
+        if element.tag == "ReactiveSequence":
+            asynchronous = [child for child in element.elements if child.tag == "AsyncSequence"]
+            if len(asynchronous) > 1:
+                line = element.source.count("\n", 0, element.start) + 1
+                raise EngineError(f"Error at line {line}: -> A ReactiveSequence cannot have more than one async child.")
+
+
+def _constant(text: str) -> int | float | None:
+    """A constant as the number that it is as a whole."""
+    if _WHOLE.fullmatch(text):
+        return int(text)
+    return float(text) if _REAL.fullmatch(text) else None
+
+
+_CATEGORIES: Final = ("Action", "Condition", "Control", "Decorator")
+_NO_PORTS: Final = ("ID", "name")
+_TYPES: Final = {"BT::Any": "", "BT::AnyTypeAllowed": "", "": "", "std::__cxx11::basic_string": STRING}
+_WHOLE: Final = re.compile(r"-?\d+")
+_REAL: Final = re.compile(r"-?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
