@@ -3,12 +3,17 @@
 One invariant: every status change is the engine's, in its order; what is not modelled raises `NotModelled` and is never
 guessed.
 
+    errors.py       what ends a run early
+    versions.py     what differs between versions of the engine
     blackboard.py   entries, their types and numbers, and how subtrees remap them
     scripts.py      what a script does with entries
+    ports.py        what a node reads at its ports, and writes
     nodes.py        a node: its status and its memory
     ticking.py      one tick of a node, its conditions, and how it is halted
     controls.py     what each control node does with its children
     decorators.py   what each decorator does with its child
     leaves.py       the engine's own leaves, and those of a program
+    kinds.py        which function is which node's
     loading.py      XML to nodes
+    drivers.py      how a program ticks its tree
 """

@@ -191,7 +191,7 @@ def parsed(text: str, type_: str) -> Value:
     """A text as a value of a type of C++, as `convertFromString` reads it.
 
     Raises:
-        EngineError: the text is no such value.
+        EngineError: the text cannot be read as such a value.
     """
     if type_ in (STRING, UNTYPED):
         return text

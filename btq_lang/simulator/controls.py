@@ -8,12 +8,12 @@ from __future__ import annotations
 import re
 from typing import Final
 
+from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.simulator.errors import EngineError
-from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, SimulatedNode
+from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Machine, SimulatedNode
 from btq_lang.simulator.ports import read_text, read_truth, read_whole
 from btq_lang.simulator.scripts import EPSILON, NUMBER
 from btq_lang.simulator.ticking import (
-    Machine,
     execute_tick,
     halt_children,
     halt_node,
@@ -57,7 +57,7 @@ def _in_order(machine: Machine, node: SimulatedNode, ends: int, goes_on: int) ->
         node.index += 1
         if result == SKIPPED:
             node.skipped += 1
-        elif node.id.startswith("Async") and before == IDLE and node.index < len(node.children):
+        elif node.yields and before == IDLE and node.index < len(node.children):
             machine.is_woken = True
             return RUNNING
     all_skipped = node.skipped == len(node.children) if counts_skips else node.is_on
@@ -263,7 +263,7 @@ def _check_branches(node: SimulatedNode, class_name: str) -> None:
 
 def tick_switch(machine: Machine, node: SimulatedNode) -> int:
     """The child of the case that the variable has, chosen at every tick."""
-    cases = int(node.id.removeprefix("Switch"))
+    cases = len(BUILTINS[node.id].ports) - 1
     if len(node.children) != cases + 1:
         raise EngineError("Wrong number of children in SwitchNode; must be (num_cases + default)")
     variable = read_text(node, "variable")
@@ -273,13 +273,13 @@ def tick_switch(machine: Machine, node: SimulatedNode) -> int:
         if case is not None and variable is not None and _is_case(variable, case, machine.dialect.matches_prefixes):
             chosen = position
             break
-    if node.index not in (-1, chosen):
-        reset_child(machine, node.children[node.index])
+    if node.index not in (0, chosen + 1):
+        reset_child(machine, node.children[node.index - 1])
     result = execute_tick(machine, node.children[chosen])
     if result == RUNNING:
-        node.index = chosen
+        node.index = chosen + 1
         return RUNNING
-    node.index = -1
+    node.index = 0
     if result != SKIPPED:
         reset_children(machine, node)
     return result
@@ -347,12 +347,6 @@ def halt_in_order(machine: Machine, node: SimulatedNode) -> None:
     """Begin with the first child again."""
     node.index = 0
     node.skipped = 0
-    halt_children(machine, node)
-
-
-def halt_switch(machine: Machine, node: SimulatedNode) -> None:
-    """Forget which child runs."""
-    node.index = -1
     halt_children(machine, node)
 
 

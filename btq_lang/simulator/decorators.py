@@ -5,14 +5,13 @@ Source: facts about BehaviorTree.CPP 4.6 to 4.10, seen in runs of the engine.
 
 from __future__ import annotations
 
-from typing import Final
-
-from btq_lang.simulator.blackboard import BOOL, DOUBLE, STRING, Value, parsed
+from btq_lang.catalog.nodes import BUILTINS
+from btq_lang.simulator.blackboard import Value, parsed
 from btq_lang.simulator.errors import EngineError, NotModelled
-from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, SimulatedNode
+from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Machine, SimulatedNode
 from btq_lang.simulator.ports import key_of, read, read_status, read_truth, read_whole, write
 from btq_lang.simulator.scripts import holds
-from btq_lang.simulator.ticking import Machine, execute_tick, halt_children, reset_child, set_status
+from btq_lang.simulator.ticking import execute_tick, halt_children, reset_child, set_status
 
 
 def tick_inverter(machine: Machine, node: SimulatedNode) -> int:
@@ -94,7 +93,7 @@ def _again(machine: Machine, node: SimulatedNode, port: str, class_name: str, co
 
 
 def halt_counting(machine: Machine, node: SimulatedNode) -> None:
-    """Begin to count anew."""
+    """Begin to count from 0 again."""
     node.count = 0
     halt_children(machine, node)
 
@@ -144,7 +143,7 @@ def tick_loop(machine: Machine, node: SimulatedNode) -> int:
                 raise EngineError("bad expected access")
             return result
         item, node.queue = node.queue[0], node.queue[1:]
-        write(node, "value", item, _ITEM_TYPES[node.id])
+        write(node, "value", item, _item_type(node))
     if node.status == IDLE:
         set_status(machine, node, RUNNING)
     result = execute_tick(machine, node.child)
@@ -160,13 +159,16 @@ def _items(node: SimulatedNode) -> tuple[Value, ...]:
     if key_of(written, "queue") is not None:
         value = read(node, "queue")
         if not isinstance(value, str):
-            raise NotModelled(f"the queue {written} of {node.path} is an entry that is no text")
+            raise NotModelled(f"the queue {written} of {node.path} is an entry without a text")
         written = value
-    type_ = _ITEM_TYPES[node.id]
+    type_ = _item_type(node)
     return tuple([parsed(item, type_) for item in written.split(";")]) if written else ()
 
 
-_ITEM_TYPES: Final = {"LoopInt": "int", "LoopDouble": DOUBLE, "LoopBool": BOOL, "LoopString": STRING}
+def _item_type(node: SimulatedNode) -> str:
+    """The type of the items, which is that of the port for them."""
+    return next(port.type for port in BUILTINS[node.id].ports if port.name == "value")
+
 
 # ---- entries that were written ----
 

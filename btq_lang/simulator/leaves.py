@@ -8,10 +8,10 @@ from __future__ import annotations
 from btq_lang.simulator.blackboard import STRING, UNTYPED, Value, parsed
 from btq_lang.simulator.decorators import sees_update
 from btq_lang.simulator.errors import EngineError
-from btq_lang.simulator.nodes import FAILURE, RUNNING, SUCCESS, SimulatedNode
+from btq_lang.simulator.nodes import FAILURE, RUNNING, SUCCESS, Machine, SimulatedNode
 from btq_lang.simulator.ports import key_of, read_text
 from btq_lang.simulator.scripts import holds, run_script
-from btq_lang.simulator.ticking import Machine, reset_status
+from btq_lang.simulator.ticking import reset_status
 
 
 def tick_always_success(machine: Machine, node: SimulatedNode) -> int:
@@ -85,7 +85,7 @@ def tick_set_blackboard(machine: Machine, node: SimulatedNode) -> int:
 
 def tick_custom(machine: Machine, node: SimulatedNode) -> int:
     """A leaf of the program: an action that has ended and was not reset keeps its result."""
-    if node.status in (SUCCESS, FAILURE) and machine.dialect.is_stateful(node):
+    if node.status in (SUCCESS, FAILURE) and node.is_stateful:
         return node.status
     return machine.program.tick(node)
 

@@ -6,17 +6,17 @@ Source: facts about BehaviorTree.CPP 4.6 to 4.10, seen in runs of the engine.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import Final
 
 from btq_lang.btcpp.document import Document, Element
-from btq_lang.catalog.nodes import BUILTINS, of_version
+from btq_lang.catalog.nodes import BUILTINS, inspects_children, of_version
 from btq_lang.catalog.versions import ONE_ASYNC_SEQUENCE
 from btq_lang.simulator.blackboard import DOUBLE, STRING, Board
 from btq_lang.simulator.errors import EngineError, NotModelled
-from btq_lang.simulator.nodes import SimulatedNode
+from btq_lang.simulator.kinds import kind_of
+from btq_lang.simulator.nodes import Machine, Program, SimulatedNode
 from btq_lang.simulator.ports import key_of
-from btq_lang.simulator.ticking import Machine, Program
 from btq_lang.simulator.versions import Dialect
 from btq_lang.syntax.script.parser import parse_script
 
@@ -28,6 +28,7 @@ def load(
     program: Program,
     changes: Callable[[SimulatedNode, int, int], None],
     board: Board | None = None,
+    stateful: Collection[str] = (),
 ) -> Machine:
     """The tree `main` of some documents, ready to be ticked.
 
@@ -35,20 +36,22 @@ def load(
         program: has the custom leaves.
         changes: called with each change of a status, and the status before.
         board: the root blackboard, with the entries that the program sets before it creates the tree.
+        stateful: the stateful actions of the program.
 
     Raises:
         EngineError: the engine refuses the tree.
         NotModelled: the tree has a node that is not known here.
     """
-    loader = _Loader(documents, dialect)
+    loader = _Loader(documents, dialect, stateful)
     return Machine(loader.tree(main, board or Board(), ""), dialect, program, changes)
 
 
 class _Loader:
-    def __init__(self, documents: list[Document], dialect: Dialect) -> None:
+    def __init__(self, documents: list[Document], dialect: Dialect, stateful: Collection[str]) -> None:
         tops = [element for document in documents for element in document.root.elements]
         self._trees: Final = {name: tree for tree in tops if tree.tag == "BehaviorTree" and (name := tree.get("ID"))}
         self._dialect: Final = dialect
+        self._stateful: Final = stateful
         self._open: Final[list[str]] = []
         self._last = 0  # uid
 
@@ -79,7 +82,9 @@ class _Loader:
         name = values.get("name", plain)
         path = prefix + values.get("name", f"{plain}::{self._last}")
         ports = {port: value for port, value in values.items() if not (port in _NO_PORTS or port.startswith("_"))}
-        node = SimulatedNode(self._last, "SubTree" if is_subtree else id_, name, path, ports, board)
+        registered = "SubTree" if is_subtree else id_
+        kind = kind_of(registered, any(element.elements), self._stateful)
+        node = SimulatedNode(self._last, registered, name, path, ports, board, kind)
         for attribute in ("_failureIf", "_successIf", "_skipIf", "_while"):
             if attribute in values:
                 node.conditions.append((attribute, parse_script(values[attribute])))
@@ -136,11 +141,14 @@ class _Loader:
 
 def _refuse_two_async(root: Element) -> None:
     for element in root.walk():
-        if element.tag == "ReactiveSequence":
-            asynchronous = [child for child in element.elements if child.tag == "AsyncSequence"]
-            if len(asynchronous) > 1:
-                line = element.source.count("\n", 0, element.start) + 1
-                raise EngineError(f"Error at line {line}: -> A ReactiveSequence cannot have more than one async child.")
+        if inspects_children(element.tag) and sum(map(_is_async_sequence, element.elements)) > 1:
+            line = element.source.count("\n", 0, element.start) + 1
+            raise EngineError(f"Error at line {line}: -> A {element.tag} cannot have more than one async child.")
+
+
+def _is_async_sequence(element: Element) -> bool:
+    kind = BUILTINS.get(element.tag)
+    return kind is not None and kind.flow == "sequence" and kind.pauses and not kind.keeps_place
 
 
 def _constant(text: str) -> int | float | None:

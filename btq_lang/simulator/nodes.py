@@ -1,15 +1,14 @@
-"""A node of a simulated tree: what it is, its status, and what it remembers between ticks."""
+"""A simulated tree: its nodes, with what they are, their status and what they remember between ticks."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final
+from collections.abc import Callable, Sequence
+from typing import Final, Protocol, TypeAlias
 
-from btq_lang.simulator.blackboard import Board
+from btq_lang.simulator.blackboard import Board, Value
+from btq_lang.simulator.versions import Dialect
 from btq_lang.syntax.script.tree import Script
-
-if TYPE_CHECKING:
-    from btq_lang.simulator.blackboard import Value
+from btq_lang.util.record import Record
 
 IDLE: Final = 0
 RUNNING: Final = 1
@@ -17,6 +16,16 @@ SUCCESS: Final = 2
 FAILURE: Final = 3
 SKIPPED: Final = 4  # a result, never a status
 STATUS_NAMES: Final = ("IDLE", "RUNNING", "SUCCESS", "FAILURE", "SKIPPED")
+
+
+class TickRules(Record):
+    """What all nodes of a registered name have in common; see `SimulatedNode`."""
+
+    flow: Flow
+    halt: Halt
+    is_decorator: bool = False
+    is_stateful: bool = False
+    yields: bool = False
 
 
 class SimulatedNode:
@@ -28,9 +37,14 @@ class SimulatedNode:
         path: its full path, as messages of the engine have it.
         ports: as written, or by default.
         board: the blackboard that it sees.
+        flow: what a tick does, by the node's kind.
+        halt: what a halt does, likewise.
+        is_decorator: its kind has one child.
+        is_stateful: it is an action of the program that begins, goes on and ends.
+        yields: it asks to be ticked again after a child that ended at once.
         conditions: `_failureIf`, `_successIf`, `_skipIf`, `_while`, as far as they are written.
         scripts: `_onSuccess`, `_onFailure`, `_post`, `_onHalted`, likewise, and `code` or `if`.
-        index: of the current child; of a Switch, -1 if none runs.
+        index: of the current child; of a node that chooses one at every tick, counted from 1, and 0 if none runs.
         count: how often a child has ended, failed or been tried.
         skipped: how many children have been skipped since it began.
         is_on: that it runs its child, is in its catch, or has ended for ever: what its function calls so.
@@ -46,9 +60,13 @@ class SimulatedNode:
         "completed",
         "conditions",
         "count",
+        "flow",
+        "halt",
         "id",
         "index",
+        "is_decorator",
         "is_on",
+        "is_stateful",
         "name",
         "path",
         "ports",
@@ -59,20 +77,29 @@ class SimulatedNode:
         "skipped",
         "status",
         "uid",
+        "yields",
     )
 
-    def __init__(self, uid: int, id_: str, name: str, path: str, ports: dict[str, str], board: Board) -> None:
+    def __init__(
+        self, uid: int, id_: str, name: str, path: str, ports: dict[str, str], board: Board, kind: TickRules
+    ) -> None:
+        """A node that has not been ticked."""
         self.uid: Final = uid
         self.id: Final = id_
         self.name: Final = name
         self.path: Final = path
         self.ports: Final = ports
         self.board: Final = board
+        self.flow: Final = kind.flow
+        self.halt: Final = kind.halt
+        self.is_decorator: Final = kind.is_decorator
+        self.is_stateful: Final = kind.is_stateful
+        self.yields: Final = kind.yields
         self.conditions: Final[list[tuple[str, Script]]] = []
         self.scripts: Final[dict[str, Script]] = {}
         self.children: Final[list[SimulatedNode]] = []
         self.status = IDLE
-        self.index = -1 if id_.startswith("Switch") else 0
+        self.index = 0
         self.count = 0
         self.skipped = 0
         self.is_on = False
@@ -101,7 +128,7 @@ class SimulatedNode:
         )
 
 
-def in_document_order(root: SimulatedNode) -> Sequence[SimulatedNode]:
+def _in_document_order(root: SimulatedNode) -> Sequence[SimulatedNode]:
     """A node and all below it, parents first."""
     nodes: list[SimulatedNode] = []
     stack = [root]
@@ -110,3 +137,41 @@ def in_document_order(root: SimulatedNode) -> Sequence[SimulatedNode]:
         nodes.append(node)
         stack += reversed(node.children)
     return nodes
+
+
+class Program(Protocol):
+    """The program that has registered the custom leaves."""
+
+    def tick(self, node: SimulatedNode) -> int:
+        """Tick a leaf of the program; its result."""
+
+    def halt(self, node: SimulatedNode) -> None:
+        """Halt a leaf that runs."""
+
+
+class Machine:
+    """A tree that can be ticked.
+
+    Attributes:
+        nodes: all of them, parents first.
+        changes: called with each change of a status, and the status before.
+        is_woken: a node has asked to be ticked again at once.
+    """
+
+    def __init__(
+        self,
+        root: SimulatedNode,
+        dialect: Dialect,
+        program: Program,
+        changes: Callable[[SimulatedNode, int, int], None],
+    ) -> None:
+        self.root: Final = root
+        self.nodes: Final = _in_document_order(root)
+        self.dialect: Final = dialect
+        self.program: Final = program
+        self.changes: Final = changes
+        self.is_woken = False
+
+
+Flow: TypeAlias = Callable[[Machine, SimulatedNode], int]
+Halt: TypeAlias = Callable[[Machine, SimulatedNode], None]

@@ -62,7 +62,7 @@ def read_status(node: SimulatedNode, port: str) -> int | None:
 
 
 def write(node: SimulatedNode, port: str, value: Value, type_: str) -> None:
-    """Write through an output port; nothing happens if it is no entry."""
+    """Write through an output port; nothing happens if it is a literal."""
     key = key_of(node.ports.get(port, ""), port)
     if key is not None:
         node.board.write(key, value, type_)

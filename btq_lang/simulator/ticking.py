@@ -5,84 +5,11 @@ Source: facts about BehaviorTree.CPP 4.6 to 4.10, seen in runs of the engine.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import Final
 
 from btq_lang.simulator.errors import EngineError
-from btq_lang.simulator.nodes import (
-    FAILURE,
-    IDLE,
-    RUNNING,
-    SKIPPED,
-    SUCCESS,
-    SimulatedNode,
-    in_document_order,
-)
+from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Machine, SimulatedNode
 from btq_lang.simulator.scripts import holds, run_script
-
-if TYPE_CHECKING:
-    from btq_lang.simulator.versions import Dialect
-
-
-class Program(Protocol):
-    """The program that has registered the custom leaves."""
-
-    def tick(self, node: SimulatedNode) -> int:
-        """Tick a leaf of the program; its result."""
-
-    def halt(self, node: SimulatedNode) -> None:
-        """Halt a leaf that runs."""
-
-
-class Machine:
-    """A tree that can be ticked.
-
-    Attributes:
-        changes: called with each change of a status, and the status before.
-        is_woken: a node has asked to be ticked again at once.
-    """
-
-    def __init__(
-        self,
-        root: SimulatedNode,
-        dialect: Dialect,
-        program: Program,
-        changes: Callable[[SimulatedNode, int, int], None],
-    ) -> None:
-        self.root: Final = root
-        self.nodes: Final = in_document_order(root)
-        self.dialect: Final = dialect
-        self.program: Final = program
-        self.changes: Final = changes
-        self.is_woken = False
-
-    def tick_exactly_once(self) -> int:
-        """Tick the tree; its result.
-
-        Raises:
-            EngineError: as in the engine; nothing is reset then.
-        """
-        result = execute_tick(self, self.root)
-        if result in (SUCCESS, FAILURE):
-            reset_status(self, self.root)
-        return result
-
-    def tick_once(self) -> int:
-        """Tick the tree, and again at once while a node asks for that."""
-        result = execute_tick(self, self.root)
-        while result == RUNNING and self.is_woken:
-            self.is_woken = False
-            result = execute_tick(self, self.root)
-        if result in (SUCCESS, FAILURE):
-            reset_status(self, self.root)
-        return result
-
-    def halt_tree(self) -> None:
-        """Halt the root, and then each node, running or not."""
-        halt_node(self, self.root)
-        for node in self.nodes:
-            halt_node(self, node)
-        reset_status(self, self.root)
 
 
 def execute_tick(machine: Machine, node: SimulatedNode) -> int:
@@ -90,7 +17,7 @@ def execute_tick(machine: Machine, node: SimulatedNode) -> int:
     result = _by_condition(machine, node) if node.conditions else IDLE
     if result == IDLE:
         try:
-            result = machine.dialect.flow(node)(machine, node)
+            result = node.flow(machine, node)
         except EngineError as error:
             if error.is_wrapped or not machine.dialect.names_thrower:
                 raise
@@ -100,7 +27,7 @@ def execute_tick(machine: Machine, node: SimulatedNode) -> int:
         _run(machine, node, "_post")
     if result != SKIPPED:
         set_status(machine, node, result)
-    if machine.dialect.is_decorator(node) and node.child.status in (SUCCESS, FAILURE):
+    if node.is_decorator and node.child.status in (SUCCESS, FAILURE):
         reset_status(machine, node.child)
     return result
 
@@ -155,7 +82,7 @@ def reset_status(machine: Machine, node: SimulatedNode) -> None:
 
 def halt_node(machine: Machine, node: SimulatedNode) -> None:
     """Halt a node, whatever its status, and run its `_onHalted`."""
-    machine.dialect.halt(node)(machine, node)
+    node.halt(machine, node)
     _run(machine, node, "_onHalted")
 
 

@@ -16,6 +16,7 @@ from typing import Any
 
 from btq_lang.btcpp.reader import read
 from btq_lang.simulator.blackboard import DOUBLE, STRING, Board
+from btq_lang.simulator.drivers import halt_tree, tick_exactly_once
 from btq_lang.simulator.errors import EngineError
 from btq_lang.simulator.loading import load
 from btq_lang.simulator.nodes import FAILURE, RUNNING, SKIPPED, SUCCESS, SimulatedNode
@@ -68,12 +69,12 @@ def run(case: Case, version: str) -> Case:
     assert document is not None
     error = None
     try:
-        dialect = Dialect(version, frozenset({"Act"}))
-        machine = load([document], "Main", dialect, ScriptedLeaves(case["skills"]), see, board)
+        leaves = ScriptedLeaves(case["skills"])
+        machine = load([document], "Main", Dialect(version), leaves, see, board, stateful=("Act",))
         while tick < case["ticks"]:
-            root.append(machine.tick_exactly_once())
+            root.append(tick_exactly_once(machine))
             tick += 1
-        machine.halt_tree()
+        halt_tree(machine)
     except EngineError as thrown:
         error = str(thrown)
     after = {key: entry.value for key, entry in board.entries.items() if isinstance(entry.value, (int, float, str))}
