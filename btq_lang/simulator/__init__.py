@@ -12,6 +12,7 @@ guessed.
     ticking.py      one tick of a node, its conditions, and how it is halted
     controls.py     what each control node does with its children
     decorators.py   what each decorator does with its child
+    timers.py       nodes that wait, and the time
     leaves.py       the engine's own leaves, and those of a program
     kinds.py        which function is which node's
     loading.py      XML to nodes

@@ -57,7 +57,7 @@ def _in_order(machine: Machine, node: SimulatedNode, ends: int, goes_on: int) ->
         node.index += 1
         if result == SKIPPED:
             node.skipped += 1
-        elif node.yields and before == IDLE and node.index < len(node.children):
+        elif node.rules.yields and before == IDLE and node.index < len(node.children):
             machine.is_woken = True
             return RUNNING
     all_skipped = node.skipped == len(node.children) if counts_skips else node.is_on

@@ -6,14 +6,14 @@ from collections.abc import Collection
 from typing import Final
 
 from btq_lang.catalog.nodes import BUILTINS
-from btq_lang.simulator import controls, decorators, leaves
+from btq_lang.simulator import controls, decorators, leaves, timers
 from btq_lang.simulator.errors import NotModelled
 from btq_lang.simulator.nodes import Flow, Halt, TickRules
 from btq_lang.simulator.ticking import halt_children
 
 
-def kind_of(id_: str, has_children: bool, stateful: Collection[str]) -> TickRules:
-    """The kind of a registered name.
+def rules_of(id_: str, has_children: bool, stateful: Collection[str]) -> TickRules:
+    """The rules of a registered name.
 
     Args:
         has_children: whether the written node has some.
@@ -22,9 +22,9 @@ def kind_of(id_: str, has_children: bool, stateful: Collection[str]) -> TickRule
     Raises:
         NotModelled: it has children, and the engine does not have it.
     """
-    kind = _KINDS.get(id_)
-    if kind is not None:
-        return kind
+    rules = _RULES.get(id_)
+    if rules is not None:
+        return rules
     if has_children:
         raise NotModelled(f"what {id_} does with its children is unknown")
     return _STATEFUL if id_ in stateful else _LEAF
@@ -78,7 +78,13 @@ _HALTS: Final[dict[str, Halt]] = {
     **dict.fromkeys(("Repeat", "RetryUntilSuccessful"), decorators.halt_counting),
     **dict.fromkeys(("SkipUnlessUpdated", "WaitValueUpdate"), decorators.halt_updated),
 }
-_KINDS: Final = {
+_TIMED: Final[dict[str, TickRules]] = {
+    "Timeout": TickRules(timers.tick_timeout, timers.halt_timed, is_decorator=True, is_timed=True),
+    "Delay": TickRules(timers.tick_delay, timers.halt_timed, is_decorator=True, is_timed=True),
+    "Sleep": TickRules(timers.tick_sleep, timers.halt_sleep, is_timed=True),
+}
+_RULES: Final = {
+    **_TIMED,
     **{
         id_: TickRules(flow, _HALTS.get(id_, halt_children), yields=BUILTINS[id_].pauses)
         for id_, flow in _CONTROLS.items()

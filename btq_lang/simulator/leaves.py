@@ -85,7 +85,7 @@ def tick_set_blackboard(machine: Machine, node: SimulatedNode) -> int:
 
 def tick_custom(machine: Machine, node: SimulatedNode) -> int:
     """A leaf of the program: an action that has ended and was not reset keeps its result."""
-    if node.status in (SUCCESS, FAILURE) and node.is_stateful:
+    if node.status in (SUCCESS, FAILURE) and node.rules.is_stateful:
         return node.status
     return machine.program.tick(node)
 

@@ -14,7 +14,7 @@ from btq_lang.catalog.nodes import BUILTINS, inspects_children, of_version
 from btq_lang.catalog.versions import ONE_ASYNC_SEQUENCE
 from btq_lang.simulator.blackboard import DOUBLE, STRING, Board
 from btq_lang.simulator.errors import EngineError, NotModelled
-from btq_lang.simulator.kinds import kind_of
+from btq_lang.simulator.kinds import rules_of
 from btq_lang.simulator.nodes import Machine, Program, SimulatedNode
 from btq_lang.simulator.ports import key_of
 from btq_lang.simulator.versions import Dialect
@@ -83,8 +83,8 @@ class _Loader:
         path = prefix + values.get("name", f"{plain}::{self._last}")
         ports = {port: value for port, value in values.items() if not (port in _NO_PORTS or port.startswith("_"))}
         registered = "SubTree" if is_subtree else id_
-        kind = kind_of(registered, any(element.elements), self._stateful)
-        node = SimulatedNode(self._last, registered, name, path, ports, board, kind)
+        rules = rules_of(registered, any(element.elements), self._stateful)
+        node = SimulatedNode(self._last, registered, name, path, ports, board, rules)
         for attribute in ("_failureIf", "_successIf", "_skipIf", "_while"):
             if attribute in values:
                 node.conditions.append((attribute, parse_script(values[attribute])))

@@ -19,13 +19,23 @@ STATUS_NAMES: Final = ("IDLE", "RUNNING", "SUCCESS", "FAILURE", "SKIPPED")
 
 
 class TickRules(Record):
-    """What all nodes of a registered name have in common; see `SimulatedNode`."""
+    """What all nodes of a kind have in common.
+
+    Attributes:
+        flow: what a tick of a node does.
+        halt: what a halt does.
+        is_decorator: it has one child.
+        is_stateful: it is an action of the program that begins, goes on and ends.
+        is_timed: it may have a timer.
+        yields: it asks to be ticked again after a child that ended at once.
+    """
 
     flow: Flow
     halt: Halt
     is_decorator: bool = False
     is_stateful: bool = False
     yields: bool = False
+    is_timed: bool = False
 
 
 class SimulatedNode:
@@ -37,11 +47,7 @@ class SimulatedNode:
         path: its full path, as messages of the engine have it.
         ports: as written, or by default.
         board: the blackboard that it sees.
-        flow: what a tick does, by the node's kind.
-        halt: what a halt does, likewise.
-        is_decorator: its kind has one child.
-        is_stateful: it is an action of the program that begins, goes on and ends.
-        yields: it asks to be ticked again after a child that ended at once.
+        rules: what it does, by its kind.
         conditions: `_failureIf`, `_successIf`, `_skipIf`, `_while`, as far as they are written.
         scripts: `_onSuccess`, `_onFailure`, `_post`, `_onHalted`, likewise, and `code` or `if`.
         index: of the current child; of a node that chooses one at every tick, counted from 1, and 0 if none runs.
@@ -51,37 +57,18 @@ class SimulatedNode:
         completed: the children that have ended.
         seen: the number of writes that it knows of an entry.
         result: that of its only run.
+        due: when its timer goes off, in milliseconds; negative if it has none.
+        has_fired: its timer has gone off since it began.
         queue: what is left to loop over; None before the first start.
     """
 
     __slots__ = (
-        "board",
-        "children",
-        "completed",
-        "conditions",
-        "count",
-        "flow",
-        "halt",
-        "id",
-        "index",
-        "is_decorator",
-        "is_on",
-        "is_stateful",
-        "name",
-        "path",
-        "ports",
-        "queue",
-        "result",
-        "scripts",
-        "seen",
-        "skipped",
-        "status",
-        "uid",
-        "yields",
+        *("board", "children", "completed", "conditions", "count", "due", "has_fired", "id", "index", "is_on", "name"),
+        *("path", "ports", "queue", "result", "rules", "scripts", "seen", "skipped", "status", "uid"),
     )
 
     def __init__(
-        self, uid: int, id_: str, name: str, path: str, ports: dict[str, str], board: Board, kind: TickRules
+        self, uid: int, id_: str, name: str, path: str, ports: dict[str, str], board: Board, rules: TickRules
     ) -> None:
         """A node that has not been ticked."""
         self.uid: Final = uid
@@ -90,11 +77,7 @@ class SimulatedNode:
         self.path: Final = path
         self.ports: Final = ports
         self.board: Final = board
-        self.flow: Final = kind.flow
-        self.halt: Final = kind.halt
-        self.is_decorator: Final = kind.is_decorator
-        self.is_stateful: Final = kind.is_stateful
-        self.yields: Final = kind.yields
+        self.rules: Final = rules
         self.conditions: Final[list[tuple[str, Script]]] = []
         self.scripts: Final[dict[str, Script]] = {}
         self.children: Final[list[SimulatedNode]] = []
@@ -106,6 +89,8 @@ class SimulatedNode:
         self.completed: frozenset[int] = frozenset()
         self.seen = 0
         self.result = IDLE
+        self.due = -1
+        self.has_fired = False
         self.queue: tuple[Value, ...] | None = None
 
     @property
@@ -124,6 +109,8 @@ class SimulatedNode:
             self.completed,
             self.seen,
             self.result,
+            self.due,
+            self.has_fired,
             self.queue,
         )
 
@@ -154,6 +141,8 @@ class Machine:
 
     Attributes:
         nodes: all of them, parents first.
+        timed: those that may have a timer.
+        now: the time, in milliseconds since the start of the program.
         changes: called with each change of a status, and the status before.
         is_woken: a node has asked to be ticked again at once.
     """
@@ -167,6 +156,8 @@ class Machine:
     ) -> None:
         self.root: Final = root
         self.nodes: Final = _in_document_order(root)
+        self.timed: Final = [node for node in self.nodes if node.rules.is_timed]
+        self.now = 0
         self.dialect: Final = dialect
         self.program: Final = program
         self.changes: Final = changes

@@ -17,7 +17,7 @@ def execute_tick(machine: Machine, node: SimulatedNode) -> int:
     result = _by_condition(machine, node) if node.conditions else IDLE
     if result == IDLE:
         try:
-            result = node.flow(machine, node)
+            result = node.rules.flow(machine, node)
         except EngineError as error:
             if error.is_wrapped or not machine.dialect.names_thrower:
                 raise
@@ -27,7 +27,7 @@ def execute_tick(machine: Machine, node: SimulatedNode) -> int:
         _run(machine, node, "_post")
     if result != SKIPPED:
         set_status(machine, node, result)
-    if node.is_decorator and node.child.status in (SUCCESS, FAILURE):
+    if node.rules.is_decorator and node.child.status in (SUCCESS, FAILURE):
         reset_status(machine, node.child)
     return result
 
@@ -82,7 +82,7 @@ def reset_status(machine: Machine, node: SimulatedNode) -> None:
 
 def halt_node(machine: Machine, node: SimulatedNode) -> None:
     """Halt a node, whatever its status, and run its `_onHalted`."""
-    node.halt(machine, node)
+    node.rules.halt(machine, node)
     _run(machine, node, "_onHalted")
 
 
