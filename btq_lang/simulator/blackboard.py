@@ -128,6 +128,15 @@ class Board:
         entry.value = value
         entry.number += 1
 
+    def memory(self, counts_writes: bool) -> tuple[object, ...]:
+        """Its own entries, as a value; `counts_writes`: with the numbers of writes."""
+        return tuple(
+            [
+                (key, entry.type, entry.value, entry.number if counts_writes else 0)
+                for key, entry in self.entries.items()
+            ]
+        )
+
     def define(self, key: str, value: Value, type_: str) -> None:
         """Give this blackboard an entry of its own, whatever its parent has."""
         self.entries[key] = BoardEntry(type_, value, 1)

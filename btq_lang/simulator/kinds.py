@@ -83,12 +83,16 @@ _TIMED: Final[dict[str, TickRules]] = {
     "Delay": TickRules(timers.tick_delay, timers.halt_timed, is_decorator=True, is_timed=True),
     "Sleep": TickRules(timers.tick_sleep, timers.halt_sleep, is_timed=True),
 }
+_COUNTING: Final = ("SkipUnlessUpdated", "WaitValueUpdate", "WasEntryUpdated")
 _RULES: Final = {
     **_TIMED,
     **{
         id_: TickRules(flow, _HALTS.get(id_, halt_children), yields=BUILTINS[id_].pauses)
         for id_, flow in _CONTROLS.items()
     },
-    **{id_: TickRules(flow, _HALTS.get(id_, halt_children), is_decorator=True) for id_, flow in _DECORATORS.items()},
-    **{id_: TickRules(flow, leaves.halt_leaf) for id_, flow in _LEAVES.items()},
+    **{
+        id_: TickRules(flow, _HALTS.get(id_, halt_children), is_decorator=True, counts_writes=id_ in _COUNTING)
+        for id_, flow in _DECORATORS.items()
+    },
+    **{id_: TickRules(flow, leaves.halt_leaf, counts_writes=id_ in _COUNTING) for id_, flow in _LEAVES.items()},
 }

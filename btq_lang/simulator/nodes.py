@@ -27,6 +27,7 @@ class TickRules(Record):
         is_decorator: it has one child.
         is_stateful: it is an action of the program that begins, goes on and ends.
         is_timed: it may have a timer.
+        counts_writes: what it does depends on how often an entry was written.
         yields: it asks to be ticked again after a child that ended at once.
     """
 
@@ -36,6 +37,7 @@ class TickRules(Record):
     is_stateful: bool = False
     yields: bool = False
     is_timed: bool = False
+    counts_writes: bool = False
 
 
 class SimulatedNode:
@@ -135,6 +137,12 @@ class Program(Protocol):
     def halt(self, node: SimulatedNode) -> None:
         """Halt a leaf that runs."""
 
+    def next_change(self, now: int) -> int:
+        """When a leaf ends or the world changes, in milliseconds, later than `now`; negative: never."""
+
+    def memory(self) -> object:
+        """All of the program that changes, as a value."""
+
 
 class Machine:
     """A tree that can be ticked.
@@ -162,6 +170,18 @@ class Machine:
         self.program: Final = program
         self.changes: Final = changes
         self.is_woken = False
+        self._counts_writes: Final = any(node.rules.counts_writes for node in self.nodes)
+
+    def state(self) -> tuple[object, ...]:
+        """Everything on which the next tick depends but the time, as a value."""
+        boards = {id(node.board): node.board for node in self.nodes}
+        counts = self._counts_writes
+        return (
+            self.is_woken,
+            tuple([node.memory() for node in self.nodes]),
+            tuple([board.memory(counts) for board in (self.root.board.root, *boards.values())]),
+            self.program.memory(),
+        )
 
 
 Flow: TypeAlias = Callable[[Machine, SimulatedNode], int]

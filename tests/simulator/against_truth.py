@@ -52,6 +52,12 @@ class ScriptedLeaves:
     def halt(self, node: SimulatedNode) -> None:
         pass
 
+    def next_change(self, now: int) -> int:
+        return -1
+
+    def memory(self) -> object:
+        return tuple(self.starts.items()), tuple(self.left.items())
+
 
 def run(case: Case, version: str) -> Case:
     """What the simulator does with a case: root, changes, error and entries_after."""
