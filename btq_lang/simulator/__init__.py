@@ -14,6 +14,7 @@ guessed.
     decorators.py   what each decorator does with its child
     timers.py       nodes that wait, and the time
     leaves.py       the engine's own leaves, and those of a program
+    skills.py       what the leaves of a program do, as given
     kinds.py        which function is which node's
     loading.py      XML to nodes
     drivers.py      how a program ticks its tree
