@@ -14,6 +14,11 @@ guessed.
     decorators.py   what each decorator does with its child
     timers.py       nodes that wait, and the time
     leaves.py       the engine's own leaves, and those of a program
+    world.py        what nodes of Nav2 read beside entries and the time
+    nav2.py         what Nav2's control nodes and decorators do
+    nav2_conditions.py  what its conditions answer
+    nav2_inputs.py  the goals and paths that both read
+    nav2_models.py  the ports of its nodes, by distribution
     skills.py       what the leaves of a program do, as given
     kinds.py        which function is which node's
     loading.py      XML to nodes

@@ -175,6 +175,13 @@ def copied(value: Value, old: Value | None) -> Value:
     return whole(value)
 
 
+def type_of(value: Value | None) -> str:
+    """The type that a value has in an entry without one."""
+    if value is None:
+        return UNTYPED
+    return STRING if isinstance(value, str) else DOUBLE if isinstance(value, float) else INT64
+
+
 def whole(value: Value) -> int:
     """A number without a fraction.
 

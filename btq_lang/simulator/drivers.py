@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from btq_lang.simulator.nodes import FAILURE, RUNNING, SUCCESS, Machine
 from btq_lang.simulator.ticking import execute_tick, halt_node, reset_status
-from btq_lang.simulator.timers import NEVER, advance, next_due
+from btq_lang.simulator.timers import NEVER, advance, next_due, next_passing
 
 
 def tick_exactly_once(machine: Machine) -> int:
@@ -59,7 +59,11 @@ def tick_while_running(machine: Machine, limit: int, period: int = 10) -> int:
     before: object = None
     while (result := tick_once(machine)) == RUNNING and machine.now < limit:
         after = machine.state()
-        wakes, changes = next_due(machine), machine.program.next_change(machine.now)
+        wakes = next_due(machine)
+        changes = min(
+            [time for time in (machine.program.next_change(machine.now), next_passing(machine)) if time != NEVER],
+            default=NEVER,
+        )
         if after != before:
             before = after
             step = machine.now + period

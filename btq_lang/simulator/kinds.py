@@ -6,23 +6,24 @@ from collections.abc import Collection
 from typing import Final
 
 from btq_lang.catalog.nodes import BUILTINS
-from btq_lang.simulator import controls, decorators, leaves, timers
+from btq_lang.simulator import controls, decorators, leaves, nav2, nav2_conditions, timers
 from btq_lang.simulator.errors import NotModelled
 from btq_lang.simulator.nodes import Flow, Halt, TickRules
 from btq_lang.simulator.ticking import halt_children
 
 
-def rules_of(id_: str, has_children: bool, stateful: Collection[str]) -> TickRules:
+def rules_of(id_: str, has_children: bool, stateful: Collection[str], nav2: Collection[str] = ()) -> TickRules:
     """The rules of a registered name.
 
     Args:
+        nav2: the nodes of Nav2 that the program registers.
         has_children: whether the written node has some.
         stateful: the stateful actions of the program.
 
     Raises:
         NotModelled: it has children, and the engine does not have it.
     """
-    rules = _RULES.get(id_)
+    rules = _NAV2.get(id_) if id_ in nav2 else _RULES.get(id_)
     if rules is not None:
         return rules
     if has_children:
@@ -95,4 +96,35 @@ _RULES: Final = {
         for id_, flow in _DECORATORS.items()
     },
     **{id_: TickRules(flow, leaves.halt_leaf, counts_writes=id_ in _COUNTING) for id_, flow in _LEAVES.items()},
+}
+_NAV2: Final = {
+    "PipelineSequence": TickRules(nav2.tick_pipeline, controls.halt_in_order),
+    "RecoveryNode": TickRules(nav2.tick_recovery, nav2.halt_turns),
+    "RoundRobin": TickRules(nav2.tick_round_robin, nav2.halt_turns),
+    "NonblockingSequence": TickRules(nav2.tick_nonblocking, halt_children),
+    "PersistentSequence": TickRules(nav2.tick_persistent, halt_children),
+    "PauseResumeController": TickRules(nav2.tick_pause_resume, controls.halt_in_order),
+    "RateController": TickRules(nav2.tick_rate_controller, halt_children, is_decorator=True, watches_time=True),
+    "SpeedController": TickRules(nav2.tick_speed_controller, halt_children, is_decorator=True, watches_time=True),
+    **{
+        id_: TickRules(flow, halt_children, is_decorator=True)
+        for id_, flow in (
+            ("DistanceController", nav2.tick_distance_controller),
+            ("GoalUpdatedController", nav2.tick_goal_updated_controller),
+            ("PathLongerOnApproach", nav2.tick_path_longer),
+            ("SingleTrigger", nav2.tick_single_trigger),
+        )
+    },
+    "TimeExpired": TickRules(nav2_conditions.tick_time_expired, leaves.halt_leaf, watches_time=True),
+    "PathExpiringTimer": TickRules(nav2_conditions.tick_path_expiring_timer, leaves.halt_leaf, watches_time=True),
+    **{
+        id_: TickRules(flow, leaves.halt_leaf)
+        for id_, flow in (
+            ("GoalUpdated", nav2_conditions.tick_goal_updated),
+            ("GlobalUpdatedGoal", nav2_conditions.tick_global_updated_goal),
+            ("DistanceTraveled", nav2_conditions.tick_distance_traveled),
+            ("InitialPoseReceived", nav2_conditions.tick_initial_pose_received),
+            ("AreErrorCodesPresent", nav2_conditions.tick_error_codes),
+        )
+    },
 }

@@ -5,7 +5,7 @@ Source: facts about BehaviorTree.CPP 4.6 to 4.10, seen in runs of the engine.
 
 from __future__ import annotations
 
-from btq_lang.simulator.blackboard import STRING, UNTYPED, Value, parsed
+from btq_lang.simulator.blackboard import STRING, UNTYPED, Value, parsed, type_of
 from btq_lang.simulator.decorators import sees_update
 from btq_lang.simulator.errors import EngineError
 from btq_lang.simulator.nodes import FAILURE, RUNNING, SUCCESS, Machine, SimulatedNode
@@ -64,7 +64,7 @@ def tick_set_blackboard(machine: Machine, node: SimulatedNode) -> int:
             raise EngineError("Can't find the port referred by [value]")
         if target is None:
             target = node.board.create(key, source.type)
-        value, type_ = source.value, source.type
+        value, type_ = source.value, source.type or type_of(source.value)
     if not machine.dialect.counts_copies:  # up to 4.6
         if source_key is None or target is None:
             node.board.write(key, written, STRING)

@@ -10,14 +10,18 @@ from collections.abc import Callable, Collection, Mapping
 from typing import Final
 
 from btq_lang.btcpp.document import Document, Element
+from btq_lang.catalog.nav2.creation import is_read_once
 from btq_lang.catalog.nodes import BUILTINS, inspects_children, of_version
 from btq_lang.catalog.versions import ONE_ASYNC_SEQUENCE
 from btq_lang.simulator.blackboard import DOUBLE, STRING, Board
 from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.kinds import rules_of
+from btq_lang.simulator.nav2_models import ports_in
 from btq_lang.simulator.nodes import Machine, Program, SimulatedNode
-from btq_lang.simulator.ports import key_of
+from btq_lang.simulator.ports import key_of, read
+from btq_lang.simulator.scripts import text_of
 from btq_lang.simulator.versions import Dialect
+from btq_lang.simulator.world import World
 from btq_lang.syntax.script.parser import parse_script
 
 
@@ -29,6 +33,7 @@ def load(
     changes: Callable[[SimulatedNode, int, int], None],
     board: Board | None = None,
     stateful: Collection[str] = (),
+    world: World | None = None,
 ) -> Machine:
     """The tree `main` of some documents, ready to be ticked.
 
@@ -37,13 +42,14 @@ def load(
         changes: called with each change of a status, and the status before.
         board: the root blackboard, with the entries that the program sets before it creates the tree.
         stateful: the stateful actions of the program.
+        world: what nodes of Nav2 read beside entries and the time.
 
     Raises:
         EngineError: the engine refuses the tree.
         NotModelled: the tree has a node that is not known here.
     """
     loader = _Loader(documents, dialect, stateful)
-    return Machine(loader.tree(main, board or Board(), ""), dialect, program, changes)
+    return Machine(loader.tree(main, board or Board(), ""), dialect, program, changes, world or World())
 
 
 class _Loader:
@@ -52,6 +58,7 @@ class _Loader:
         self._trees: Final = {name: tree for tree in tops if tree.tag == "BehaviorTree" and (name := tree.get("ID"))}
         self._dialect: Final = dialect
         self._stateful: Final = stateful
+        self._nav2: Final = ports_in(dialect.nav2) if dialect.nav2 else {}
         self._open: Final[list[str]] = []
         self._last = 0  # uid
 
@@ -83,7 +90,7 @@ class _Loader:
         path = prefix + values.get("name", f"{plain}::{self._last}")
         ports = {port: value for port, value in values.items() if not (port in _NO_PORTS or port.startswith("_"))}
         registered = "SubTree" if is_subtree else id_
-        rules = rules_of(registered, any(element.elements), self._stateful)
+        rules = rules_of(registered, any(element.elements), self._stateful, self._nav2)
         node = SimulatedNode(self._last, registered, name, path, ports, board, rules)
         for attribute in ("_failureIf", "_successIf", "_skipIf", "_while"):
             if attribute in values:
@@ -120,7 +127,8 @@ class _Loader:
     def _declare(self, node: SimulatedNode) -> None:
         """Create the entries of a built-in's ports, and fill in its defaults."""
         kind = BUILTINS.get(node.id)
-        for port in kind.ports if kind is not None else ():
+        ports = self._nav2.get(node.id) if kind is None else kind.ports
+        for port in ports or ():
             declared = of_version(port, self._dialect.version)
             written = node.ports.get(port.name)
             if written is None:
@@ -128,7 +136,9 @@ class _Loader:
                     node.ports[port.name] = declared.default
             elif (key := key_of(written, port.name)) is not None:
                 node.board.create(key, _TYPES.get(declared.type, declared.type))
-        if kind is None:
+                if kind is None and is_read_once(self._dialect.nav2, node.id, port.name, node.ports):
+                    _read_once(node, port.name)
+        if ports is None:
             for name, written in node.ports.items():
                 if (key := key_of(written, name)) is not None:
                     node.board.create(key)
@@ -137,6 +147,14 @@ class _Loader:
                 if key_of(node.ports[name], name) is not None:
                     raise NotModelled(f"the script of {node.path} is an entry")
                 node.scripts[name] = parse_script(node.ports[name])
+
+
+def _read_once(node: SimulatedNode, port: str) -> None:
+    """Give a port the value that its entry has now."""
+    value = read(node, port)
+    if value is None:
+        raise NotModelled(f"the port {port} of {node.path} is read when the tree is created, and its entry is empty")
+    node.ports[port] = text_of(value)
 
 
 def _refuse_two_async(root: Element) -> None:

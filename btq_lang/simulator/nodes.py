@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Final, Protocol, TypeAlias
+from typing import Any, Final, Protocol, TypeAlias
 
 from btq_lang.simulator.blackboard import Board, Value
 from btq_lang.simulator.versions import Dialect
+from btq_lang.simulator.world import World
 from btq_lang.syntax.script.tree import Script
 from btq_lang.util.record import Record
 
@@ -27,6 +28,7 @@ class TickRules(Record):
         is_decorator: it has one child.
         is_stateful: it is an action of the program that begins, goes on and ends.
         is_timed: it may have a timer.
+        watches_time: it may wait for a time to pass, without a timer.
         counts_writes: what it does depends on how often an entry was written.
         yields: it asks to be ticked again after a child that ended at once.
     """
@@ -37,6 +39,7 @@ class TickRules(Record):
     is_stateful: bool = False
     yields: bool = False
     is_timed: bool = False
+    watches_time: bool = False
     counts_writes: bool = False
 
 
@@ -59,14 +62,15 @@ class SimulatedNode:
         completed: the children that have ended.
         seen: the number of writes that it knows of an entry.
         result: that of its only run.
-        due: when its timer goes off, in milliseconds; negative if it has none.
+        due: when its timer goes off, or the time has passed for which it waits, in milliseconds; negative if never.
         has_fired: its timer has gone off since it began.
         queue: what is left to loop over; None before the first start.
+        kept: what it keeps to compare with later: a period, a position, goals, a path.
     """
 
     __slots__ = (
-        *("board", "children", "completed", "conditions", "count", "due", "has_fired", "id", "index", "is_on", "name"),
-        *("path", "ports", "queue", "result", "rules", "scripts", "seen", "skipped", "status", "uid"),
+        *("board", "children", "completed", "conditions", "count", "due", "has_fired", "id", "index", "is_on", "kept"),
+        *("name", "path", "ports", "queue", "result", "rules", "scripts", "seen", "skipped", "status", "uid"),
     )
 
     def __init__(
@@ -94,6 +98,7 @@ class SimulatedNode:
         self.due = -1
         self.has_fired = False
         self.queue: tuple[Value, ...] | None = None
+        self.kept: tuple[Any, ...] = ()
 
     @property
     def child(self) -> SimulatedNode:
@@ -114,6 +119,7 @@ class SimulatedNode:
             self.due,
             self.has_fired,
             self.queue,
+            self.kept,
         )
 
 
@@ -150,8 +156,10 @@ class Machine:
     Attributes:
         nodes: all of them, parents first.
         timed: those that may have a timer.
+        watching: those that may wait for a time to pass, without a timer.
         now: the time, in milliseconds since the start of the program.
         changes: called with each change of a status, and the status before.
+        world: what nodes read beside entries and the time.
         is_woken: a node has asked to be ticked again at once.
     """
 
@@ -161,14 +169,17 @@ class Machine:
         dialect: Dialect,
         program: Program,
         changes: Callable[[SimulatedNode, int, int], None],
+        world: World,
     ) -> None:
         self.root: Final = root
         self.nodes: Final = _in_document_order(root)
         self.timed: Final = [node for node in self.nodes if node.rules.is_timed]
+        self.watching: Final = [node for node in self.nodes if node.rules.watches_time]
         self.now = 0
         self.dialect: Final = dialect
         self.program: Final = program
         self.changes: Final = changes
+        self.world: Final = world
         self.is_woken = False
         self._counts_writes: Final = any(node.rules.counts_writes for node in self.nodes)
 
@@ -180,6 +191,7 @@ class Machine:
             self.is_woken,
             tuple([node.memory() for node in self.nodes]),
             tuple([board.memory(counts) for board in (self.root.board.root, *boards.values())]),
+            self.world.memory(),
             self.program.memory(),
         )
 

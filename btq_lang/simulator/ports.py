@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from btq_lang.simulator.blackboard import Value, fits, parsed
-from btq_lang.simulator.errors import EngineError
+from btq_lang.simulator.blackboard import DOUBLE, Value, fits, parsed
+from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.nodes import FAILURE, RUNNING, SKIPPED, SUCCESS, SimulatedNode
 
 
@@ -37,6 +37,25 @@ def read_whole(node: SimulatedNode, port: str) -> int | None:
     except EngineError:
         return None
     return int(number) if number is not None and fits(float(number), "int") else None
+
+
+def read_unsigned(node: SimulatedNode, port: str, wraps_negative: bool) -> int | None:
+    """The number at a port that may not be negative; `wraps_negative`: -1 is the largest one.  None: there is none."""
+    number = read_whole(node, port)
+    return number if number is None or number >= 0 else number % (1 << 32) if wraps_negative else None
+
+
+def read_real(node: SimulatedNode, port: str) -> float:
+    """The real number at a port.
+
+    Raises:
+        NotModelled: there is none.
+    """
+    value = read(node, port)
+    try:
+        return float(parsed(value, DOUBLE) if isinstance(value, str) else value if value is not None else "")
+    except (EngineError, ValueError):
+        raise NotModelled(f"the port {port} of {node.path} has no number when it is read") from None
 
 
 def read_text(node: SimulatedNode, port: str) -> str | None:

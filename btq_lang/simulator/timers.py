@@ -87,9 +87,26 @@ def halt_sleep(machine: Machine, node: SimulatedNode) -> None:
     reset_status(machine, node)
 
 
+def after(machine: Machine, seconds: float) -> int:
+    """The first millisecond at which so many seconds from now have passed."""
+    wait = max(min(_ENDLESS, seconds * 1_000), 0.0)
+    whole = round(wait)
+    return machine.now + whole + (whole / 1_000 < seconds and wait < _ENDLESS)
+
+
+def has_passed(machine: Machine, node: SimulatedNode) -> bool:
+    """Whether the time has passed for which a node waits; it has if the node never began to wait."""
+    return node.due <= machine.now
+
+
 def next_due(machine: Machine) -> int:
     """When the next timer goes off; `NEVER` if none runs."""
     return min([node.due for node in machine.timed if node.due != NEVER], default=NEVER)
+
+
+def next_passing(machine: Machine) -> int:
+    """When the next time has passed for which a node waits; `NEVER` if none waits."""
+    return min([node.due for node in machine.watching if node.due > machine.now], default=NEVER)
 
 
 def advance(machine: Machine, now: int) -> None:
@@ -113,3 +130,6 @@ def _fire(machine: Machine, node: SimulatedNode) -> None:
     else:
         return
     machine.is_woken = True
+
+
+_ENDLESS: Final = 1e15  # milliseconds

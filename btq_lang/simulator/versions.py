@@ -14,6 +14,7 @@ class Dialect:
     """A version of the engine.
 
     Attributes:
+        nav2: the distribution of ROS 2 whose nodes of Nav2 the program has; empty: none.
         counts_skips: a Sequence whose child ran and was then skipped counts that as a skip (since 4.7).
         reads_attempts_again: Retry reads its port again after each failure (since 4.7).
         keeps_precondition: a Precondition asks no more once its child has begun (since 4.7).
@@ -23,12 +24,14 @@ class Dialect:
         has_real_truth: `true` in a script is a real number (since 4.9).
         halts_updated_child: SkipUnlessUpdated and WaitValueUpdate halt their child (since 4.9).
         types_constants: a number given to a port of a SubTree is one there (since 4.9.1), rather than a text.
+        wraps_negative: a number without a sign read from `-1` is the largest one (before 4).
         matches_prefixes: a case of a Switch matches a variable that begins with its number (up to 4.9).
     """
 
-    def __init__(self, version: str) -> None:
+    def __init__(self, version: str, nav2: str = "") -> None:
         """A version, such as `4.6`."""
         key = numbers(version)
+        self.nav2: Final = nav2
         self.version: Final = version
         since_4_7 = key >= (4, 7)
         since_4_9 = key >= (4, 9)
@@ -42,3 +45,4 @@ class Dialect:
         self.halts_updated_child: Final = since_4_9
         self.types_constants: Final = key >= (4, 9, 1) or key == (4, 9)
         self.matches_prefixes: Final = key < (4, 10)
+        self.wraps_negative: Final = key < (4,)

@@ -20,19 +20,38 @@ from btq_lang.simulator.drivers import halt_tree, tick_exactly_once
 from btq_lang.simulator.errors import EngineError
 from btq_lang.simulator.loading import load
 from btq_lang.simulator.nodes import FAILURE, RUNNING, SKIPPED, SUCCESS, SimulatedNode
+from btq_lang.simulator.timers import advance
 from btq_lang.simulator.versions import Dialect
+from btq_lang.simulator.world import World
 
 Case = dict[str, Any]
-VERSIONS = {"random-4.6": "4.6", "random-4.10": "4.10"}
+DIALECTS = {
+    "random-4.6": Dialect("4.6"),
+    "random-4.10": Dialect("4.10"),
+    "nav2-jazzy": Dialect("4.10", "jazzy"),
+    "nav2-kilted": Dialect("4.10", "kilted"),
+    "nav2-lyrical": Dialect("4.10", "lyrical"),
+}
 LINE = re.compile(r"^Error at line \d+: ")
 OUTCOMES = {"S": SUCCESS, "F": FAILURE, "K": SKIPPED}
+TYPES = {
+    "goal": "geometry_msgs::msg::PoseStamped",
+    "path": "nav_msgs::msg::Path",
+    "error_code": "uint16_t",
+    "initial_pose_received": "bool",
+    "retries": "int",
+    **{f"idx{number}": "int" for number in range(1, 10)},
+}
 
 
 class ScriptedLeaves:
-    """The leaves of a case: each start takes the next entry of its list."""
+    """The leaves of a case: each start takes the next entry of its list; and how they change entries and the world."""
 
-    def __init__(self, skills: dict[str, list[list[Any]]]) -> None:
+    def __init__(self, skills: dict[str, list[list[Any]]], nav2: str = "") -> None:
         self.skills = skills
+        self.world = World()
+        self.world.position = (0.0, 0.0)
+        self.goals = "std::vector<geometry_msgs::msg::PoseStamped>" if nav2 == "jazzy" else "nav_msgs::msg::Goals"
         self.starts: dict[int, int] = {}
         self.left: dict[int, int] = {}
 
@@ -46,8 +65,20 @@ class ScriptedLeaves:
             self.left[node.uid] -= 1
             return RUNNING
         for key, value in writes.items():
-            node.board.write(key, value, STRING if isinstance(value, str) else DOUBLE)
+            self.write(node.board, key, value)
         return OUTCOMES[outcome]
+
+    def write(self, board: Board, key: str, value: float | str) -> None:
+        if key == "robot_x":
+            self.world.position = None if isinstance(value, str) else (value, 0.0)
+        elif key == "robot_speed":
+            self.world.speed = float(value)
+        elif key == "call":
+            self.world.calls.append(str(value))
+        else:
+            type_ = TYPES.get(key, STRING if isinstance(value, str) else DOUBLE) if key != "goals" else self.goals
+            is_whole = type_ not in (DOUBLE, TYPES["goal"], self.goals) and not isinstance(value, str)
+            board.write(key, int(value) if is_whole else value, type_)
 
     def halt(self, node: SimulatedNode) -> None:
         pass
@@ -59,7 +90,7 @@ class ScriptedLeaves:
         return tuple(self.starts.items()), tuple(self.left.items())
 
 
-def run(case: Case, version: str) -> Case:
+def run(case: Case, dialect: Dialect) -> Case:
     """What the simulator does with a case: root, changes, error and entries_after."""
     changes: list[list[int]] = []
     root: list[int] = []
@@ -69,21 +100,22 @@ def run(case: Case, version: str) -> Case:
         changes.append([tick, node.uid, before, after])
 
     board = Board()
+    leaves = ScriptedLeaves(case["skills"], dialect.nav2)
     for key, value in case["entries"].items():
-        board.write(key, value, STRING if isinstance(value, str) else DOUBLE)
+        leaves.write(board, key, value)
     document = read(case["xml"]).document
     assert document is not None
     error = None
     try:
-        leaves = ScriptedLeaves(case["skills"])
-        machine = load([document], "Main", Dialect(version), leaves, see, board, stateful=("Act",))
+        machine = load([document], "Main", dialect, leaves, see, board, ("Act",), leaves.world)
         while tick < case["ticks"]:
+            advance(machine, tick * case.get("ms", 0))
             root.append(tick_exactly_once(machine))
             tick += 1
         halt_tree(machine)
     except EngineError as thrown:
         error = str(thrown)
-    after = {key: entry.value for key, entry in board.entries.items() if isinstance(entry.value, (int, float, str))}
+    after = {key: entry.value for key, entry in board.entries.items() if entry.value is not None and key != "path"}
     return {"root": root, "changes": changes, "error": error, "entries_after": after if error is None else None}
 
 
@@ -92,9 +124,9 @@ def cases(path: Path) -> Iterator[Case]:
         yield from map(json.loads, lines)
 
 
-def first_difference(case: Case, version: str) -> str:
+def first_difference(case: Case, dialect: Dialect) -> str:
     """What the simulator does otherwise; empty if nothing."""
-    ours = run(case, version)
+    ours = run(case, dialect)
     for number, (mine, theirs) in enumerate(zip(ours["changes"], case["changes"], strict=False)):
         if mine != theirs:
             return f"change {number}: {mine}, in the engine {theirs}"
@@ -112,11 +144,11 @@ def first_difference(case: Case, version: str) -> str:
 def main(paths: list[Path]) -> int:
     count = different = changes = 0
     for path in paths:
-        version = VERSIONS[path.name.partition(".jsonl")[0]]
+        dialect = DIALECTS[path.name.partition(".jsonl")[0]]
         for case in cases(path):
             count += 1
             changes += len(case["changes"])
-            if difference := first_difference(case, version):
+            if difference := first_difference(case, dialect):
                 different += 1
                 print(f"{path.name} {case['seed']}: {difference}")
     print(f"{count} cases, {changes} changes, {different} cases differ")

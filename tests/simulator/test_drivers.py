@@ -42,7 +42,7 @@ def run(tree: str) -> tuple[int, int, int]:
     document = read(f'<root BTCPP_format="4"><BehaviorTree ID="Main">{tree}</BehaviorTree></root>').document
     assert document is not None
     program = Timed()
-    machine = load([document], "Main", Dialect("4.10"), program, lambda *_: None, stateful=("Act",))
+    machine = load([document], "Main", Dialect("4.10", "jazzy"), program, lambda *_: None, stateful=("Act",))
     program.machine = machine
     return tick_while_running(machine, 10_000), machine.now, program.ticks
 
@@ -58,6 +58,19 @@ def run(tree: str) -> tuple[int, int, int]:
         ("<KeepRunningUntilFailure><AlwaysSuccess/></KeepRunningUntilFailure>", RUNNING, 10, 0),
         ('<LoopInt queue="1;2;3" value="{i}"><AlwaysSuccess/></LoopInt>', SUCCESS, 30, 0),
         ('<ReactiveSequence><Act name="a"/><Act name="b"/></ReactiveSequence>', RUNNING, 10_090, 40),
+        (
+            '<WhileDoElse><TimeExpired seconds="0.333"/><AlwaysFailure/><Act name="a"/></WhileDoElse>',
+            FAILURE,
+            340,
+            2,
+        ),
+        (
+            '<PipelineSequence><RateController hz="2.3"><AlwaysSuccess/></RateController><Act name="a"/>'
+            "</PipelineSequence>",
+            SUCCESS,
+            1_000,
+            10,
+        ),
     ],
 )
 def test_runs(tree: str, result: int, took: int, ticks: int) -> None:

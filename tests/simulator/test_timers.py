@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 from against_truth import ScriptedLeaves
+from simulated import LETTERS
 
 from btq_lang.btcpp.reader import read
 from btq_lang.simulator.blackboard import DOUBLE
@@ -15,7 +16,6 @@ from btq_lang.simulator.nodes import SimulatedNode
 from btq_lang.simulator.timers import advance
 from btq_lang.simulator.versions import Dialect
 
-LETTERS = "IRSFK"
 LONG: dict[str, list[list[Any]]] = {"a": [[9, "S", {}]]}
 SHORT: dict[str, list[list[Any]]] = {"a": [[1, "S", {}]]}
 

@@ -2,30 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import pytest
-from against_truth import run
+from simulated import Skills, ticked
 
-LETTERS = "IRSFK"
-Skills = dict[str, list[list[Any]]]
+from btq_lang.simulator.versions import Dialect
 
-
-def ticked(
-    tree: str, skills: Skills, version: str = "4.10", entries: dict[str, float] | None = None, ticks: int = 6
-) -> str:
-    """What the root returns at each tick, a letter a tick; and the message of what was thrown."""
-    case = {
-        "xml": f'<root BTCPP_format="4"><BehaviorTree ID="Main">{tree}</BehaviorTree></root>',
-        "skills": skills,
-        "entries": entries or {},
-        "ticks": ticks,
-    }
-    result = run(case, version)
-    letters = "".join(LETTERS[status] for status in result["root"])
-    return letters if result["error"] is None else f"{letters} {result['error']}"
-
-
+OLD, NEW = Dialect("4.6"), Dialect("4.10")
 FAILS: Skills = {"a": [[0, "F", {}]], "b": [[0, "F", {}]]}
 FAILS_ONCE: Skills = {"a": [[0, "F", {}], [0, "S", {}]], "b": [[0, "S", {}]]}
 LONG: Skills = {"a": [[2, "S", {}]], "b": [[2, "S", {}]]}
@@ -62,7 +44,7 @@ IDLE_SET = (
     ],
 )
 def test_what_the_root_returns(tree: str, skills: Skills, old: str, new: str) -> None:
-    assert (ticked(tree, skills, "4.6"), ticked(tree, skills, "4.10")) == (old, new)
+    assert (ticked(tree, OLD, skills), ticked(tree, NEW, skills)) == (old, new)
 
 
 @pytest.mark.parametrize(
@@ -98,4 +80,4 @@ def test_what_the_root_returns(tree: str, skills: Skills, old: str, new: str) ->
     ],
 )
 def test_what_is_thrown(tree: str, entries: dict[str, float], old: str, new: str) -> None:
-    assert (ticked(tree, {}, "4.6", entries), ticked(tree, {}, "4.10", entries)) == (old, new)
+    assert (ticked(tree, OLD, {}, entries), ticked(tree, NEW, {}, entries)) == (old, new)
