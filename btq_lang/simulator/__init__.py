@@ -14,6 +14,7 @@ guessed.
     decorators.py   what each decorator does with its child
     timers.py       nodes that wait, and the time
     leaves.py       the engine's own leaves, and those of a program
+    version3.py     what version 3 of the engine has and later ones have not
     world.py        what nodes of Nav2 read beside entries and the time
     nav2.py         what Nav2's control nodes and decorators do
     nav2_conditions.py  what its conditions answer

@@ -44,16 +44,18 @@ class Board:
         entries: those of its own.
         remapped: keys that are other ones in the parent.
         is_autoremapped: all other keys are those of the parent, except private ones, which begin with `_`.
+        is_old: it is that of version 3: no key is private or of the root, and an entry made without a type has none.
     """
 
-    __slots__ = ("entries", "is_autoremapped", "parent", "remapped", "root")
+    __slots__ = ("entries", "is_autoremapped", "is_old", "parent", "remapped", "root")
 
-    def __init__(self, parent: Board | None = None, is_autoremapped: bool = False) -> None:
+    def __init__(self, parent: Board | None = None, is_autoremapped: bool = False, is_old: bool = False) -> None:
         self.entries: Final[dict[str, BoardEntry]] = {}
         self.remapped: Final[dict[str, str]] = {}
         self.parent: Final = parent
         self.root: Final[Board] = parent.root if parent is not None else self
         self.is_autoremapped: Final = is_autoremapped
+        self.is_old: Final[bool] = parent.is_old if parent is not None else is_old
 
     def entry(self, key: str) -> BoardEntry | None:
         """The entry of a key, wherever the key leads; None if there is none."""
@@ -64,13 +66,13 @@ class Board:
         """The blackboard that has the entry of a key, or would get it, and the entry's name there."""
         board = self
         while True:
-            if key.startswith("@"):
+            if key.startswith("@") and not self.is_old:
                 board, key = board.root, key[1:]
             if key in board.entries or board.parent is None:
                 return board, key
             if key in board.remapped:
                 key = board.remapped[key]
-            elif not board.is_autoremapped or key.startswith("_"):
+            elif not board.is_autoremapped or (key.startswith("_") and not self.is_old):
                 return board, key
             board = board.parent
 
@@ -105,7 +107,7 @@ class Board:
             entry = self.create(key, UNTYPED if type_ == STRING else type_)
             entry.value = value
         elif not entry.type:
-            entry.type, entry.value = type_, value
+            entry.type, entry.value = UNTYPED if self.is_old else type_, value
         else:
             entry.value = _into(entry, key, value, type_)
         entry.number += 1

@@ -21,6 +21,7 @@ from btq_lang.simulator.ticking import (
     reset_children,
     set_status,
 )
+from btq_lang.simulator.versions import Dialect
 
 # ---- one child after the other ----
 
@@ -88,7 +89,7 @@ def tick_sequence_with_memory(machine: Machine, node: SimulatedNode) -> int:
         node.index += 1
         if result == SKIPPED:
             node.skipped += 1
-        elif before == IDLE and node.index < len(node.children):
+        elif node.rules.yields and before == IDLE and node.index < len(node.children):
             machine.is_woken = True
             return RUNNING
     all_skipped = node.skipped == len(node.children) if machine.dialect.counts_skips else node.is_on
@@ -235,6 +236,8 @@ def tick_if_then_else(machine: Machine, node: SimulatedNode) -> int:
 
 def tick_while_do_else(machine: Machine, node: SimulatedNode) -> int:
     """A condition at every tick, and one of two branches."""
+    if machine.dialect.is_old and len(node.children) != 3:
+        raise EngineError("WhileDoElse must have 3 children")
     _check_branches(node, "WhileDoElseNode")
     set_status(machine, node, RUNNING)
     condition = execute_tick(machine, node.children[0])
@@ -270,7 +273,7 @@ def tick_switch(machine: Machine, node: SimulatedNode) -> int:
     chosen = cases
     for position in range(cases) if variable is not None else ():
         case = read_text(node, f"case_{position + 1}")
-        if case is not None and variable is not None and _is_case(variable, case, machine.dialect.matches_prefixes):
+        if case is not None and variable is not None and _is_case(variable, case, machine.dialect):
             chosen = position
             break
     if node.index not in (0, chosen + 1):
@@ -295,12 +298,12 @@ def _as_real(text: str, matches_prefixes: bool) -> float | None:
     return float(match[0]) if match is not None else None
 
 
-def _is_case(variable: str, case: str, matches_prefixes: bool) -> bool:
-    """Whether two texts are equal, or the same number."""
-    if variable == case:
-        return True
+def _is_case(variable: str, case: str, dialect: Dialect) -> bool:
+    """Whether two texts are equal, or, since version 4, the same number."""
+    if variable == case or dialect.is_old:
+        return variable == case
     for number, tolerance in ((_as_whole, 0.0), (_as_real, EPSILON)):
-        first, second = number(variable, matches_prefixes), number(case, matches_prefixes)
+        first, second = number(variable, dialect.matches_prefixes), number(case, dialect.matches_prefixes)
         if first is not None and second is not None and abs(first - second) <= tolerance:
             return True
     return False

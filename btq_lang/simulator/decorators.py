@@ -11,7 +11,7 @@ from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Machine, SimulatedNode
 from btq_lang.simulator.ports import key_of, read, read_status, read_truth, read_whole, write
 from btq_lang.simulator.scripts import holds
-from btq_lang.simulator.ticking import execute_tick, halt_children, reset_child, set_status
+from btq_lang.simulator.ticking import check_rounds, execute_tick, halt_children, reset_child, set_status
 
 
 def tick_inverter(machine: Machine, node: SimulatedNode) -> int:
@@ -67,7 +67,9 @@ def _again(machine: Machine, node: SimulatedNode, port: str, class_name: str, co
     if node.status == IDLE:
         node.is_on = True  # all results so far were skips
     set_status(machine, node, RUNNING)
+    rounds = 0
     while node.count < most or most == -1:
+        check_rounds(node, rounds := rounds + 1)
         child = node.child
         before = child.status
         result = execute_tick(machine, child)
@@ -85,7 +87,7 @@ def _again(machine: Machine, node: SimulatedNode, port: str, class_name: str, co
         reset_child(machine, child)
         if result in (ends, SKIPPED):
             return result
-        if before == IDLE and (node.count < most or most == -1):
+        if node.rules.yields and before == IDLE and (node.count < most or most == -1):
             machine.is_woken = True
             return RUNNING
     node.count = 0

@@ -40,9 +40,10 @@ def tick_once(machine: Machine) -> int:
 
 def halt_tree(machine: Machine) -> None:
     """Halt the root, and then each node, running or not."""
-    halt_node(machine, machine.root)
-    for node in machine.nodes:
+    for node in (machine.root, *machine.nodes):
         halt_node(machine, node)
+        if machine.dialect.is_old:
+            reset_status(machine, node)
     reset_status(machine, machine.root)
 
 

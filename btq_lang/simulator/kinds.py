@@ -6,24 +6,28 @@ from collections.abc import Collection
 from typing import Final
 
 from btq_lang.catalog.nodes import BUILTINS
-from btq_lang.simulator import controls, decorators, leaves, nav2, nav2_conditions, timers
+from btq_lang.simulator import controls, decorators, leaves, nav2, nav2_conditions, timers, version3
 from btq_lang.simulator.errors import NotModelled
 from btq_lang.simulator.nodes import Flow, Halt, TickRules
 from btq_lang.simulator.ticking import halt_children
+from btq_lang.util.record import replace
 
 
-def rules_of(id_: str, has_children: bool, stateful: Collection[str], nav2: Collection[str] = ()) -> TickRules:
+def rules_of(
+    id_: str, has_children: bool, stateful: Collection[str], nav2: Collection[str] = (), is_old: bool = False
+) -> TickRules:
     """The rules of a registered name.
 
     Args:
         nav2: the nodes of Nav2 that the program registers.
+        is_old: the engine is version 3.
         has_children: whether the written node has some.
         stateful: the stateful actions of the program.
 
     Raises:
         NotModelled: it has children, and the engine does not have it.
     """
-    rules = _NAV2.get(id_) if id_ in nav2 else _RULES.get(id_)
+    rules = _NAV2.get(id_) if id_ in nav2 else (_OLD_RULES if is_old else _RULES).get(id_)
     if rules is not None:
         return rules
     if has_children:
@@ -85,6 +89,7 @@ _TIMED: Final[dict[str, TickRules]] = {
     "Sleep": TickRules(timers.tick_sleep, timers.halt_sleep, is_timed=True),
 }
 _COUNTING: Final = ("SkipUnlessUpdated", "WaitValueUpdate", "WasEntryUpdated")
+_REPEATING: Final = ("Repeat", "RetryUntilSuccessful")
 _RULES: Final = {
     **_TIMED,
     **{
@@ -92,10 +97,35 @@ _RULES: Final = {
         for id_, flow in _CONTROLS.items()
     },
     **{
-        id_: TickRules(flow, _HALTS.get(id_, halt_children), is_decorator=True, counts_writes=id_ in _COUNTING)
+        id_: TickRules(
+            flow,
+            _HALTS.get(id_, halt_children),
+            is_decorator=True,
+            counts_writes=id_ in _COUNTING,
+            yields=id_ in _REPEATING,
+        )
         for id_, flow in _DECORATORS.items()
     },
     **{id_: TickRules(flow, leaves.halt_leaf, counts_writes=id_ in _COUNTING) for id_, flow in _LEAVES.items()},
+}
+_OLD_RULES: Final = {
+    **{
+        id_: _RULES[id_]
+        for id_ in (
+            *("Sequence", "Fallback", "ReactiveSequence", "ReactiveFallback", "IfThenElse", "WhileDoElse", "SubTree"),
+            *("Inverter", "ForceSuccess", "ForceFailure", "KeepRunningUntilFailure"),
+            *("AlwaysSuccess", "AlwaysFailure", "SetBlackboard"),
+            *(f"Switch{cases}" for cases in range(2, 7)),
+        )
+    },
+    "SubTreePlus": _RULES["SubTree"],
+    "SequenceStar": TickRules(controls.tick_sequence_with_memory, controls.halt_in_order),
+    "Parallel": TickRules(version3.tick_parallel, controls.halt_parallel),
+    **{id_: replace(_RULES[id_], yields=False) for id_ in _REPEATING},
+    **{
+        f"BlackboardCheck{type_}": TickRules(version3.tick_blackboard_check, halt_children, is_decorator=True)
+        for type_ in ("Int", "Double", "String", "Bool")
+    },
 }
 _NAV2: Final = {
     "PipelineSequence": TickRules(nav2.tick_pipeline, controls.halt_in_order),

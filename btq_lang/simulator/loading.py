@@ -16,10 +16,12 @@ from btq_lang.catalog.versions import ONE_ASYNC_SEQUENCE
 from btq_lang.simulator.blackboard import DOUBLE, STRING, Board
 from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.kinds import rules_of
+from btq_lang.simulator.leaves import tick_custom
 from btq_lang.simulator.nav2_models import ports_in
 from btq_lang.simulator.nodes import Machine, Program, SimulatedNode
 from btq_lang.simulator.ports import key_of, read
 from btq_lang.simulator.scripts import text_of
+from btq_lang.simulator.version3 import SUBTREE, SUBTREES, inner_board
 from btq_lang.simulator.versions import Dialect
 from btq_lang.simulator.world import World
 from btq_lang.syntax.script.parser import parse_script
@@ -40,7 +42,8 @@ def load(
     Args:
         program: has the custom leaves.
         changes: called with each change of a status, and the status before.
-        board: the root blackboard, with the entries that the program sets before it creates the tree.
+        board: the root blackboard, of the same version, with the entries that the program sets before it creates the
+            tree.
         stateful: the stateful actions of the program.
         world: what nodes of Nav2 read beside entries and the time.
 
@@ -49,7 +52,9 @@ def load(
         NotModelled: the tree has a node that is not known here.
     """
     loader = _Loader(documents, dialect, stateful)
-    return Machine(loader.tree(main, board or Board(), ""), dialect, program, changes, world or World())
+    return Machine(
+        loader.tree(main, board or Board(is_old=dialect.is_old), ""), dialect, program, changes, world or World()
+    )
 
 
 class _Loader:
@@ -84,14 +89,17 @@ class _Loader:
         self._last += 1
         values = {attribute.name: attribute.value for attribute in element.attributes}
         id_ = element.tag if element.tag not in _CATEGORIES else values.get("ID", "")
-        is_subtree = element.tag == "SubTree"
+        is_subtree = element.tag in SUBTREES if self._dialect.is_old else element.tag == SUBTREE
         plain = values.get("ID", "") if is_subtree else id_
         name = values.get("name", plain)
         path = prefix + values.get("name", f"{plain}::{self._last}")
         ports = {port: value for port, value in values.items() if not (port in _NO_PORTS or port.startswith("_"))}
-        registered = "SubTree" if is_subtree else id_
-        rules = rules_of(registered, any(element.elements), self._stateful, self._nav2)
+        registered = element.tag if is_subtree else id_
+        has_children = any(element.elements)
+        rules = rules_of(registered, has_children, self._stateful, self._nav2, self._dialect.is_old)
         node = SimulatedNode(self._last, registered, name, path, ports, board, rules)
+        if self._dialect.is_old and not is_subtree:
+            _refuse_scripts(values, id_, name)
         for attribute in ("_failureIf", "_successIf", "_skipIf", "_while"):
             if attribute in values:
                 node.conditions.append((attribute, parse_script(values[attribute])))
@@ -99,7 +107,7 @@ class _Loader:
             if attribute in values:
                 node.scripts[attribute] = parse_script(values[attribute])
         if is_subtree:
-            inner = self._inner_board(values, board)
+            inner = (inner_board if self._dialect.is_old else self._inner_board)(element.tag, values, board)
             node.children.append(self.tree(plain, inner, f"{path}/"))
             return node
         self._declare(node)
@@ -107,7 +115,7 @@ class _Loader:
             node.children.append(self._node(child, board, prefix))
         return node
 
-    def _inner_board(self, values: Mapping[str, str], board: Board) -> Board:
+    def _inner_board(self, _: str, values: Mapping[str, str], board: Board) -> Board:
         """The blackboard of a SubTree: remapped ports, and constants as entries of its own."""
         inner = Board(board, values.get("_autoremap", "").lower() in ("1", "true"))
         for port, value in values.items():
@@ -136,7 +144,8 @@ class _Loader:
                     node.ports[port.name] = declared.default
             elif (key := key_of(written, port.name)) is not None:
                 node.board.create(key, _TYPES.get(declared.type, declared.type))
-                if kind is None and is_read_once(self._dialect.nav2, node.id, port.name, node.ports):
+                is_simulated = kind is None and node.rules.flow is not tick_custom
+                if is_simulated and is_read_once(self._dialect.nav2, node.id, port.name, node.ports):
                     _read_once(node, port.name)
         if ports is None:
             for name, written in node.ports.items():
@@ -155,6 +164,16 @@ def _read_once(node: SimulatedNode, port: str) -> None:
     if value is None:
         raise NotModelled(f"the port {port} of {node.path} is read when the tree is created, and its entry is empty")
     node.ports[port] = text_of(value)
+
+
+def _refuse_scripts(values: Mapping[str, str], id_: str, name: str) -> None:
+    """Refuse conditions and scripts as version 3 does, which takes them for ports."""
+    for attribute in values:
+        if attribute.startswith("_") and attribute != "_description":
+            raise EngineError(
+                f'Possible typo? In the XML, you tried to remap port "{attribute}" in node [{id_} / {name}], '
+                "but the manifest of this node does not contain a port with this name."
+            )
 
 
 def _refuse_two_async(root: Element) -> None:

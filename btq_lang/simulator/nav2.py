@@ -13,7 +13,14 @@ from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.nav2_inputs import ORIGIN, Path, goals_of, has_new_goal, path_of
 from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Machine, SimulatedNode
 from btq_lang.simulator.ports import read_real, read_text, read_truth, read_unsigned, read_whole, write
-from btq_lang.simulator.ticking import execute_tick, halt_children, reset_child, reset_children, set_status
+from btq_lang.simulator.ticking import (
+    check_rounds,
+    execute_tick,
+    halt_children,
+    reset_child,
+    reset_children,
+    set_status,
+)
 from btq_lang.simulator.timers import after, has_passed
 
 # ---- control nodes ----
@@ -39,14 +46,16 @@ def tick_pipeline(machine: Machine, node: SimulatedNode) -> int:
 
 def tick_recovery(machine: Machine, node: SimulatedNode) -> int:
     """The second child when the first fails, then the first again, so many times."""
-    retries = read_unsigned(node, "number_of_retries", machine.dialect.wraps_negative)
+    retries = read_unsigned(node, "number_of_retries", machine.dialect.is_old)
     if retries is not None:
         node.kept = (retries,)
     most: int = node.kept[0] if node.kept else 1
     if len(node.children) != 2:
         raise EngineError(f"Recovery Node '{node.name}' must only have 2 children.")
     set_status(machine, node, RUNNING)
+    rounds = 0
     while node.count <= most:
+        check_rounds(node, rounds := rounds + 1)
         result = execute_tick(machine, node.children[node.index])
         if result == RUNNING:
             return RUNNING

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from math import dist
 
+from btq_lang.simulator.errors import EngineError
 from btq_lang.simulator.nav2_inputs import ORIGIN, goals_of, has_new_goal, path_of, read_or_entry
 from btq_lang.simulator.nodes import FAILURE, IDLE, SUCCESS, Machine, SimulatedNode
 from btq_lang.simulator.ports import read_real, read_text, read_whole
@@ -76,7 +77,10 @@ def tick_distance_traveled(machine: Machine, node: SimulatedNode) -> int:
 
 def tick_initial_pose_received(machine: Machine, node: SimulatedNode) -> int:
     """SUCCESS if the entry is true."""
-    return SUCCESS if read_or_entry(node, "initial_pose_received") else FAILURE
+    value = read_or_entry(node, "initial_pose_received")
+    if value is None and machine.dialect.is_old:
+        raise EngineError("Blackboard::get() error. Missing key [initial_pose_received]")
+    return SUCCESS if value else FAILURE
 
 
 def tick_error_codes(machine: Machine, node: SimulatedNode) -> int:

@@ -22,14 +22,19 @@ def read_or_entry(node: SimulatedNode, port: str) -> Value | None:
     Raises:
         NotModelled: the port is a literal.
     """
-    written = node.ports.get(port)
-    if written is not None:
-        if key_of(written, port) is None:
-            raise NotModelled(f"the port {port} of {node.path} is a literal")
-        if (value := read(node, port)) is not None:
-            return value
+    value = _read_entry(node, port)
+    if value is not None:
+        return value
     entry = node.board.entry(port)
     return entry.value if entry is not None else None
+
+
+def _read_entry(node: SimulatedNode, port: str) -> Value | None:
+    """The value of the entry at a port; None: there is none."""
+    written = node.ports.get(port)
+    if written is not None and key_of(written, port) is None:
+        raise NotModelled(f"the port {port} of {node.path} is a literal")
+    return read(node, port)
 
 
 def goals_of(node: SimulatedNode, before: tuple[Any, ...] = ()) -> tuple[Any, ...]:
@@ -51,7 +56,7 @@ def path_of(node: SimulatedNode, before: Path = ()) -> Path:
     Raises:
         NotModelled: the entry holds no path.
     """
-    value = read_or_entry(node, "path") if "path" in node.ports else None
+    value = _read_entry(node, "path")
     if value is None:
         return before
     try:
@@ -64,4 +69,4 @@ def path_of(node: SimulatedNode, before: Path = ()) -> Path:
 
 
 ORIGIN: Final = (0.0, 0.0)  # where a node began to measure that never learned where the robot is
-_NO_GOALS: Final = (None, None)
+_NO_GOALS: Final = (None, 0.0)  # a pose that nothing has set is the origin

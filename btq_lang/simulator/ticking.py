@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from btq_lang.simulator.errors import EngineError
+from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Machine, SimulatedNode
 from btq_lang.simulator.scripts import holds, run_script
 
@@ -99,10 +99,22 @@ def reset_children(machine: Machine, node: SimulatedNode) -> None:
         reset_child(machine, child)
 
 
+def check_rounds(node: SimulatedNode, rounds: int) -> None:
+    """See that a node which goes on within a tick comes to an end.
+
+    Raises:
+        NotModelled: it has gone on very often; the engine may never return.
+    """
+    if rounds > _MOST_ROUNDS:
+        raise NotModelled(f"{node.path} goes on without an end in one tick")
+
+
 def halt_children(machine: Machine, node: SimulatedNode) -> None:
     """Halt a node that has children and remembers nothing that a halt makes it forget."""
     reset_children(machine, node)
-    reset_status(machine, node)
+    if not machine.dialect.is_old:  # there only its parent does that
+        reset_status(machine, node)
 
 
+_MOST_ROUNDS: Final = 100_000
 _DECIDES: Final = {"_failureIf": FAILURE, "_successIf": SUCCESS, "_skipIf": SKIPPED, "_while": SKIPPED}

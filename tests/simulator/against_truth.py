@@ -26,6 +26,7 @@ from btq_lang.simulator.world import World
 
 Case = dict[str, Any]
 DIALECTS = {
+    "nav2-humble": Dialect("3.8.7", "humble"),
     "random-4.6": Dialect("4.6"),
     "random-4.10": Dialect("4.10"),
     "nav2-jazzy": Dialect("4.10", "jazzy"),
@@ -51,7 +52,7 @@ class ScriptedLeaves:
         self.skills = skills
         self.world = World()
         self.world.position = (0.0, 0.0)
-        self.goals = "std::vector<geometry_msgs::msg::PoseStamped>" if nav2 == "jazzy" else "nav_msgs::msg::Goals"
+        self.goals = "nav_msgs::msg::Goals" if nav2 in ("kilted", "lyrical") else f"std::vector<{TYPES['goal']}>"
         self.starts: dict[int, int] = {}
         self.left: dict[int, int] = {}
 
@@ -99,7 +100,7 @@ def run(case: Case, dialect: Dialect) -> Case:
     def see(node: SimulatedNode, before: int, after: int) -> None:
         changes.append([tick, node.uid, before, after])
 
-    board = Board()
+    board = Board(is_old=dialect.is_old)
     leaves = ScriptedLeaves(case["skills"], dialect.nav2)
     for key, value in case["entries"].items():
         leaves.write(board, key, value)

@@ -10,7 +10,8 @@ from simulated import Skills, ticked
 from btq_lang.simulator.errors import NotModelled
 from btq_lang.simulator.versions import Dialect
 
-JAZZY, LYRICAL = Dialect("4.10", "jazzy"), Dialect("4.10", "lyrical")
+HUMBLE, JAZZY, LYRICAL = Dialect("3.8.7", "humble"), Dialect("4.10", "jazzy"), Dialect("4.10", "lyrical")
+NAMES = ("humble", "jazzy", "lyrical")
 Entries = Mapping[str, float | str]
 
 
@@ -42,7 +43,6 @@ NEW_PATHS = writes({}, {}, {"path": "9;5;2;0"}, {}, {"path": "5;2;2;0"}, {"path"
         # Without a reset the throttle counts from the success before; with one it holds nothing back.
         (f"<PipelineSequence>{RATE}</PipelineSequence>", leaves(a="9", c="SF"), {}, "RRRFRR"),
         (f"<ReactiveSequence>{RATE}</ReactiveSequence>", leaves(a="9", c="SF"), {}, "RFRFRF"),
-        ('<RateController hz="4"><AlwaysSuccess _skipIf="true"/></RateController>', {}, {}, "KRRKKK"),
         (
             '<PipelineSequence><Sync name="w"/><DistanceController distance="1"><Cond name="c"/></DistanceController>'
             '<Act name="a"/></PipelineSequence>',
@@ -92,6 +92,18 @@ NEW_PATHS = writes({}, {}, {"path": "9;5;2;0"}, {}, {"path": "5;2;2;0"}, {"path"
         ("<SingleTrigger><AlwaysSuccess/></SingleTrigger>", {}, {}, "SSSSSS"),
         # An earlier child that runs again does not keep the later ones from being ticked.
         ('<PipelineSequence><Act name="a"/><Act name="b"/></PipelineSequence>', leaves(a="S9", b="3"), {}, "RRRSRR"),
+        ("<InitialPoseReceived/>", {}, {"initial_pose_received": 1.0}, "SSSSSS"),
+    ],
+)
+@pytest.mark.parametrize("dialect", [HUMBLE, JAZZY, LYRICAL], ids=NAMES)
+def test_all_distributions(tree: str, skills: Skills, entries: Entries, letters: str, dialect: Dialect) -> None:
+    assert ticked(tree, dialect, skills, entries) == letters
+
+
+@pytest.mark.parametrize(
+    ("tree", "skills", "entries", "letters"),
+    [
+        ('<RateController hz="4"><AlwaysSuccess _skipIf="true"/></RateController>', {}, {}, "KRRKKK"),
         (
             '<RecoveryNode number_of_retries="-1"><Act name="a"/><AlwaysSuccess/></RecoveryNode>',
             {"a": [[1, "F", {}]]},
@@ -113,12 +125,33 @@ NEW_PATHS = writes({}, {}, {"path": "9;5;2;0"}, {}, {"path": "5;2;2;0"}, {"path"
             {"error_code": 107.0},
             "SSSSSS",
         ),
-        ("<InitialPoseReceived/>", {}, {"initial_pose_received": 1.0}, "SSSSSS"),
         ("<InitialPoseReceived/>", {}, {}, "FFFFFF"),
     ],
 )
-def test_all_distributions(tree: str, skills: Skills, entries: Entries, letters: str) -> None:
-    assert (ticked(tree, JAZZY, skills, entries), ticked(tree, LYRICAL, skills, entries)) == (letters, letters)
+@pytest.mark.parametrize("dialect", [JAZZY, LYRICAL], ids=NAMES[1:])
+def test_since_jazzy(tree: str, skills: Skills, entries: Entries, letters: str, dialect: Dialect) -> None:
+    assert ticked(tree, dialect, skills, entries) == letters
+
+
+@pytest.mark.parametrize(
+    ("tree", "skills", "letters"),
+    [
+        # A number without a sign is read from -1: there are more than enough retries.
+        (
+            '<RecoveryNode number_of_retries="-1"><Act name="a"/><AlwaysSuccess/></RecoveryNode>',
+            {"a": [[1, "F", {}]]},
+            "RRRRRR",
+        ),
+        (
+            "<RecoveryNode><AlwaysFailure/></RecoveryNode>",
+            {},
+            " Recovery Node 'RecoveryNode' must only have 2 children.",
+        ),
+        ("<InitialPoseReceived/>", {}, " Blackboard::get() error. Missing key [initial_pose_received]"),
+    ],
+)
+def test_humble(tree: str, skills: Skills, letters: str) -> None:
+    assert ticked(tree, HUMBLE, skills) == letters
 
 
 @pytest.mark.parametrize(
@@ -203,3 +236,14 @@ def test_lyrical(tree: str, skills: Skills, entries: Entries, letters: str) -> N
 def test_what_is_not_modelled(tree: str, message: str) -> None:
     with pytest.raises(NotModelled, match=f"^{message}"):
         ticked(tree, JAZZY, {}, {"path": "home"})
+
+
+def test_other_distributions() -> None:
+    with pytest.raises(NotModelled, match="what the nodes of Nav2 do in iron is unknown"):
+        ticked("<AlwaysSuccess/>", Dialect("3.8.7", "iron"), {})
+
+
+def test_one_that_does_not_end_within_a_tick() -> None:
+    tree = '<RecoveryNode number_of_retries="-1"><AlwaysFailure/><AlwaysSuccess/></RecoveryNode>'
+    with pytest.raises(NotModelled, match="RecoveryNode::1 goes on without an end in one tick"):
+        ticked(tree, HUMBLE, {})
