@@ -106,7 +106,7 @@ def next_due(machine: Machine) -> int:
 
 def next_passing(machine: Machine) -> int:
     """When the next time has passed for which a node waits; `NEVER` if none waits."""
-    return min([node.due for node in machine.watching if node.due > machine.now], default=NEVER)
+    return min([node.due for node in machine.watching if machine.now < node.due < _ENDLESS], default=NEVER)
 
 
 def advance(machine: Machine, now: int) -> None:

@@ -59,6 +59,13 @@ def run(tree: str) -> tuple[int, int, int]:
         ('<LoopInt queue="1;2;3" value="{i}"><AlwaysSuccess/></LoopInt>', SUCCESS, 30, 0),
         ('<ReactiveSequence><Act name="a"/><Act name="b"/></ReactiveSequence>', RUNNING, 10_090, 40),
         (
+            '<PipelineSequence><RateController hz="0"><AlwaysSuccess/></RateController>'
+            '<WaitValueUpdate entry="{x}"><AlwaysSuccess/></WaitValueUpdate></PipelineSequence>',
+            RUNNING,
+            20,
+            0,
+        ),
+        (
             '<WhileDoElse><TimeExpired seconds="0.333"/><AlwaysFailure/><Act name="a"/></WhileDoElse>',
             FAILURE,
             340,

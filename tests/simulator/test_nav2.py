@@ -32,6 +32,7 @@ TURNS = "<RoundRobin><AlwaysSuccess/><AlwaysSuccess/></RoundRobin>"
 RATE = '<RateController hz="4"><Cond name="c"/></RateController><Act name="a"/>'
 SPEED = '<SpeedController min_rate="1" max_rate="5"><Cond name="c"/></SpeedController>'
 LONGER = '<PathLongerOnApproach path="{path}"><AlwaysFailure/></PathLongerOnApproach>'
+EXPIRING = '<PathExpiringTimer seconds="0.15" path="{path}"/>'
 MOVES = writes(*[{"robot_x": 0.4 * step} for step in range(6)])
 NEW_GOAL = writes({}, {}, {"goal": 1.0})
 NEW_PATHS = writes({}, {}, {"path": "9;5;2;0"}, {}, {"path": "5;2;2;0"}, {"path": "9;5;3;0"})
@@ -82,6 +83,24 @@ NEW_PATHS = writes({}, {}, {"path": "9;5;2;0"}, {}, {"path": "5;2;2;0"}, {"path"
             "RRRSRR",
         ),
         (f'<Sequence><Sync name="w"/>{LONGER}</Sequence>', NEW_PATHS, {"path": "5;2;2;0"}, "SSFSSS"),
+        (LONGER, {}, {}, "SSSSSS"),
+        (f'<Sequence><Sync name="w"/>{EXPIRING}</Sequence>', NEW_PATHS, {"path": "5;2;2;0"}, "FFFFFF"),
+        # Two paths without a pose are the same.
+        (
+            f'<Sequence><Sync name="w"/>{EXPIRING}</Sequence>',
+            writes({"path": "0;1;1;0"}),
+            {"path": "0;9;9;0"},
+            "FFSFSF",
+        ),
+        # Without a position there is no distance; one that is lost in the tick of the success turns that to a failure.
+        (
+            '<PipelineSequence><Sync name="w"/><DistanceController><AlwaysSuccess/></DistanceController>'
+            '<Act name="a"/></PipelineSequence>',
+            {**leaves(a="9"), **writes({}, {"robot_x": "lost"}, {}, {"robot_x": 0.0})},
+            {},
+            "RFFRRF",
+        ),
+        ('<DistanceController><Sync name="w"/></DistanceController>', writes({"robot_x": "lost"}), {}, "FFFFFF"),
         # A finished trigger is spent until a parent resets it.
         (
             '<PipelineSequence><SingleTrigger><AlwaysSuccess/></SingleTrigger><Act name="a"/></PipelineSequence>',
@@ -170,6 +189,15 @@ def test_turns(tree: str, jazzy: str, lyrical: str) -> None:
 @pytest.mark.parametrize(
     ("tree", "skills", "entries", "letters"),
     [
+        # A goal at a port is looked up there.
+        (
+            '<PipelineSequence><Sync name="w"/><GoalUpdatedController goal="{goal}"><Cond name="c"/>'
+            '</GoalUpdatedController><Act name="a"/></PipelineSequence>',
+            {**leaves(a="9", c="SF"), **NEW_GOAL},
+            {"goal": 0.0},
+            "RRFRRR",
+        ),
+        ("<PauseResumeController><AlwaysSuccess/></PauseResumeController>", {}, {}, "SSSSSS"),
         (TURNS.replace("<RoundRobin>", '<RoundRobin wrap_around="true">'), {}, {}, "SSSSSS"),
         (
             '<NonblockingSequence><Act name="a"/><Act name="b"/></NonblockingSequence>',
@@ -228,6 +256,15 @@ def test_lyrical(tree: str, skills: Skills, entries: Entries, letters: str) -> N
         (
             '<DistanceController distance="{x}"><AlwaysSuccess/></DistanceController>',
             "the port distance of DistanceController::1 is read when the tree is created, and its entry is empty",
+        ),
+        (
+            '<SpeedController min_rate="0"><AlwaysSuccess/></SpeedController>',
+            "SpeedController::1 has a rate that is not",
+        ),
+        (
+            '<SpeedController min_speed="0.5" max_rate="20"><KeepRunningUntilFailure><AlwaysSuccess/>'
+            "</KeepRunningUntilFailure></SpeedController>",
+            "the two speeds of SpeedController::1 are the same",
         ),
         ('<GoalUpdated goal="1;2;3"/>', "the port goal of GoalUpdated::1 is a literal"),
         ('<PathExpiringTimer path="{path}"/>', "the path of PathExpiringTimer::1 is not written"),

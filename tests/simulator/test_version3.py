@@ -89,6 +89,15 @@ def test_checks_of_entries(type_: str, first: str, second: str, letters: str) ->
     assert ticked(check, OLD, {}, {"x": first}) == letters
 
 
+def test_a_check_halts_its_child() -> None:
+    tree = (
+        '<Parallel success_threshold="2"><BlackboardCheckString value_A="{x}" value_B="1"><Act name="b"/>'
+        '</BlackboardCheckString><Sequence><Act name="a"/><SetBlackboard output_key="x" value="2"/></Sequence>'
+        "</Parallel>"
+    )
+    assert ticked(tree, OLD, {"a": [[1, "S", {}]], "b": [[9, "S", {}]]}, {"x": "1"}) == "RRFFFF"
+
+
 @pytest.mark.parametrize(
     ("subtree", "letters"),
     [
