@@ -17,6 +17,7 @@ from btq_lang.parser import Parsed, parse
 from btq_lang.syntax.tokens import DEDENT, INDENT, QUANTITY, STRING, Token
 from btq_lang.syntax.tree import (
     Amount,
+    AnyEvent,
     Apply,
     Approval,
     Because,
@@ -31,6 +32,7 @@ from btq_lang.syntax.tree import (
     Condition,
     Confidence,
     Context,
+    EachEvent,
     Entry,
     Event,
     Every,
@@ -472,7 +474,7 @@ def show_clause(clause: Clause | HazardClause) -> str:
 def _(clause: Claim) -> str:
     verb = clause.verb.raw
     parts = [show_subject(clause.subject) if clause.subject else "", verb, "every" if clause.every else ""]
-    if clause.bound or verb not in ("needs", "keeps", "never", "leaves", "succeeds", "follows"):
+    if clause.bound or verb not in ("needs", "keeps", "never", "leaves", "succeeds", "follows", "followed"):
         parts.append(show_bound(clause.bound))
     if clause.condition or verb in ("needs", "keeps", "never", "leaves"):
         parts.append(show_condition(clause.condition))
@@ -481,7 +483,7 @@ def _(clause: Claim) -> str:
     if clause.per or (verb == "runs" and not clause.every):
         parts.append(f"per {show_path(clause.per) if isinstance(clause.per, Path) else show(clause.per)}")
     if clause.event or verb in ("starts", "ends", "follows"):
-        parts += ["after" if verb != "follows" else "", show_event(clause.event)]
+        parts += ["after" if verb in ("starts", "ends") else "", show_event(clause.event)]
     return words(*parts)
 
 
@@ -567,6 +569,8 @@ def show_subject(subject: Subject) -> str:
         inner = f"sum of {', '.join(map(show_path, subject.paths)) or MISSING}"
     elif isinstance(subject, Between):
         inner = f"from {show_event(subject.first)} to {show_event(subject.last)}"
+    elif isinstance(subject, EachEvent):
+        inner = f"each {show_event(subject.event)}"
     else:
         inner = show_path(subject)
     return f"<{inner}>"
@@ -576,9 +580,11 @@ def show_path(path: Path | None) -> str:
     return "/".join(map(show, path.names)) if path else MISSING
 
 
-def show_event(event: Event | None) -> str:
+def show_event(event: Event | AnyEvent | None) -> str:
     if event is None:
         return MISSING
+    if isinstance(event, AnyEvent):
+        return " or ".join(map(show_event, event.atoms))
     if event.happening == "when":
         return words("when", show_condition(event.condition))
     return words(show_path(event.path) if event.path else "(mission)", event.happening)

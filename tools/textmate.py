@@ -210,6 +210,7 @@ _REPOSITORY: dict[str, Rule] = {
     # A clause's line begins with its head or verb, or with the subject whose verb follows at once.
     "clause-line": _region(
         rf"^\s*(?=(?:{_any((*words.HEAD_WORDS, *words.VERB_WORDS))})\s+[\w\"'(-]+(?!\s*=(?!=))"
+        r"|each\s.*\sis\s+followed\s"
         rf"|{_NAME_OR_STRING}(?:/{_NAME_OR_STRING})*\s+(?:{_any(words.VERB_WORDS)})\s+\w+(?!\s*=))",
         _LINE,
         (),

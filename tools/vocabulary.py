@@ -14,8 +14,9 @@ from btq_lang.catalog.nodes import KNOWN_WORDS, spellings
 from btq_lang.catalog.qualities import EDITIONS, qualities
 from btq_lang.catalog.quality_words import ALIASES, AMBIGUOUS, PAPER_NAMES
 from btq_lang.catalog.units import SYMBOLS as UNITS
-from btq_lang.catalog.verbs import VERBS
+from btq_lang.catalog.verbs import words
 from btq_lang.grammar.claims import HAPPENINGS
+from btq_lang.grammar.claims import VERB_WORDS as VERBS_OF_SUBJECTS
 from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS, HEADS, METADATA_HEADS
 from btq_lang.grammar.hazards import HAZARD_HEADS
@@ -40,7 +41,7 @@ MODELS = "TreeNodesModel"
 PARTICLES = (
     "at", "most", "least", "less", "more", "than", "between", "and", "to", "of",
     "per", "every", "within", "after", "with", "probability", "last", "violation", "by", "if",
-    "else", "sum", "under", "except", "node", "tagged", "from",
+    "assuming", "else", "for", "sum", "under", "except", "node", "tagged", "from", "each", "is", "occurrences",
 )  # fmt: skip
 SIGNAL_WORDS = ("from", "level", "counter", "gauge", "fresh", "within", "initially")
 LOGIC = ("and", "or", "not")
@@ -71,9 +72,10 @@ NODE_SYMBOLS = longest_first(SYMBOLS)
 CATEGORY_WORDS = CATEGORIES
 PORT_WORDS = longest_first(DIRECTIONS)
 CLAUSE_WORDS = tuple(sorted(NODE_CLAUSES))
-VERB_WORDS = longest_first(VERBS)
+VERB_WORDS = longest_first(VERBS_OF_SUBJECTS)
+ANSWERS = sorted(words(operands=("answer",)))
 HEAD_WORDS = longest_first((*HEADS, *METADATA_HEADS, *HAZARD_HEADS))
-REQUIREMENT_WORDS = longest_first((*VERBS, *HEAD_WORDS, *HAPPENINGS, *EXPERIMENTS, *PARTICLES))
+REQUIREMENT_WORDS = longest_first((*VERB_WORDS, *ANSWERS, *HEAD_WORDS, *HAPPENINGS, *EXPERIMENTS, *PARTICLES))
 OUTCOME_WORDS = longest_first((*ACTIONS, *METHODS))
 FUNCTION_WORDS = longest_first(FUNCTIONS)
 COMPARISON_SIGNS = longest_first(COMPARISONS)

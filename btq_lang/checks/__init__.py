@@ -18,7 +18,7 @@ the next.  Checks do not know what an edit changed, nor how findings are printed
     statuses.py, results.py, unreachable.py, reactive.py, preconditions.py, resets.py   what nodes return, and traps
     nav2_nodes.py, nav2_literals.py, unread.py   nodes of Nav2: what they need and share, poses, goals, error codes
     requirements.py, clauses.py, bounds.py, qualities.py, prose.py, wording.py   requirements by themselves
-    chain.py, approvals.py   what they refine and mitigate, and who has approved them
+    chain.py, approvals.py   hazards, and what requirements refine; approvals of an earlier meaning
     demanded.py, demands.py, budgets.py, limits.py, never_counted.py   at their nodes
     signals.py, renewals.py, enforcement.py   likewise, of what the engine is to enforce
     origins.py, placeholders.py   diagnostics shown on XML; classic placeholders
@@ -106,6 +106,7 @@ _OF_CLAUSES: tuple[Check, ...] = (
     requirements.requirement_without_text,
     clauses.duplicate_clause,
     clauses.clause_without_odds,
+    clauses.odds_of_what,
     clauses.unused_parameter,
     chain.unknown_hazard,
     chain.cyclic_refinement,

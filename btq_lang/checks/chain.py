@@ -13,7 +13,7 @@ from btq_lang.checks.view import View, near_names
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
 from btq_lang.syntax.tree import Mitigates, Refines, Requirement, Word, written
 from btq_lang.util.reach import reached
-from btq_lang.util.spelling import did_you_mean
+from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.workspace import inputs
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.symbols import Use
@@ -28,15 +28,35 @@ def unknown_hazard(view: View) -> Iterator[Diagnostic]:
         if view.ask(lookups.is_defined, Kind.REQUIREMENT, use.name):
             yield in_other_clause(view, use, "unknown-hazard")
             continue
+        if may_be_external(view, use.name):
+            continue
         if not view.ask(inputs.is_complete):
             return
         elsewhere = view.ask(lookups.elsewhere, Kind.HAZARD, use.name)
         fixes = tuple(include_fix(view, path) for path in elsewhere[:3])
-        likely = view.ask(near_names, Kind.HAZARD, use.name)
+        likely = (*view.ask(near_names, Kind.HAZARD, use.name), *near_external(view, use.name))
         fixes += tuple(replace_fix(f"Replace `{use.name}` with `{name}`", use.span, written(name)) for name in likely)
         message = f"unknown hazard `{use.name}`{NOWHERE if elsewhere or not likely else did_you_mean(likely)}"
         notes = () if fixes else (f'declare it: `hazard {written(use.name)} "what may go wrong"`',)
         yield Diagnostic("unknown-hazard", use.span, message, notes=notes, fixes=fixes)
+
+
+def is_external(view: View, name: str) -> bool:
+    """Whether another tool keeps a requirement or a hazard of this ID."""
+    imported = view.project.external_requirements
+    return imported is not None and name in imported.by_id
+
+
+def may_be_external(view: View, name: str) -> bool:
+    """Whether another tool keeps it, or may keep it in a file that could not be read."""
+    imported = view.project.external_requirements
+    return is_external(view, name) or (imported is not None and not imported.is_complete)
+
+
+def near_external(view: View, name: str) -> tuple[str, ...]:
+    """The ID of another tool that is spelt nearly so."""
+    imported = view.project.external_requirements
+    return tuple(near(name, imported.by_id, 1)) if imported is not None else ()
 
 
 def in_other_clause(view: View, use: Use, rule: str) -> Diagnostic:

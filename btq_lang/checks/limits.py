@@ -182,7 +182,7 @@ def _limits(claim: ResolvedClaim) -> Iterator[_Limit]:
         yield ("duration",), claim.lowest, claim.highest
     elif claim.signal is not None:
         yield (claim.verb, claim.signal.name), claim.lowest, claim.highest
-    elif claim.verb != "never" and isinstance(claim.condition, Compare):  # the condition is what must not hold
+    elif claim.head != "never" and isinstance(claim.condition, Compare):  # the condition is what must not hold
         yield from _compared(claim.verb, claim.condition)
 
 

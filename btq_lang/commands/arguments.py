@@ -251,6 +251,17 @@ def _add_trace(parser: SuggestingParser) -> None:
     _add_paths(parser)
     _add_evidence(parser, _OF_PROJECT)
     parser.flag("--bundle", "what is enforced in builds with --bundle")
+    parser.add("--priority", action="append", default=[], metavar="NAME", help="only requirements of this priority")
+    parser.add(
+        "--quality", action="append", default=[], metavar="NAME", help="only those for this quality or its parts"
+    )
+    parser.add(
+        "--state",
+        action="append",
+        default=[],
+        metavar="STATE",
+        help="only those that are enforced, violated, suspect, …",
+    )
     parser.add("--format", choices=TRACE_FORMATS, help="default: by the suffix of the -o file, else table")
     parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
     _add_config(parser)

@@ -277,7 +277,7 @@ class _Reader:
             default = f" = {self._text(parameter.default)}" if parameter.default is not None else ""
             values[f"parameter {parameter.name.text}"] = AspectValue(_meaning(parameter), text + default)
         for clause in requirement.clauses:
-            aspect = clause.verb.text if isinstance(clause, syntax.Claim) else _ASPECTS[type(clause)]
+            aspect = clause.row if isinstance(clause, syntax.Claim) else _ASPECTS[type(clause)]
             aspect = numbered(aspect, values)
             values[aspect] = AspectValue(_meaning(clause), self._slice(clause.start, clause.end))
         return self._item("requirement", requirement.name, values, requirement)
@@ -396,6 +396,7 @@ def _default(port: syntax.Port) -> str:
 _MISSION_WORDS: Final = {"main_tree_to_execute": MAIN}
 _ASPECTS: Final[dict[type, str]] = {
     syntax.ScopeClause: "scope",
+    syntax.Assuming: "assumption",
     syntax.Odds: "odds",
     syntax.Confidence: "confidence",
     syntax.Window: "over last",

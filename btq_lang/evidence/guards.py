@@ -157,4 +157,4 @@ def _guard(tree: LoggedTree, uid: int, condition: int, requirement: str) -> Guar
 
 
 # The last word in the name of a Sequence that checks a success, and the verb of its clause.
-_CHECKED: Final = {"leaves": "leaves", "used": "uses"}
+_CHECKED: Final = {"leaves": "leaves", "ends": "ends with", "used": "uses"}

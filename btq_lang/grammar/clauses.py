@@ -25,6 +25,7 @@ from btq_lang.syntax.scan import line_start
 from btq_lang.syntax.suggestions import unknown_unit
 from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPERATOR, QUANTITY, STRING
 from btq_lang.syntax.tree import (
+    Assuming,
     Because,
     Clause,
     Confidence,
@@ -41,6 +42,7 @@ from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 
 EXPERIMENTS: Final = frozenset(("activations", "runs"))
+COUNTED: Final = ("activations", "runs", "occurrences")  # by odds
 ACTIONS: Final = ("fail", "halt", "warn", "log")
 METHODS: Final = ("monitor", "analysis", "test", "review")
 ENDS_CLAUSES: Final = frozenset(("satisfices", "satisfies", "tags", "parameters", "QualityReq", "Quality"))
@@ -68,7 +70,7 @@ def parse_clauses(cursor: Cursor, at_least_one: bool = False) -> tuple[Clause, .
 
 
 def parse_clause(cursor: Cursor) -> Clause | None:
-    """Clause = Claim | Scope | Odds | Confidence | Window | OnViolation | Goal | Because | How | Source | …"""
+    """Clause = Claim | Scope | Assuming | Odds | Confidence | Window | OnViolation | Goal | Because | How | …"""
     word = cursor.raw if cursor.kind == NAME else ""
     if word in VERB_WORDS or word in SUBJECT_HEADS:
         return parse_claim(cursor)
@@ -76,6 +78,8 @@ def parse_clause(cursor: Cursor) -> Clause | None:
         return parse_scope(cursor)
     if word == "in" or word == "with":
         return parse_odds(cursor)
+    if word == "assuming" and is_assumption(cursor):
+        return parse_assuming(cursor)
     if word == "confidence":
         return parse_confidence(cursor)
     if word == "over":
@@ -112,6 +116,14 @@ def parse_scope(cursor: Cursor) -> ScopeClause:
     return ScopeClause(word.start, cursor.last_end(), word, condition)
 
 
+def parse_assuming(cursor: Cursor) -> Assuming:
+    """ "assuming" Cond"""
+    start = cursor.take().start
+    cursor.skip_sign(":")
+    condition = parse_cond(cursor)
+    return Assuming(start, cursor.last_end(), condition)
+
+
 def parse_odds(cursor: Cursor) -> Odds:
     """ "in" "at" "least" QUANTITY "of" Experiments | "with" "probability" ( ">=" | ">" ) QUANTITY [ "of" … ]"""
     start = cursor.start()
@@ -131,8 +143,8 @@ def parse_share(cursor: Cursor, start: int) -> Odds:
         value = parse_percentage(cursor, "at least 98 %", "at least ")
     elif cursor.expect_word("at") and cursor.expect_word("least"):
         value = parse_percentage(cursor, "98 %")
-    if value is not None and cursor.expect_word("of", forgotten=cursor.raw in EXPERIMENTS):
-        experiments = parse_experiments(cursor)
+    if value is not None and cursor.expect_word("of", forgotten=cursor.raw in COUNTED):
+        experiments = parse_one_of(cursor, COUNTED)
     return Odds(start, cursor.last_end(), ">=", value, experiments)
 
 
@@ -158,7 +170,7 @@ def parse_probability(cursor: Cursor, start: int) -> Odds:
                 fixes = (write_fix(written, cursor.here()),)
             cursor.expected("`>=` or `>` and a percentage", (), fixes)
     if value is not None and cursor.accept_word("of"):
-        experiments = parse_experiments(cursor)
+        experiments = parse_one_of(cursor, COUNTED)
     return Odds(start, cursor.last_end(), relation, value, experiments)
 
 
@@ -219,9 +231,7 @@ def parse_how(cursor: Cursor) -> How:
     start = cursor.take().start
     cursor.expect_word("by")
     ways = cursor.listed(parse_way, ways_go_on)
-    first = ways[0] if ways else None
-    method, identifier = (first.method, first.id) if first is not None else (None, None)
-    return How(start, cursor.last_end(), method, identifier, ways[1:])
+    return How(start, cursor.last_end(), ways)
 
 
 def parse_way(cursor: Cursor) -> Way | None:
@@ -288,6 +298,11 @@ def is_bare_id(cursor: Cursor) -> bool:
     if cursor.kind != NAME or cursor.raw in VERB_WORDS or cursor.raw in ENDS_CLAUSES:
         return False
     return cursor.kinds[cursor.index + 1] == NEWLINE or cursor.raws[cursor.index + 1] == ","
+
+
+def is_assumption(cursor: Cursor) -> bool:
+    """Whether `assuming` begins a clause, and is not the subject of one."""
+    return not (is_verb_ahead(cursor, 1) or cursor.is_operator(cursor.index + 1, "/"))
 
 
 def is_other_clause(cursor: Cursor) -> bool:
@@ -391,5 +406,6 @@ _NOT_IN_BTQ: Final = {
     **dict.fromkeys(("approval", "approver", "signed"), "`approved by`, which `btq approve` writes"),
     **dict.fromkeys(("wish", "desire", "target", "ideal", "optional"), "`goal`, a better bound than the required one"),
     **dict.fromkeys(("verification", "verify", "validation"), "`verified by` with a method"),
-    **dict.fromkeys(("precondition", "assumption", "context"), "`while` or `when` with a condition"),
+    **dict.fromkeys(("precondition", "context"), "`while` or `when` with a condition"),
+    **dict.fromkeys(("assumption", "assume", "assumes"), "`assuming` with a condition"),
 }

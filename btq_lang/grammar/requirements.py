@@ -9,8 +9,8 @@ import re
 from typing import Final
 
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, replace_fix, write_fix
-from btq_lang.grammar.claims import MEANT, VERB_WORDS, parse_bounded
-from btq_lang.grammar.clauses import ENDS_CLAUSES, parse_clauses
+from btq_lang.grammar.claims import MEANT, VERB_WORDS, followed_ahead, parse_bounded
+from btq_lang.grammar.clauses import ENDS_CLAUSES, is_assumption, parse_clauses
 from btq_lang.grammar.conditions import HEADS, RELATIONS, close_group
 from btq_lang.grammar.cursor import Cursor
 from btq_lang.grammar.metadata import is_metadata, parse_requirement_id
@@ -221,11 +221,18 @@ def spaced_quality(cursor: Cursor, quality: QualityPath) -> None:
     last = quality.names[-1]
     if cursor.kind != NAME or last.kind != NAME or cursor.kinds[cursor.index + 1] not in (STRING, NEWLINE):
         return
-    if cursor.raw not in VERB_WORDS and cursor.raw not in HEADS and not is_metadata(cursor):
+    if cursor.raw not in VERB_WORDS and cursor.raw not in HEADS and not is_clause_by_context(cursor):
         fix = write_fix("-", Span(last.end + cursor.base, cursor.here().start))
         span = Span(last.start + cursor.base, cursor.here().end)
         cursor.complain(span, "a quality's name has no spaces", fix)
         cursor.advance()
+
+
+def is_clause_by_context(cursor: Cursor) -> bool:
+    """Whether the current word begins a clause by what follows it."""
+    if cursor.raw == "each":
+        return followed_ahead(cursor) > 0
+    return is_assumption(cursor) if cursor.raw == "assuming" else is_metadata(cursor)
 
 
 def second_quality(cursor: Cursor, requirement: Requirement) -> None:
@@ -248,7 +255,7 @@ def bare_title(cursor: Cursor, has_quality: bool) -> Word | None:
         or cursor.raw in VERB_WORDS
         or cursor.raw in HEADS
         or cursor.raw in ENDS_CLAUSES
-        or is_metadata(cursor)
+        or is_clause_by_context(cursor)
     ):
         return None
     is_word = cursor.kinds[following] == NEWLINE

@@ -47,18 +47,30 @@ def expected(words: Sequence[Token]) -> Expected:
         return _in_brackets(words, opened)
     last = words[-1]
     before = words[-2].text if len(words) > 1 else ""
-    earlier = [word.text for word in words]
+    earlier = joined([word.text for word in words])
     text = last.text if last.kind not in (STRING, BRACED) else ""
     if (of_approval := _in_approval(words)) is not None:
         return of_approval
     if text == "," and (head := _begins_last(earlier, _CLAUSES)) in _LISTS:
         return _LISTS[head]
+    head_of_event = _begins_last(_without_other_events(earlier), _HEADS_OF_EVENTS)
+    if text == "or" and before in HAPPENINGS and head_of_event in _EVENTS:
+        return _EVENT
     if text == "of" and _begins_last(earlier, (*_USES, "sum", "in", "with")) in _USES:
         return Expected(signal=True)
     if text == "of":
         return Expected(node=True) if before == "sum" else Expected(_EXPERIMENTS)
+    if text == "by" and before == "followed":
+        return replace(_EVENT, condition=True)
     if text == "and" and _begins_last(earlier, ("between", *_CONDITIONS)) == "between":
         return Expected(value=True)
+    if text in HAPPENINGS and (head := _begins_last(_without_other_events(earlier[:-1]), _HEADS_OF_EVENTS)) in _EVENTS:
+        if head in _AFTER_EVENT:
+            return Expected((_AFTER_EVENT[head], "or"))
+        in_time = ("within",) if _is_answer(earlier) else ()
+        return Expected(("or", *in_time), clause=True)
+    if text == "with" and earlier[-1] == "ends with":
+        return _CONDITION
     if text in _AFTER:
         return _AFTER[text]
     if text in COMPARISONS or text in ("+", "-", "*", "/"):
@@ -68,10 +80,10 @@ def expected(words: Sequence[Token]) -> Expected:
             return Expected(_EXPERIMENTS) if last.kind == NUMBER else Expected(clause=True)
         return Expected(_after_value(earlier), clause=True)
     if last.kind in (NAME, STRING, CLOSE) or text in HAPPENINGS:
-        if _begins_last(earlier, (*_EVENTS, *_CLAUSES)) in _EVENTS and text not in HAPPENINGS:
+        if head_of_event == "followed" and text not in HAPPENINGS:
+            return Expected((*_HAPPENINGS, *_AFTER_OPERAND, "within"), clause=True)
+        if head_of_event in _EVENTS and text not in HAPPENINGS:
             return Expected(_HAPPENINGS)
-        if text in HAPPENINGS and _begins_last(earlier, ("from", "to", *_CLAUSES)) == "from":
-            return Expected(("to",))
         return Expected(_after_value(earlier), clause=True)
     return Expected(clause=True)
 
@@ -92,10 +104,21 @@ def opens_condition(words: Sequence[Token]) -> bool:
     """Whether a bracket after these words belongs to a condition: around a part of it, or after a function."""
     if words and words[-1].kind == OPEN:
         return True
-    if not any(word.text in _BEFORE_CONDITIONS for word in words):
+    if not any(word in _BEFORE_CONDITIONS for word in joined([word.text for word in words])):
         return False
     wanted = _at_bracket(words[:-1] if _is_function(words[-1]) else words)
     return wanted.condition or wanted.operand
+
+
+def joined(words: Sequence[str]) -> list[str]:
+    """The words of a clause, a verb of two words as one."""
+    together: list[str] = []
+    for word in words:
+        if together and f"{together[-1]} {word}" in VERBS:
+            together[-1] += f" {word}"
+        else:
+            together.append(word)
+    return together
 
 
 def is_count(words: Sequence[str]) -> bool:
@@ -120,6 +143,12 @@ def _in_brackets(words: Sequence[Token], opened: int) -> Expected:
     if not is_after:
         return _at_bracket(words)
     wanted = replace(expected([word for word in words if word.kind != OPEN]), clause=False)
+    inside = [word.text for word in words[opened + 1 :]]
+    if words[opened - 1].text in _BEFORE_VALUES and words[-1].kind in (NAME, NUMBER, QUANTITY):
+        if len(inside) == 1:
+            return replace(wanted, words=(*_AFTER_OPERAND, "if"))
+        if "if" in inside and "else" not in inside and inside[-1] not in _AFTER:
+            return replace(wanted, words=("and", "or", "else"))
     return replace(wanted, words=_AFTER_OPERAND) if "else" in wanted.words else wanted
 
 
@@ -142,6 +171,18 @@ def _begins_last(words: Sequence[str], heads: Sequence[str]) -> str:
     return next((word for word in reversed(words) if word in heads), "")
 
 
+def _is_answer(words: Sequence[str]) -> bool:
+    """Whether these words end in what follows an event, perhaps before its deadline."""
+    return _begins_last([word for word in words if word not in HAPPENINGS], _CLAUSES) == "followed"
+
+
+def _without_other_events(words: Sequence[str]) -> list[str]:
+    """The words without what happens in each of several events but the last."""
+    return [
+        word for word, after in zip(words, [*words[1:], ""], strict=True) if word not in HAPPENINGS or after != "or"
+    ]
+
+
 def _after_value(words: Sequence[str]) -> tuple[str, ...]:
     head = _begins_last(words, _CLAUSES)
     if head in _USES and "of" not in words[last_index(words, head) :]:
@@ -154,10 +195,14 @@ def _after_value(words: Sequence[str]) -> tuple[str, ...]:
         return ("of runs", "of activations")
     if head == "over":
         return _EXPERIMENTS
+    if head == "never" and "for" in words[last_index(words, head) :]:
+        return ("if",)
     if head in _CONDITIONS:
-        return _AFTER_OPERAND
+        return (*_AFTER_OPERAND, "for more than") if head == "never" else _AFTER_OPERAND
     if head == "verified" and words[-1] in METHODS:
         return ('""',)
+    if head == "followed" and "within" not in words[last_index(words, head) :]:
+        return (*_AFTER_OPERAND, "within")
     if "if" in words:
         return ("and", "or", "else")
     return ("if",) if head in _TIMED or head == "goal" else ()
@@ -175,15 +220,33 @@ _COUNTED = words_of(operands=("count", "rate"))
 _REACTIONS = words_of(operands=("reaction",))
 _TIMED = words_of(operands=("duration", "deadline"))
 _USES = words_of(operands=("use",))
-_CONDITIONS = (*words_of(operands=("condition",)), "while", "when", "context")
+_CONDITIONS = (*words_of(operands=("condition",)), "while", "when", "assuming", "context")
 _BEFORE_CONDITIONS = frozenset((*_CONDITIONS, "if"))
 _AFTER_OPERAND = ("and", "or", "<=", ">=", "<", ">", "==", "!=")
-_EVENTS = (*words_of(operands=("event",)), "after", "from", "to")
+_BEFORE_VALUES = frozenset((*COMPARISONS, "+", "-", "*", "/"))
+_EVENTS = (*words_of(operands=("event",)), "after", "from", "to", "each", "followed")
+_AFTER_EVENT = {"from": "to", "each": "is followed by"}  # between two events
 _CLAUSES = (
     *VERBS,
-    *("in", "with", "confidence", "over", "on", "goal", "because", "verified", "from", "while", "when", "context"),
+    *(
+        "assuming",
+        "in",
+        "with",
+        "confidence",
+        "over",
+        "on",
+        "goal",
+        "because",
+        "verified",
+        "from",
+        "while",
+        "when",
+        "context",
+        "each",
+    ),
     *METADATA_HEADS,
 )
+_HEADS_OF_EVENTS = (*_EVENTS, *_CLAUSES)
 _CONDITION = Expected(condition=True)
 _VALUE = Expected(value=True)
 _EVENT = Expected(("mission", "when"), node=True)
@@ -199,18 +262,25 @@ _OPERANDS = {
     "rate": Expected(("every", *_BOUNDS)),
     "deadline": Expected(("within",), clause=True),
     "reaction": Expected(("within",)),
-    "condition": _CONDITION,
+    **dict.fromkeys(("condition", "stretch"), _CONDITION),
     "event": _EVENT,
+    "answer": Expected(("by",)),
 }
 # The verbs of things that a mission does once, from its start to its end.
-_OF_MISSIONS = [verb.word for verb in VERBS.values() if verb.judged in ("at its end", "while it runs")]
+_OF_MISSIONS = [
+    verb.word
+    for verb in VERBS.values()
+    if verb.judged in ("at its end", "while it runs") and verb.operand != "stretch"  # it begins as `never` does
+]
 _AFTER = {
     **{verb.word: _OPERANDS[verb.operand] for verb in VERBS.values()},
+    "ends": Expected(("within", "with")),
     **dict.fromkeys(("within", "goal", "most", "least", "than", "between", "else"), _VALUE),
     "at": Expected(("most", "least")),
     "less": Expected(("than",)),
     "more": Expected(("than",)),
-    **dict.fromkeys(("while", "when", "if", "and", "or", "not"), _CONDITION),
+    "for": Expected(("more than",)),
+    **dict.fromkeys(("while", "when", "assuming", "if", "and", "or", "not"), _CONDITION),
     "on": Expected(("violation",)),
     "violation": Expected(ACTIONS),
     "verified": Expected(("by",)),
@@ -220,7 +290,8 @@ _AFTER = {
     "probability": Expected((">=", ">")),
     "over": Expected(("last",)),
     "sum": Expected(("of",)),
-    **dict.fromkeys(("after", "from", "to"), _EVENT),
+    **dict.fromkeys(("after", "from", "to", "each"), _EVENT),
+    "is": Expected(("followed by",)),
     "mission": Expected((*_OF_MISSIONS, *_HAPPENINGS)),
     "per": Expected(node=True),
     "every": Expected(value=True, node=True),

@@ -383,6 +383,8 @@ def _clause_words(workspace: Workspace, path: str, wanted: Expected, place: Curs
         yield from offer.requirement_ids(workspace, path, place)
     if wanted.hazard:
         yield from offer.hazards(workspace, path)
+    if wanted.requirement or wanted.hazard:
+        yield from offer.external_ids(workspace, place)
     if wanted.node and place.last == "every":
         yield from offer.kinds(workspace, path)
     elif wanted.node:
@@ -456,7 +458,7 @@ def _in_list(workspace: Workspace, path: str, place: CursorPlace, word: str) -> 
         yield from offer.tags(workspace, path)
 
 
-_FUNCTIONS = ("max()", "min()", "mean()", "p95()")
+_FUNCTIONS = ("max()", "min()", "mean()", "p95()", "age()")
 _DECLARED = {
     "BehaviorTree": (Kind.TREE, What.TREE),
     "SubTree": (Kind.TREE, What.TREE),

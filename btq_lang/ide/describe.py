@@ -12,6 +12,7 @@ from btq_lang.catalog.units import BASES, Unit, convert, dimension_name, parse_u
 from btq_lang.checks.includes import include_line
 from btq_lang.checks.lookups import head
 from btq_lang.diagnostics.rules import RULES, page
+from btq_lang.ide.external import described
 from btq_lang.ide.meaning import (
     ROOT_BLACKBOARD,
     ReferenceAt,
@@ -313,6 +314,9 @@ def documentation(workspace: Workspace, path: str, kind: str, name: str) -> str 
     if kind == "hazard":
         definition = _definition(workspace, path, Kind.HAZARD, name)
         return hazard(workspace, definition) if definition else None
+    if kind == "external":
+        imported = workspace.project.external_requirements
+        return described(workspace, imported.by_id[name]) if imported and name in imported.by_id else None
     if kind in ("signal", "context"):
         definition = _definition(workspace, path, Kind.SIGNAL if kind == "signal" else Kind.CONTEXT, name)
         return declared(workspace, definition) if definition else None

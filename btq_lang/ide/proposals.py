@@ -45,8 +45,8 @@ class Proposal(Record):
     """A word that may follow at a place.
 
     Attributes:
-        kind: keyword, node, tree, requirement, hazard, quality, signal, context, parameter, port, attribute, key, unit,
-            file, rule, tag, instance, enum or snippet.
+        kind: keyword, node, tree, requirement, hazard, external, quality, signal, context, parameter, port, attribute,
+            key, unit, file, rule, tag, instance, enum or snippet.
         detail: shown beside it in the list.
         insert: the text to insert; `snippet`: the same as a snippet of LSP.
         filter: the text that the typed letters are compared with, if not the label.
@@ -159,6 +159,15 @@ def hazards(workspace: Workspace, path: str) -> Iterator[Proposal]:
         item, name = definition.symbol.target, definition.symbol.name
         text = " ".join(item.text.text.split()) if isinstance(item, Hazard) and item.text is not None else ""
         yield Proposal(name, "hazard", text, written(name), None, "", name, include)
+
+
+def external_ids(workspace: Workspace, place: CursorPlace) -> Iterator[Proposal]:
+    """The requirements of other tools, without those that the clause has."""
+    imported = workspace.project.external_requirements
+    written_names = [word_text(word) for word in place.words]
+    for one in imported.by_id.values() if imported is not None else ():
+        if one.id not in written_names:
+            yield Proposal(one.id, "external", one.title, written(one.id), None, "", one.id)
 
 
 def undeclared(workspace: Workspace, path: str, kind: Kind, what: What) -> Iterator[Proposal]:
@@ -444,6 +453,7 @@ _CLAUSES = (
     ("sum of", None),
     ("while", None),
     ("when", None),
+    ("assuming", None),
     ("in at least", "in at least ${1:95 %} of ${0:runs}"),
     ("with probability", "with probability >= ${1:95 %} of ${0:runs}"),
     ("confidence", "confidence ${0:95 %}"),

@@ -33,7 +33,7 @@ class ExternalFiles:
             requirements += of_file
             if problem and home.path is not None:
                 problems.append(LoadProblem(home.path, problem, self._place(home.path, name)))
-        project = replace(home.project, external_requirements=ExternalRequirements(requirements))
+        project = replace(home.project, external_requirements=ExternalRequirements(requirements, not problems))
         return replace(home, project=project, problems=(*home.problems, *problems))
 
     def _requirements(self, name: str, path: str) -> tuple[list[ExternalRequirement], str]:

@@ -17,7 +17,7 @@ from btq_lang.workspace import inputs
 from btq_lang.workspace.queries import Store, on_circle
 from btq_lang.workspace.workspace import Workspace
 
-# open: it has no approval; suspect: what it means, or what it refines, has changed since.
+# open: not approved; suspect: what it means, or what it refines, has changed since.
 State: TypeAlias = Literal["open", "approved", "suspect"]
 
 

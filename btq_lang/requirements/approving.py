@@ -18,7 +18,7 @@ from btq_lang.workspace.workspace import Workspace
 
 
 def with_approval(workspace: Workspace, definition: Definition, by: str, on: str) -> str | None:
-    """The text of a file after the approval of one of its requirements as it is; None if it cannot be written.
+    """The text of a file after one of its requirements was approved as it is; None if it cannot be written.
 
     An earlier approval by the same person is replaced; if that is current, the text stays.
 

@@ -28,6 +28,7 @@ def with_clauses(
     claims: list[model.ResolvedClaim] = []
     unread: list[str] = []
     scopes: list[model.ResolvedScope] = []
+    assumptions: list[model.ResolvedScope] = []
     once: dict[str, object] = {}
     reasons: list[str] = []
     metadata: list[syntax.Clause] = []
@@ -49,6 +50,11 @@ def with_clauses(
             if condition is not None:
                 word = "while" if clause.word.raw == "while" else "when"
                 scopes.append(model.ResolvedScope(word, condition, reader.text(clause.start, clause.end)))  # type: ignore[arg-type]  # one of the two
+        elif isinstance(clause, syntax.Assuming):
+            condition = reader.condition(clause.condition)
+            if condition is not None:
+                text = reader.text(clause.start, clause.end)
+                assumptions.append(model.ResolvedScope("assuming", condition, text))
         elif isinstance(clause, syntax.Odds):
             keep("odds", _odds(reader, clause))
         elif isinstance(clause, syntax.Confidence):
@@ -74,6 +80,7 @@ def with_clauses(
         claims=(*requirement.claims, *claims),
         unread=(*requirement.unread, *unread),
         scopes=(*requirement.scopes, *scopes),
+        assumptions=(*requirement.assumptions, *assumptions),
         reasons=(*requirement.reasons, *reasons),
         **once,
     )
@@ -98,16 +105,21 @@ def claim_of(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | Non
 
 def _verb(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | None:
     place = reader.place(Span(written.start, written.end))
-    claim = model.ResolvedClaim(written.verb.raw, reader.text(written.start, written.end), place)
+    claim = model.ResolvedClaim(written.row, reader.text(written.start, written.end), place)
     operand = VERBS[claim.verb].operand
     if operand == "condition":
         condition = reader.condition(written.condition)
         return replace(claim, condition=condition) if condition is not None else None
+    if operand == "stretch":
+        condition, limit = reader.condition(written.condition), _limit(reader, written.bound, DURATION)
+        return replace(claim, condition=condition, limit=limit) if condition is not None and limit is not None else None
     if operand == "event":
         event = _event(reader, written.event)
         return replace(claim, event=event) if event is not None else None
     if operand == "deadline" and written.bound is None:
         return claim
+    if operand == "answer":
+        return _followed(reader, written, claim)
     signal: model.ResolvedSignal | None = None
     wanted: Wanted | None = DURATION if operand in _TIMED or written.every else _COUNTED
     if operand == "use":
@@ -123,6 +135,16 @@ def _verb(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | None:
     if per is None and (written.per is not None or (operand == "rate" and not written.every)):
         return None
     return claim if per is None else replace(claim, per=per)
+
+
+def _followed(reader: Reader, written: syntax.Claim, claim: model.ResolvedClaim) -> model.ResolvedClaim | None:
+    """What follows an event: another one, or a condition that holds, and by when."""
+    event = _event(reader, written.event)
+    condition = reader.condition(written.condition) if written.condition is not None else None
+    limit = _limit(reader, written.bound, DURATION)
+    if (event is None and condition is None) or (limit is None and written.bound is not None):
+        return None
+    return replace(claim, event=event, condition=condition, limit=limit)
 
 
 def _resource(reader: Reader, word: syntax.Word | None) -> tuple[model.ResolvedSignal | None, Wanted | None]:
@@ -165,7 +187,17 @@ def _per(reader: Reader, written: syntax.Path | syntax.Word | None) -> model.Nod
 _RUN = frozenset(("mission", "run", "execution", "trial", "tree"))
 
 
-def _event(reader: Reader, written: syntax.Event | None) -> model.ResolvedEvent | None:
+def _event(
+    reader: Reader, written: syntax.Event | syntax.AnyEvent | None
+) -> model.ResolvedEvent | model.ResolvedAnyEvent | None:
+    if not isinstance(written, syntax.AnyEvent):
+        return _event_atom(reader, written)
+    atoms = [_event_atom(reader, atom) for atom in written.atoms]
+    understood = tuple(atom for atom in atoms if atom is not None)
+    return model.ResolvedAnyEvent(understood) if len(understood) == len(atoms) else None
+
+
+def _event_atom(reader: Reader, written: syntax.Event | None) -> model.ResolvedEvent | None:
     if written is None:
         return None
     if written.happening == "when":
@@ -188,6 +220,9 @@ def _subject(reader: Reader, written: syntax.Subject) -> model.Subject | None:
     if isinstance(written, syntax.Between):
         first, last = _event(reader, written.first), _event(reader, written.last)
         return model.Interval(first, last) if first is not None and last is not None else None
+    if isinstance(written, syntax.EachEvent):
+        event = _event(reader, written.event)
+        return model.ResolvedEachEvent(event) if event is not None else None
     assert isinstance(written, syntax.Sum), "the last kind of subject"
     targets = [reader.target(path) for path in written.paths]
     nodes_named = tuple(target for target in targets if target is not None)
@@ -202,10 +237,10 @@ def _odds(reader: Reader, written: syntax.Odds) -> model.ResolvedOdds | None:
         message = f"expected a probability above 0 and up to 100 %, found `{written.value.raw}`"
         reader.complain("impossible-odds", written.value.span, message)
         return None
-    of_runs = written.experiments is not None and written.experiments.raw == "runs"
+    experiments = written.experiments.raw if written.experiments is not None else "activations"
     text = reader.text(written.start, written.end)
     place = reader.place(Span(written.start, written.end))
-    return model.ResolvedOdds(written.relation, share.si, "runs" if of_runs else "activations", text, place)
+    return model.ResolvedOdds(written.relation, share.si, experiments, text, place)  # type: ignore[arg-type]  # the parser's words
 
 
 def _confidence(reader: Reader, written: syntax.Confidence) -> float | None:
@@ -260,6 +295,6 @@ def parameter_of(reader: Reader, written: syntax.Parameter) -> model.ResolvedPar
     return replace(parameter, default=default)
 
 
-_TIMED: Final = ("duration", "deadline", "reaction")
+_TIMED: Final = ("duration", "deadline", "reaction", "answer", "stretch")
 _COUNTED: Final = Wanted("a number", (model.NO_DIMENSION, COUNT), None)
 _SHARE: Final = Wanted("a percentage", (PERCENT,), "%")

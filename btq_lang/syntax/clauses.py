@@ -81,6 +81,17 @@ class Event(Part):
     happening: str
     condition: Condition | None = None
 
+    @property
+    def atoms(self) -> tuple[Event | None, ...]:
+        """This one, as of several events."""
+        return (self,)
+
+
+class AnyEvent(Part):
+    """`Pick fails or Place fails`: any of several events, of which only the last may be a condition."""
+
+    atoms: tuple[Event | None, ...]
+
 
 class Mission(Part):
     """The subject `mission`: the whole run."""
@@ -95,8 +106,8 @@ class Every(Part):
 class Between(Part):
     """The subject `from Pick starts to Place succeeds`."""
 
-    first: Event | None
-    last: Event | None
+    first: Event | AnyEvent | None
+    last: Event | AnyEvent | None
 
 
 class Sum(Part):
@@ -105,19 +116,25 @@ class Sum(Part):
     paths: tuple[Path, ...]
 
 
-Subject: TypeAlias = Path | Mission | Every | Between | Sum
+class EachEvent(Part):
+    """The subject `each Pick fails`: each occurrence of an event."""
+
+    event: Event | AnyEvent | None
+
+
+Subject: TypeAlias = Path | Mission | Every | Between | Sum | EachEvent
 
 
 class Claim(Part):
     """A demand of a requirement: a subject (None: the node it is attached to), a verb and its operands.
 
     Attributes:
-        verb: takes, succeeds, needs, keeps, never, leaves, uses, tries, runs, starts, ends or follows.
-        bound: of takes, uses, tries, runs; for `within d` and `runs every d`, `<= d`.
-        condition: of needs, keeps, never, leaves.
+        verb: takes, succeeds, needs, keeps, never, leaves, uses, tries, runs, starts, ends, follows or followed.
+        bound: of takes, uses, tries, runs; for `within d`, `runs every d` and `never φ for more than d`, `<= d`.
+        condition: of needs, keeps, never, leaves, ends with, and of followed if it is followed by one.
         resource: of uses: the signal.
         per: of tries: the path; of runs: the quantity.
-        event: of starts, ends, follows.
+        event: of starts, ends, follows, followed.
         every: `runs every d`.
     """
 
@@ -127,14 +144,29 @@ class Claim(Part):
     condition: Condition | None = None
     resource: Word | None = None
     per: Path | Word | None = None
-    event: Event | None = None
+    event: Event | AnyEvent | None = None
     every: bool = False
+
+    @property
+    def row(self) -> str:
+        """The verb's row in `catalog.verbs`: of `ends with battery_low` the one of `ends with`."""
+        if self.condition is None:
+            return self.verb.raw
+        if self.verb.raw == "never" and self.bound is not None:
+            return "never for"
+        return "ends with" if self.verb.raw == "ends" else self.verb.raw
 
 
 class ScopeClause(Part):
     """`while φ` or `when φ`."""
 
     word: Word
+    condition: Condition | None
+
+
+class Assuming(Part):
+    """`assuming φ`: runs, or activations, without φ all along are not applicable."""
+
     condition: Condition | None
 
 
@@ -185,18 +217,9 @@ class Way(Part):
 
 
 class How(Part):
-    """`verified by test "TC-12", review`.  method, id: of the first way; further: the others."""
+    """`verified by test "TC-12", review`."""
 
-    method: Word | None
-    id: Word | None = None
-    further: tuple[Way, ...] = ()
-
-    @property
-    def ways(self) -> tuple[Way, ...]:
-        """All of them."""
-        end = (self.id or self.method or self).end
-        first = () if self.method is None else (Way(self.method.start, end, self.method, self.id),)
-        return (*first, *self.further)
+    ways: tuple[Way, ...]
 
 
 class Source(Part):
@@ -240,6 +263,7 @@ class HazardSeverity(Part):
 Clause: TypeAlias = (
     Claim
     | ScopeClause
+    | Assuming
     | Odds
     | Confidence
     | Window
@@ -282,6 +306,12 @@ class Call(Part):
     signal: Word | None
 
 
+class Choice(Part):
+    """`(0.5 m/s if near else 1 m/s)`: a value for each context."""
+
+    table: Table
+
+
 class NodeRuns(Part):
     """`node BatteryCheck/MoveBase`: true while that node runs."""
 
@@ -315,4 +345,4 @@ class Comparison(Part):
     operands: tuple[Condition, ...]
 
 
-Condition: TypeAlias = Operand | Call | NodeRuns | Negative | Not | Binary | Comparison
+Condition: TypeAlias = Operand | Call | Choice | NodeRuns | Negative | Not | Binary | Comparison

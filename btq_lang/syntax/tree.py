@@ -14,8 +14,10 @@ from typing import TypeAlias
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.syntax.clauses import METADATA as METADATA
 from btq_lang.syntax.clauses import Amount as Amount
+from btq_lang.syntax.clauses import AnyEvent as AnyEvent
 from btq_lang.syntax.clauses import Approval as Approval
 from btq_lang.syntax.clauses import Argument as Argument
+from btq_lang.syntax.clauses import Assuming as Assuming
 from btq_lang.syntax.clauses import Because as Because
 from btq_lang.syntax.clauses import Between as Between
 from btq_lang.syntax.clauses import Binary as Binary
@@ -23,11 +25,13 @@ from btq_lang.syntax.clauses import Bound as Bound
 from btq_lang.syntax.clauses import Bounded as Bounded
 from btq_lang.syntax.clauses import Call as Call
 from btq_lang.syntax.clauses import Case as Case
+from btq_lang.syntax.clauses import Choice as Choice
 from btq_lang.syntax.clauses import Claim as Claim
 from btq_lang.syntax.clauses import Clause as Clause
 from btq_lang.syntax.clauses import Comparison as Comparison
 from btq_lang.syntax.clauses import Condition as Condition
 from btq_lang.syntax.clauses import Confidence as Confidence
+from btq_lang.syntax.clauses import EachEvent as EachEvent
 from btq_lang.syntax.clauses import Event as Event
 from btq_lang.syntax.clauses import Every as Every
 from btq_lang.syntax.clauses import Goal as Goal

@@ -17,19 +17,21 @@ from btq_lang.catalog.qualities import Edition, get, qualities
 from btq_lang.diagnostics.model import Place
 from btq_lang.evidence.boxes import measured_by
 from btq_lang.evidence.sentences import result
-from btq_lang.evidence.verdicts import WORST_FIRST, RequirementVerdict
+from btq_lang.evidence.verdicts import WORST_FIRST, RequirementVerdict, worst_of
 from btq_lang.graph.figure import Box, MeasuredClause, Note
 from btq_lang.graph.missions import by_tree, concerns, figure, requirement_note
 from btq_lang.requirements.approval import approval_state
 from btq_lang.requirements.model import Applied, MissionRun, NodeTarget, ResolvedRequirement
 from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.syntax.tree import Hazard, QualityDecl, written
+from btq_lang.trace.chain import chained
 from btq_lang.trace.meanings import Meanings, NameMeaning
 from btq_lang.trace.metadata import hazard_row, metadata_fields, mitigated
 from btq_lang.trace.overview import (
     WAYS,
     AppliedRequirement,
     At,
+    BuildVerdicts,
     ClauseEvidence,
     HazardRow,
     NodeRow,
@@ -47,11 +49,13 @@ from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
+    from btq_lang.evidence.verdicts import Verdict
     from btq_lang.trace.overview import Carries
     from btq_lang.trace.ways import Ways
 
     BoxDetails: TypeAlias = Callable[[ResolvedNode], tuple[tuple[str, ...], str]]
     VerdictsOf: TypeAlias = Callable[[str], Sequence[RequirementVerdict]]
+    BuildsOf: TypeAlias = Callable[[str], Sequence[tuple[str, Sequence[RequirementVerdict]]]]
     _Key: TypeAlias = tuple[int, int]  # where a requirement is defined
 
 
@@ -61,6 +65,7 @@ def collect(
     shown: Callable[[str], str] = str,
     details_of: BoxDetails | None = None,
     verdicts_of: VerdictsOf | None = None,
+    builds_of: BuildsOf | None = None,
 ) -> Overview:
     """The overview of missions.
 
@@ -71,26 +76,34 @@ def collect(
         shown: gives a path as people read it.
         details_of: gives further lines for the box of a node, and its class in the drawing.
         verdicts_of: gives the verdicts on the mission with a path; None: there is no evidence.
+        builds_of: gives them by the labels of builds, in the order of time; None: builds are not known apart.
     """
-    collector = _Collector(ways, shown, details_of, verdicts_of)
+    collector = _Collector(ways, shown, details_of, verdicts_of, builds_of)
     files: list[str] = []
     for workspace, requested in parts:
         included = {path for each in requested for path in workspace.closure(each) if path != each}
         for path in [each for each in requested if each not in included] or requested:
             files.append(shown(path))
             collector.add(workspace, path)
-    return collector.overview(tuple(files))
+    overview = collector.overview(tuple(files))
+    return chained(overview, (workspace.project for workspace, _ in parts), shown)
 
 
 class _Collector:
     """The rows so far, by what they represent, and what is added to them at the end."""
 
     def __init__(
-        self, ways: Ways, shown: Callable[[str], str], details_of: BoxDetails | None, verdicts_of: VerdictsOf | None
+        self,
+        ways: Ways,
+        shown: Callable[[str], str],
+        details_of: BoxDetails | None,
+        verdicts_of: VerdictsOf | None,
+        builds_of: BuildsOf | None,
     ) -> None:
         self._ways = ways
         self._details_of = details_of
         self._verdicts_of = verdicts_of
+        self._builds_of = builds_of
         self._shown = shown
         self._edition: Edition | None = None
         self._nodes: dict[int, NodeRow] = {}  # by `id` of the syntax, which all missions share
@@ -102,6 +115,7 @@ class _Collector:
         self._uses: defaultdict[_Key, dict[AppliedRequirement, None]] = defaultdict(dict)
         self._loose: dict[_Key, list[str]] = {}  # without a node in every mission in which other clauses have one
         self._verdicts: defaultdict[_Key, list[ClauseEvidence]] = defaultdict(list)
+        self._builds: defaultdict[str, defaultdict[_Key, list[Verdict]]] = defaultdict(lambda: defaultdict(list))
         self._qualities: dict[str, QualityRow] = {}
         self._hazards: dict[int, HazardRow] = {}  # by `id` of the syntax
         self._concerned: defaultdict[str, dict[str, None]] = defaultdict(dict)  # the nodes that satisfice a quality
@@ -153,6 +167,12 @@ class _Collector:
             trees,
             _totals(edition, rows, quality_rows, characteristics),
             self._verdicts_of is not None,
+            builds=tuple(
+                BuildVerdicts(
+                    label, tuple((self._requirements[key].key, worst_of(own)) for key, own in verdicts.items())
+                )
+                for label, verdicts in self._builds.items()
+            ),
             hazards=tuple(mitigated(row, rows) for row in self._hazards.values()),
         )
 
@@ -217,6 +237,10 @@ class _Collector:
                     ClauseEvidence(self._shown(path), clause.text, clause.path, clause.verdict, result(clause))
                     for clause in verdicts.clauses
                 ]
+        for label, of_build in self._builds_of(path) if self._builds_of is not None else ():
+            for verdicts in of_build:
+                if (requirement := resolved.all.get(verdicts.id)) is not None:
+                    self._builds[label][_place_of(requirement)].append(verdicts.verdict)
 
     def _quality(self, name: str, meanings: Meanings, location: At) -> str:
         """The key of a quality, which is added if it is new."""
@@ -348,8 +372,7 @@ def _subject(applied: Applied) -> str:
         return "/".join((*subject.through, applied.tree or _name(subject.node)))
     if isinstance(subject, MissionRun):
         return "mission"
-    claim = applied.requirement.claims[0]
-    return claim.text.partition(f" {claim.verb} ")[0]
+    return applied.requirement.claims[0].subject_text
 
 
 def _node(key: str, source: ResolvedNode, location: At) -> NodeRow:
@@ -373,7 +396,7 @@ def _note(key: str, applied: Applied, use: AppliedRequirement, measured: tuple[M
 
 def _stated(requirement: ResolvedRequirement) -> Iterator[str]:
     yield from (claim.text for claim in requirement.claims)
-    yield from (scope.text for scope in requirement.scopes)
+    yield from (scope.text for scope in (*requirement.scopes, *requirement.assumptions))
     if requirement.odds is not None:
         yield requirement.odds.text
     if requirement.confidence is not None:
@@ -393,6 +416,14 @@ def _stated(requirement: ResolvedRequirement) -> Iterator[str]:
             yield f"{head} {', '.join(map(written, names))}"
     if requirement.priority is not None:
         yield f"priority {written(requirement.priority)}"
+
+
+def totals_of(overview: Overview) -> tuple[TotalRow, ...]:
+    """The totals of the requirements and qualities that an overview has."""
+    characteristics = {quality.key: quality.characteristic for quality in overview.qualities}
+    keys = ((row.quality_key, *row.further_quality_keys) for row in overview.requirements)
+    by_requirement = [frozenset(characteristics.get(key or "") for key in of_row) for of_row in keys]
+    return _totals(overview.edition, overview.requirements, overview.qualities, by_requirement)
 
 
 def _totals(

@@ -6,7 +6,8 @@ The document, format 1; a later btq adds keys but changes none without a new num
      "requirements": [{"key": KEY, "id": NAME, "title": TEXT, "quality": NAME | null, "quality_key": KEY | null,
                        "further_qualities": [{"name": NAME, "key": KEY}],
                        "how": TEXT, "clauses": [TEXT], "at": PLACE,
-                       "sources": [TEXT], "refines": [NAME], "mitigates": [NAME], "priority": NAME | null,
+                       "sources": [TEXT], "refines": [NAME], "refined_by": [KEY], "mitigates": [NAME],
+                       "priority": NAME | null,
                        "verified_by": [{"method": "monitor" | "analysis" | "test" | "review", "id": TEXT | null}],
                        "approvals": [{"by": TEXT, "on": TEXT, "of": FINGERPRINT | null}],
                        "state": "open" | "approved" | "suspect", "fingerprint": FINGERPRINT,
@@ -21,6 +22,8 @@ The document, format 1; a later btq adds keys but changes none without a new num
                                                    "how": "enforced" | "monitored" | "reviewed"}]}]}],
      "hazards": [{"key": KEY, "id": NAME, "title": TEXT, "severity": NAME | null, "sources": [TEXT], "reasons": [TEXT],
                   "at": PLACE, "requirements": [KEY]}],
+     "external": [{"key": KEY, "id": NAME, "title": TEXT, "status": TEXT, "url": TEXT, "at": PLACE,
+                   "requirements": [KEY]}],
      "qualities": [{"key": KEY, "name": NAME, "id": NAME | null, "characteristic": NAME | null, "definition": TEXT,
                     "at": PLACE, "concerns": [KEY], "requirements": [KEY]}],
      "nodes": [{"key": KEY, "name": TEXT, "tree": NAME, "category": NAME | null, "skill": BOOL,
@@ -30,14 +33,18 @@ The document, format 1; a later btq adds keys but changes none without a new num
                  "enforced": N, "monitored": N, "reviewed": N}],
      "gaps": {"hard_requirements_not_enforced": [KEY], "qualities_without_requirements": [KEY],
               "requirements_without_nodes": [KEY], "clauses_without_nodes": [{"requirement": KEY, "clause": TEXT}],
-              "nodes_without_qualities": [KEY], "trees_without_qualities": [NAME]},
-     "skills": {"own": N, "above": N, "none": N}}
+              "nodes_without_qualities": [KEY], "trees_without_qualities": [NAME],
+              "hazards_without_requirements": [KEY], "requirements_without_verdicts": [KEY],
+              "requirements_without_sources": [KEY]},
+     "skills": {"own": N, "above": N, "none": N},
+     "builds": [{"label": TEXT, "verdicts": [{"requirement": KEY, "verdict": VERDICT}]}]}
 
     PLACE = {"path": PATH, "line": N, "column": N}, counted from 1, columns in Unicode code points
 
 A `skill` is an action or a condition that is not built in; it `carries` a quality or a requirement itself, through a
 node above it, or not at all.  Keys are valid in this document only.  `mission` is empty in the overview of
-one mission; `evidence` is null where neither logs nor verdicts are given.  The text is ASCII.
+one mission; `evidence` is null where neither logs nor verdicts are given.  A build is the runs in a store that have its
+label.  The text is ASCII.
 """
 
 from __future__ import annotations
@@ -45,7 +52,7 @@ from __future__ import annotations
 import json
 from typing import TypeAlias
 
-from btq_lang.trace.overview import CharacteristicTotals, HazardRow, Overview, RequirementRow
+from btq_lang.trace.overview import CharacteristicTotals, ExternalRow, HazardRow, Overview, RequirementRow
 from btq_lang.util.record import as_dict
 from btq_lang.util.version import __version__
 
@@ -62,6 +69,7 @@ def render(overview: Overview) -> str:
         "files": list(overview.files),
         "requirements": [_requirement(each, overview.has_evidence) for each in overview.requirements],
         "hazards": [_hazard(each) for each in overview.hazards],
+        "external": [_external(each) for each in overview.external],
         "qualities": [{**as_dict(each), "at": as_dict(each.at)} for each in overview.qualities],
         "nodes": [
             {
@@ -87,8 +95,18 @@ def render(overview: Overview) -> str:
             "clauses_without_nodes": [{"requirement": each.key, "clause": clause} for each, clause in overview.loose],
             "nodes_without_qualities": [each.key for each in overview.bare_nodes],
             "trees_without_qualities": [each.name for each in overview.bare_trees],
+            "hazards_without_requirements": [each.key for each in overview.unmitigated],
+            "requirements_without_verdicts": [each.key for each in overview.unjudged],
+            "requirements_without_sources": [each.key for each in overview.sourceless],
         },
         "skills": dict(overview.coverage()),
+        "builds": [
+            {
+                "label": build.label,
+                "verdicts": [{"requirement": key, "verdict": verdict} for key, verdict in build.verdicts],
+            }
+            for build in overview.builds
+        ],
     }
     return json.dumps(document, indent=1) + "\n"
 
@@ -109,6 +127,7 @@ def _requirement(requirement: RequirementRow, has_evidence: bool) -> Json:
         "at": as_dict(requirement.at),
         "sources": list(requirement.sources),
         "refines": list(requirement.refines),
+        "refined_by": list(requirement.refined_by),
         "mitigates": list(requirement.mitigates),
         "priority": requirement.priority or None,
         "verified_by": [{"method": way.method, "id": way.id or None} for way in requirement.verification],
@@ -141,6 +160,16 @@ def _hazard(hazard: HazardRow) -> Json:
         "reasons": list(hazard.reasons),
         "at": as_dict(hazard.at),
         "requirements": list(hazard.requirements),
+    }
+
+
+def _external(external: ExternalRow) -> Json:
+    fields = as_dict(external)
+    return {
+        **{"key": fields.pop("key"), "id": fields.pop("name")},
+        **fields,
+        "at": as_dict(external.at),
+        "requirements": list(external.requirements),
     }
 
 

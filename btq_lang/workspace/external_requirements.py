@@ -24,7 +24,7 @@ class ExternalRequirement(Record):
 
     Attributes:
         text: what it demands, if that is more than its title.
-        url: of a page about it; empty if the file names none.
+        url: of a web page about it; empty if the file names none.
         path, line: of the imported file; the line counts from 1.
     """
 
@@ -42,15 +42,20 @@ class ExternalRequirements:
 
     Attributes:
         by_id: in the order of the files.
+        is_complete: whether all files could be read, so that an id that is not here does not exist.
     """
 
-    def __init__(self, requirements: Iterable[ExternalRequirement] = ()) -> None:
+    def __init__(self, requirements: Iterable[ExternalRequirement] = (), is_complete: bool = True) -> None:
+        self.is_complete = is_complete
         self.by_id: dict[str, ExternalRequirement] = {}
         for requirement in requirements:
             self.by_id.setdefault(requirement.id, requirement)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, ExternalRequirements) and self.by_id == other.by_id
+        return isinstance(other, ExternalRequirements) and (self.is_complete, self.by_id) == (
+            other.is_complete,
+            other.by_id,
+        )
 
     def __hash__(self) -> int:
         return hash(tuple(self.by_id))
@@ -62,10 +67,12 @@ class RequirementSettings(Record):
     Attributes:
         imports: the files of other tools' requirements, relative to the project file.
         requires_approval: whether a requirement without an approval is a finding.
+        requires_source: whether one that has no source and refines none is a gap.
     """
 
     imports: tuple[str, ...] = ()
     requires_approval: bool = False
+    requires_source: bool = False
 
 
 def read_requirements(table: object) -> tuple[RequirementSettings, list[Complaint]]:
@@ -85,22 +92,20 @@ def read_requirements(table: object) -> tuple[RequirementSettings, list[Complain
         if not name.endswith(IMPORTED_SUFFIXES):
             message = f"`{name}` is of an unknown format; expected a file that ends in {', '.join(IMPORTED_SUFFIXES)}"
             complaints.append((message, ("import",), name))
-    approval = table.get("approval", APPROVALS[0])
-    if approval not in APPROVALS:
-        allowed = " or ".join(f'"{word}"' for word in APPROVALS)
-        complaints.append((f"`requirements.approval` must be {allowed}", ("approval",), None))
+    for key in ("approval", "source"):
+        if table.get(key, "optional") not in DEMANDS:
+            allowed = " or ".join(f'"{word}"' for word in DEMANDS)
+            complaints.append((f"`requirements.{key}` must be {allowed}", (key,), None))
     imported = tuple(name for name in imports if name.endswith(IMPORTED_SUFFIXES))
-    return RequirementSettings(imported, approval == "required"), complaints
+    required = (table.get(key) == "required" for key in ("approval", "source"))
+    return RequirementSettings(imported, *required), complaints
 
 
-IMPORTED_SUFFIXES: Final = (
-    ".json",
-    ".csv",
-    ".reqif",
-)  # of sphinx-needs, of tables, of the Requirements Interchange Format
+IMPORTED_SUFFIXES: Final = (".json", ".csv", ".reqif")  # of sphinx-needs, tables, the Requirements Interchange Format
 # Each key with a line for editors.
 KEYS: Final = {
     "import": "the files of requirements that other tools keep: a needs.json, CSV or ReqIF",
     "approval": "whether each requirement must be approved",
+    "source": "whether btq trace lists requirements that have no source and refine none",
 }
-APPROVALS: Final = ("optional", "required")
+DEMANDS: Final = ("optional", "required")

@@ -13,7 +13,7 @@ from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.catalog.versions import PRODUCTS, VERSION_3, targets
 from btq_lang.diagnostics.rules import RULES
 from btq_lang.workspace.config import KEYS, SEVERITIES
-from btq_lang.workspace.external_requirements import APPROVALS, IMPORTED_SUFFIXES
+from btq_lang.workspace.external_requirements import DEMANDS, IMPORTED_SUFFIXES
 from btq_lang.workspace.external_requirements import KEYS as REQUIREMENT_KEYS
 from btq_lang.workspace.factories import KEYS as FACTORY_KEYS
 from btq_lang.workspace.file import CPP_SUFFIXES
@@ -75,7 +75,7 @@ def _evidence() -> Json:
 
 def _requirements() -> Json:
     imports = _list({"type": "string", "pattern": _ending(IMPORTED_SUFFIXES)})
-    forms = {"import": imports, "approval": {"enum": [*APPROVALS]}}
+    forms = {"import": imports, **{key: {"enum": [*DEMANDS]} for key in ("approval", "source")}}
     return _table({key: {"description": doc, "allOf": [forms[key]]} for key, doc in REQUIREMENT_KEYS.items()})
 
 

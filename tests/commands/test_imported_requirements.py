@@ -72,3 +72,27 @@ def test_the_settings_show_them(robot: Path) -> None:
     _, out, _ = run_btq("check", "--show-settings", ".", cwd=robot)
     line = 'requirements = {"import": ["docs/needs.json", "reqs.csv"]}'
     assert [each.split(" #")[0].rstrip() for each in out.splitlines() if each.startswith("requirements")] == [line]
+
+
+def test_an_id_that_is_in_neither_is_a_finding(robot: Path) -> None:
+    chain = "QualityReq calm\n    Drive takes at most 30 s\n    refines {}\n    mitigates {}\n"
+    satisfies = MISSION.replace("        Drive", "        Drive satisfies {}")
+
+    def found(refines: str, mitigates: str, satisfied: str = "calm") -> list[str]:
+        text = chain.format(refines, mitigates) + satisfies.format(satisfied)
+        (robot / "m.btq").write_text(text)
+        return run_btq("check", "--output-format", "concise", cwd=robot)[1].splitlines()[:-1]
+
+    assert found("REQ_1, REQ_2", "REQ_2") == []
+    assert found("REQ_1, REQ_7, x", "REG_1, y") == [
+        "m.btq:3:20: error[unknown-requirement] unknown requirement `REQ_7`; did you mean `REQ_1`?",
+        "m.btq:3:27: error[unknown-requirement] unknown requirement `x`; neither this file nor its includes define it",
+        "m.btq:4:15: error[unknown-hazard] unknown hazard `REG_1`; did you mean `REQ_1`?",
+        "m.btq:4:22: error[unknown-hazard] unknown hazard `y`; neither this file nor its includes define it",
+    ]
+    assert found("REQ_1", "REQ_1", "REQ_2") == [
+        "m.btq:7:25: error[unknown-requirement] `REQ_2` is a requirement of another tool, and has no clauses that a "
+        "node could satisfy",
+    ]
+    (robot / "reqs.csv").unlink()  # which may have any id
+    assert found("REQ_1, REQ_7, x", "REG_1, y") == []

@@ -34,8 +34,10 @@ WORDS = (
     *("qualities", "xml", "Action", "Condition", "Control", "Decorator", "SubTree", "input", "output", "inout"),
     *("metadata", "satisfices", "satisfies", "tags", "parameters", "Quality", "ID", "description", "name"),
     *("takes", "succeeds", "needs", "keeps", "never", "leaves", "uses", "tries", "runs", "starts", "ends", "follows"),
+    *("each", "is", "followed", "occurrences"),
     *("at", "most", "least", "less", "than", "more", "between", "and", "or", "not", "if", "else", "of", "per", "every"),
     *("within", "after", "mission", "from", "to", "sum", "when", "while", "in", "with", "probability", "confidence"),
+    *("for", "assuming"),
     *("over", "last", "activations", "on", "violation", "fail", "goal", "because", "verified", "by", "review", "node"),
     *("source", "refines", "mitigates", "priority", "approved", "hazard", "severity"),
     *(

@@ -89,6 +89,14 @@ def test_a_table() -> None:
     assert outline("r.csv", text) == [("R1", "Dist", "At least\n0.4 m", "open", 2), ("R2", "-x", "", "", 5)]
 
 
+@pytest.mark.parametrize(
+    ("url", "kept"),
+    [("https://x.org/a?b=1#c", "https://x.org/a?b=1#c"), ("javascript:alert(1)", ""), ("https://x.org/<b>", "")],
+)
+def test_only_addresses_in_the_web_are_links(url: str, kept: str) -> None:
+    assert [each.url for each in read("r.csv", f"id,url\nA,{url}\n")] == [kept]
+
+
 def test_spreadsheets_separate_otherwise() -> None:
     assert outline("r.csv", "id;text\r\nA;1,5 m\r\n") == [("A", "", "1,5 m", "", 2)]
     assert outline("r.csv", "id\ttext\nA\t1, 2\n") == [("A", "", "1, 2", "", 2)]

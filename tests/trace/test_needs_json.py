@@ -48,6 +48,7 @@ def test_the_document(robot: Path) -> None:
         "content": '* ``takes at most 30 s``\n* ``goal 20 s``\n* ``because "-x, "y" ``z`` ä"``',
         "status": None,
         "tags": ["performance-efficiency.time-behaviour"],
+        "links": [],
         "docname": "m.btq",
         "lineno": 1,
     }

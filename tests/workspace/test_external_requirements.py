@@ -37,6 +37,7 @@ def test_what_is_right_is_kept() -> None:
         ("requirements = 1", "1:1: `requirements` must be a table"),
         ("[requirements]\nimports = []", "2:1: unknown key `requirements.imports`; did you mean `import`?"),
         ('[requirements]\nimport = "a.json"', "2:1: `requirements.import` must be a list of files"),
+        ('[requirements]\nsource = "yes"', '2:1: `requirements.source` must be "optional" or "required"'),
         ("[requirements]\napproval = true", '2:1: `requirements.approval` must be "optional" or "required"'),
         ("[requirements]\nimport = [1]", "2:1: `requirements.import` must be a list of files"),
         (

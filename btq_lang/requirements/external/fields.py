@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from typing import Final
 
@@ -21,6 +22,7 @@ class ImportProblem(Exception):
 def requirement(id_: str, values: Mapping[str, str], path: str, line: int) -> ExternalRequirement:
     """A requirement by the values of its fields, whose names are in lower case; it has no value twice."""
     title, text, status, url = (_first(values, names) for names in (_TITLES, _TEXTS, _STATUSES, _URLS))
+    url = url if _WEB.fullmatch(url) else ""
     is_same = " ".join(title.split()) == " ".join(text.split())
     return ExternalRequirement(id_, " ".join(title.split()), "" if is_same else text, status, url, path, line)
 
@@ -54,3 +56,4 @@ _TEXTS: Final = (
 )
 _STATUSES: Final = ("status", "state", "reqif.foreignstate", "verdict")
 _URLS: Final = ("external_url", "url", "link")
+_WEB: Final = re.compile(r"https?://[^\s<>\"'`\\]+")
