@@ -11,7 +11,6 @@ One invariant: nothing here concerns behavior trees or imports another room.
     grouping.py     values grouped by a key
     formulas.py     cells of CSV that a spreadsheet would take for formulas
     globs.py        patterns of paths
-    formulas.py     texts that a spreadsheet would run
     processes.py    processes that share the work of a command
     toml_places.py  positions of keys in a TOML text
     garbage.py      pauses of the garbage collector
