@@ -16,7 +16,7 @@ from btq_lang.lexer import Lexer
 from btq_lang.syntax.composed_times import composed_time
 from btq_lang.syntax.scan import line_end, line_start, number_end, unit_run
 from btq_lang.syntax.suggestions import close_string, unknown_unit
-from btq_lang.syntax.tokens import BRACED, CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
+from btq_lang.syntax.tokens import BRACED, CLOSE, NAME, NEWLINE, NODE_CLAUSES, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
 from btq_lang.syntax.tree import Word
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
@@ -72,6 +72,7 @@ class Cursor:
         self.clause_starts = -1, -1
         self.title_at = -1
         self.bare_until = -1
+        self._listing = -1, False  # a line with lists in clauses, and whether its commas separate requirements
 
     # ---- lines ----
 
@@ -266,6 +267,14 @@ class Cursor:
             if not (goes_on(self) if goes_on is not None else self.accept(",")):
                 break
         return tuple(elements)
+
+    def lists_requirements(self) -> bool:
+        """Whether a comma separates requirements here: in brackets, and on a line with `satisfies`, which is before its
+        first list in a clause.
+        """
+        if self._listing[0] != self._line_start:
+            self._listing = self._line_start, not NODE_CLAUSES.isdisjoint(self.raws[: self.index])
+        return self.group > 0 or self._listing[1]
 
     # ---- places ----
 

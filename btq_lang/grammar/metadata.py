@@ -148,9 +148,7 @@ def list_goes_on(cursor: Cursor) -> bool:
     """Skip the comma of a list in a clause, or report and skip `and`; in brackets and after `satisfies` a comma belongs
     to the list of requirements.
     """
-    if cursor.group or not NODE_CLAUSES.isdisjoint(cursor.raws[: cursor.index]):
-        return False
-    return cursor.accept_and() or cursor.accept(",")
+    return not cursor.lists_requirements() and (cursor.accept_and() or cursor.accept(","))
 
 
 _VALUES: Final = frozenset((STRING, NUMBER, QUANTITY, NEWLINE))

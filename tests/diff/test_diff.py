@@ -171,6 +171,50 @@ def test_what_is_applied() -> None:
     assert in_words(old, f"{old}apply rq1 to Go\n").rstrip() == said
 
 
+SAFETY = """\
+hazard H1 "Collision"
+    severity high
+QualityReq r : safety and comfort "R"
+    takes at most 3 s
+    source "S"
+    priority high
+BehaviorTree Main
+    A satisfies r
+"""
+
+
+def test_hazards_and_clauses_that_demand_nothing() -> None:
+    new = SAFETY.replace("severity high", 'severity low\n    because "it is slow"').replace(
+        "and comfort", "and usability"
+    )
+    new = new.replace('source "S"\n    priority high', 'source "T"\n    refines s') + 'hazard H2 "New"\n'
+    assert (
+        in_words(SAFETY, new)
+        == """\
+old.btq -> new.btq
+~ requirement r changed  new.btq:4
+    ~ quality: safety and comfort -> safety and usability
+    - source "S"
+    + source "T"
+    - priority high
+    + refines s
+~ hazard H1 changed  new.btq:1
+    - severity high
+    + severity low
+    + because "it is slow"
++ hazard H2 added  new.btq:10
+    + title: "New"
+
+1 requirement changed, 1 hazard changed, 1 hazard added
+"""
+    )
+
+
+def test_their_order_is_no_change() -> None:
+    reordered = SAFETY.replace('    source "S"\n    priority high\n', '    priority high\n    source "S"\n')
+    assert in_words(SAFETY, reordered.replace("safety and comfort", "comfort and safety")) == ""
+
+
 def test_markdown_for_a_pull_request() -> None:
     new = OLD.replace("30 s", "20 s").replace("        Grip", "        Hold")
     assert list(as_markdown.render([comparison(OLD, new)])) == [

@@ -39,6 +39,7 @@ WORDS = (
     *("within", "after", "mission", "from", "to", "sum", "when", "while", "in", "with", "probability", "confidence"),
     *("for", "assuming"),
     *("over", "last", "activations", "on", "violation", "fail", "goal", "because", "verified", "by", "review", "node"),
+    *("source", "refines", "mitigates", "priority", "approved", "hazard", "severity"),
     *(
         "except",
         "under",
@@ -269,6 +270,8 @@ HEADS = (
     "",
     "context a : ",
     "QualityReq a ",
+    "QualityReq a refines ",
+    "QualityReq a\n  verified by test ",
     "signal a : m ",
     "apply a to ",
     "BehaviorTree t\n  X ",
