@@ -198,7 +198,7 @@ def _is_without_content(part: object, what: str) -> bool:
 
 
 _EMPTY: Final = ('""', "''", "{}")
-_TITLE, _REASON, _VERIFIED = "this title", "this reason", "the ID of the test or report"
+_TITLE, _REASON = "this title", "this reason"
 _FOR_PEOPLE: Final = (_TITLE, _REASON)
 # Which fields of the syntax are names or such texts.
 _NAMES: Final[dict[type, dict[str, str]]] = {
@@ -209,8 +209,7 @@ _NAMES: Final[dict[type, dict[str, str]]] = {
     syntax.Because: {"text": _REASON},
     syntax.Source: {"text": "this source"},
     syntax.Approval: {"by": "the name of who approved it"},
-    syntax.How: {"id": _VERIFIED},
-    syntax.Way: {"id": _VERIFIED},
+    syntax.Way: {"id": "the ID of the test or report"},
     syntax.Hazard: {"name": "the hazard's ID", "text": _TITLE},
     syntax.Model: {"name": "the node's ID"},
     syntax.Port: {"type": "the port's type"},

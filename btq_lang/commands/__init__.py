@@ -8,8 +8,7 @@ How to check, build or judge is unknown here; other packages do that.
     arguments.py       the command line, and which module runs which command
     output.py, progress.py, watch_mode.py   files and standard output, a line of progress, and `--watch`
     check.py           with project_files, parallel, fixing, ignoring, baseline, reporting, show_settings and target
-    format.py, build.py, import_xml.py, diff.py, graph.py, nodes.py, schema.py, preview.py,
-    approve.py         a command each
+    format.py, build.py, import_xml.py, diff.py, graph.py, nodes.py, schema.py, preview.py, approve.py   a command each
     explain.py         with explain_nav2, a page about a node of Nav2
     init.py            with init_from_xml, whose parts are init_lines and packages
     verify.py          with verify_options, candidates, stored, live, live_screen, verdict_report and verdict_events

@@ -231,9 +231,7 @@ def parse_how(cursor: Cursor) -> How:
     start = cursor.take().start
     cursor.expect_word("by")
     ways = cursor.listed(parse_way, ways_go_on)
-    first = ways[0] if ways else None
-    method, identifier = (first.method, first.id) if first is not None else (None, None)
-    return How(start, cursor.last_end(), method, identifier, ways[1:])
+    return How(start, cursor.last_end(), ways)
 
 
 def parse_way(cursor: Cursor) -> Way | None:

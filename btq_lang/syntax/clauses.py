@@ -217,18 +217,9 @@ class Way(Part):
 
 
 class How(Part):
-    """`verified by test "TC-12", review`.  method, id: of the first way; further: the others."""
+    """`verified by test "TC-12", review`."""
 
-    method: Word | None
-    id: Word | None = None
-    further: tuple[Way, ...] = ()
-
-    @property
-    def ways(self) -> tuple[Way, ...]:
-        """All of them."""
-        end = (self.id or self.method or self).end
-        first = () if self.method is None else (Way(self.method.start, end, self.method, self.id),)
-        return (*first, *self.further)
+    ways: tuple[Way, ...]
 
 
 class Source(Part):

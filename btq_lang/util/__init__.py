@@ -9,8 +9,8 @@ One invariant: nothing here concerns behavior trees or imports another room.
     record.py       immutable classes, without the start-up time of dataclasses, and the fields of a class
     reach.py        reachability in graphs, and their cycles
     grouping.py     values grouped by a key
+    formulas.py     cells of CSV that a spreadsheet would take for formulas
     globs.py        patterns of paths
-    formulas.py     texts that a spreadsheet would run
     processes.py    processes that share the work of a command
     toml_places.py  positions of keys in a TOML text
     garbage.py      pauses of the garbage collector

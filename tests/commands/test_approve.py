@@ -108,6 +108,17 @@ def test_it_is_suspect_after_a_change(robot: Path) -> None:
     assert "q3" not in btq("check", "--select", "approval-outdated", "mission.btq")[1]
 
 
+def test_a_project_can_require_approvals(robot: Path) -> None:
+    def missing() -> int:
+        return btq("check", "--select", "approval-missing")[1].count("warning[approval-missing]")
+
+    assert missing() == 0
+    (robot / "btq.toml").write_text('[requirements]\napproval = "required"\n')
+    assert missing() == len(NAMES) - 1  # that of the library is approved, though outdated
+    approve("q1", "q2", "--by", "Kim")
+    assert missing() == len(NAMES) - 3
+
+
 def test_today_is_the_default(robot: Path) -> None:
     assert btq("approve", "top", "--by", "Kim")[0] == 0
     assert f'on "{date.today().isoformat()}"' in (robot / "mission.btq").read_text()

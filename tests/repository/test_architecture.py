@@ -32,6 +32,7 @@ ROWS = (
     ("workspace",),
     ("formatter", "requirements"),
     ("btcpp", "graph"),
+    ("simulator",),
     ("checks", "nav2"),
     ("diff", "render"),
     ("evidence",),
