@@ -11,6 +11,7 @@ all features and the checks that they use takes a third of that time.
     xml_completion.py      the same in XML, of the same proposals
     external.py            requirements of other tools
     hover.py               with describe and clause_enforcement; the ports of a node while it is typed
+    external.py            the requirements of other tools, for completion, hover and links
     navigation.py          from a name to its definition, its uses and its callers
     rename.py, moves.py    edits in every file that names a thing
     actions.py             with refactor, block, short_form and unused

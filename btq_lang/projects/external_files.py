@@ -51,8 +51,14 @@ class ExternalFiles:
 def _read(name: str, path: str) -> tuple[list[ExternalRequirement], str]:
     text, problem = read(path)
     if text is None or problem is not None:
-        return [], f"`{name}`: {problem.message}" if problem is not None else ""
+        return [], _unreadable(name, problem) if problem is not None else ""
     try:
         return read_external(path, text), ""
     except ImportProblem as error:
         return [], f"`{name}:{error.line}:{error.column}`: {error.message}"
+
+
+def _unreadable(name: str, problem: LoadProblem) -> str:
+    place = problem.position
+    at = f":{place.line + 1}:{place.column + 1}" if place is not None else ""
+    return f"`{name}{at}`: {problem.message}"

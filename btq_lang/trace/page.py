@@ -34,6 +34,8 @@ def render(overview: Overview, missions: Sequence[MissionVerdicts] = ()) -> str:
     """The whole page, with the verdicts on missions if there are any."""
     drawings = [_drawing(tree) for tree in overview.trees]
     characteristics = {quality.key: quality.characteristic for quality in overview.qualities}
+    rows = {"verdicts": missions, "chain": overview.hazards or overview.external, "builds": overview.builds}
+    left_out = {section for section in rows if not rows[section]}
     why = incomplete(overview)
     return page(
         "trace/page.html.j2",
@@ -42,7 +44,7 @@ def render(overview: Overview, missions: Sequence[MissionVerdicts] = ()) -> str:
         dark=colours(True),
         summary=summary(overview),
         incomplete=why[:1].upper() + why[1:],
-        sections=[*([("verdicts", "Verdicts")] if missions else []), *_SECTIONS],
+        sections=[(key, title) for key, title in _SECTIONS if key not in left_out],
         ways=(*WAYS, "not attached"),
         characteristics=[(each.id or "-", each.name) for each in overview.totals if each.concerns or each.requirements],
         has_evidence=overview.has_evidence,
@@ -142,7 +144,10 @@ def _tree(tree: TreeRow, drawing: Drawing) -> PageData:
 
 
 _SECTIONS: Final = (
+    ("verdicts", "Verdicts"),
+    ("chain", "Hazards"),
     ("requirements", "Requirements"),
+    ("builds", "Builds"),
     ("concerns", "Qualities"),
     ("gaps", "Gaps"),
     ("totals", "Totals"),

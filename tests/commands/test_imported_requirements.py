@@ -68,6 +68,12 @@ def test_what_cannot_be_read_is_said_where_it_is_named(robot: Path) -> None:
     )
 
 
+def test_a_file_that_is_not_utf_8(robot: Path) -> None:
+    (robot / "reqs.csv").write_bytes(b"id,title\nA,caf\xe9\n")
+    code, _, err = run_btq("check", cwd=robot)
+    assert (code, err) == (2, "btq: btq.toml:2:30: `reqs.csv:2:6`: this is not UTF-8: byte 0xe9\n")
+
+
 def test_the_settings_show_them(robot: Path) -> None:
     _, out, _ = run_btq("check", "--show-settings", ".", cwd=robot)
     line = 'requirements = {"import": ["docs/needs.json", "reqs.csv"]}'

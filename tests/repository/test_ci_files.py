@@ -186,7 +186,8 @@ def test_each_night_all_tests_run_with_another_seed() -> None:
     assert workflow["permissions"] == {"contents": "read"}
     assert workflow["env"] == {"BTQ_SEED": "${{ inputs.seed || github.run_number }}"}
     tests, issue = (workflow["jobs"][name] for name in ("tests", "issue"))
-    (step,) = (step for step in tests["steps"] if "run" in step)
+    tools, step = (step for step in tests["steps"] if "run" in step)
+    assert "sphinx-build /opt/tools/bin/strictdoc" in tools["run"]  # which trace/test_other_tools.py skips without
     assert step == {"run": ".ci/run", "env": {"PYTEST_ADDOPTS": '--timeout 3600 -m "scheduled or not scheduled"'}}
     assert (issue["needs"], issue["if"], issue["permissions"]) == ("tests", "failure()", {"issues": "write"})
 

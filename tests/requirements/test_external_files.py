@@ -65,6 +65,10 @@ def test_the_only_version_counts_whatever_its_name() -> None:
         ('{"versions": {}}', (1, 1, "`current_version` must name one of the `versions`")),
         ('{"versions": {"1": {}}}', (1, 1, "the version `1` has no object `needs`")),
         ('{"versions": {"1": {"needs": {\n"A": 3}}}}', (2, 1, "the need `A` must be an object")),
+        (
+            '{"versions": {"1": {"needs": {"\\u001b[31mA": 3}}}}',
+            (1, 1, "the need `\N{REPLACEMENT CHARACTER}[31mA` must be an object"),
+        ),
         ("[" * 100_000, (1, 1, "nested too deeply")),
         ('{"versions": ' + "9" * 5_000 + "}", (1, 1, "a number has too many digits")),
     ],

@@ -95,7 +95,7 @@ def keep_screenshot(folder: Path, name: str, page: str, size: str, *more: str) -
         "laboratory",
         *(
             pytest.param(each, marks=pytest.mark.scheduled)
-            for each in ("hospital", "navigation", "classic", "200 nodes")
+            for each in ("hospital", "inspection", "navigation", "classic", "200 nodes")
         ),
     ],
 )

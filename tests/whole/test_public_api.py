@@ -16,6 +16,7 @@ from evidence_logs import MAIN, MAIN_XML, btlog, rows, samples
 
 import btq_lang as btq
 from btq_lang.cli import main
+from btq_lang.workspace.file import SIDE_SUFFIX
 
 ROOT = Path(__file__).resolve().parents[2]
 PUBLIC = [
@@ -109,6 +110,7 @@ def clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     [
         "examples/hospital/missions/deliver.btq",
         "examples/hospital/missions/disinfect.btq",
+        "examples/inspection/mission.btq",
         "examples/laboratory/mission.btq",
         "examples/navigation/navigation.btq",
         "examples/pick-and-place/cell.btq",
@@ -133,7 +135,8 @@ def test_a_build_is_what_the_command_writes(
     built = btq.build(btq.open_workspace(mission), path, **options)  # type: ignore[arg-type]  # of several types
     assert (built.problems, {*clone.rglob("*.xml")}) == ((), set())
     assert main(["build", mission, *arguments]) == 0
-    written = {each.as_posix(): each.read_bytes() for each in clone.rglob("*") if each.suffix in (".xml", ".json")}
+    suffixes = (".xml", SIDE_SUFFIX)
+    written = {each.as_posix(): each.read_bytes() for each in clone.rglob("*") if each.name.endswith(suffixes)}
     assert {name: text.encode() for name, text in built.files.items()} == written
     assert len(built.files) >= (3 if "hospital" in mission and "bundle" not in options else 1)
 

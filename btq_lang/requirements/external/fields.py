@@ -10,11 +10,14 @@ from btq_lang.workspace.external_requirements import ExternalRequirement
 
 
 class ImportProblem(Exception):
-    """Why a file cannot be imported, and the line and column of the mistake, which count from 1."""
+    """Why a file cannot be imported, and the line and column of the mistake, which count from 1.
+
+    The message has no character that would steer a terminal.
+    """
 
     def __init__(self, message: str, line: int, column: int = 1) -> None:
         super().__init__(message)
-        self.message = message
+        self.message = "".join(each if each.isprintable() else "\N{REPLACEMENT CHARACTER}" for each in message)
         self.line = line
         self.column = column
 

@@ -106,7 +106,7 @@ def _value(attribute: Any, choices: dict[str, Any]) -> str:
         chosen = [choices.get(each) for each in attribute.value]
         return ", ".join(choice.long_name or choice.identifier for choice in chosen if choice is not None)
     if attribute.value_stripped_xhtml is None:
-        return str(attribute.value)
+        return str(attribute.value).replace("\\n", "\n")  # so StrictDoc writes line ends
     paragraphs = "".join(_pieces(attribute.xml_node.find("THE-VALUE"))).split("\n")
     return "\n".join(line for paragraph in paragraphs if (line := " ".join(paragraph.split())))
 
