@@ -164,6 +164,7 @@ class JudgedClause:
             needed = [target_of(event) for event in self._events if event.condition is None]
             if isinstance(self.claim.per, NodeTarget):
                 needed.append(self.claim.per)
+            needed += [node.target for visit in self.claim.visits for node in visit.nodes]
             instances = [others.find(target) for target in needed]
             lost = [uids_of_target for uids_of_target in instances if isinstance(uids_of_target, UnknownValue)]
             for target in self._running:
