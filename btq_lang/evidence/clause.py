@@ -201,7 +201,7 @@ class JudgedClause:
         self.broken.pop(activation.uid, None)
 
     def _judge_in(self, activation: Activation, guard: Guard | None, observed: Observed, path: str) -> None:
-        if guard is not None and self._is_own(guard):
+        if guard is not None and self._judge is not None and self._is_own(guard):
             self._margins.is_exact = False  # with another bound the guard would have done something else
             self._count(self._broken(activation, guard, observed), activation, path)
         elif self._judge is not None and self._running:
