@@ -86,7 +86,8 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
     resource: Word | None = None
     per: Path | Word | None = None
     event: Event | AnyEvent | None = None
-    every = in_order = False
+    every = False
+    order: Word | None = None
     visits: tuple[NodeRef, ...] = ()
     operand = VERBS[verb.raw].operand
     if operand == "duration":
@@ -125,14 +126,14 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
     elif operand == "event":
         event = parse_event(cursor)
     elif operand == "visits":
-        visits, in_order = nodes_to_visit(cursor)
+        visits, order = nodes_to_visit(cursor)
     elif verb.raw == "ends" and cursor.accept_word("with"):
         condition = None if signal_last(cursor, "ends with") else parse_cond(cursor)
     else:
         bound = parse_within(cursor) if cursor.expect_word("within") else None
         event = parse_event(cursor) if cursor.expect_word("after", ("of", "from", "since")) else None
     end = cursor.last_end()
-    return Claim(start, end, subject, verb, bound, condition, resource, per, event, every, visits, in_order)
+    return Claim(start, end, subject, verb, bound, condition, resource, per, event, every, visits, order)
 
 
 def parse_node_ref(cursor: Cursor) -> NodeRef | None:
@@ -295,15 +296,15 @@ def at_verb(cursor: Cursor) -> bool:
     return cursor.raw != "visits" or (cursor.kinds[cursor.index + 1] in (NAME, STRING) and not is_verb_ahead(cursor, 1))
 
 
-def nodes_to_visit(cursor: Cursor) -> tuple[tuple[NodeRef, ...], bool]:
-    """The nodes after `visits`, and whether they are to be visited in order."""
+def nodes_to_visit(cursor: Cursor) -> tuple[tuple[NodeRef, ...], Word | None]:
+    """The nodes after `visits`, and the word `order` if they are to be visited in order."""
     visits = cursor.listed(parse_node_ref, lambda cursor: cursor.accept_and() or cursor.accept(","))
     if len(visits) == 1:
         cursor.expected("`,` and another node", ("for one node write `Dock tries at least 1`",))
-    in_order = cursor.at_word("in") and cursor.is_word(cursor.index + 1, "order")
-    if in_order:
-        cursor.go_to(cursor.index + 2)
-    return visits, in_order
+    if not (cursor.at_word("in") and cursor.is_word(cursor.index + 1, "order")):
+        return visits, None
+    cursor.advance()
+    return visits, cursor.take()
 
 
 def port_value(cursor: Cursor) -> Pair | None:

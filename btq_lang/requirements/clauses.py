@@ -116,7 +116,7 @@ def _verb(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | None:
         return replace(claim, condition=condition, limit=limit) if condition is not None and limit is not None else None
     if operand == "visits":
         visits = visits_of(reader, written.visits)
-        return replace(claim, visits=visits, in_order=written.in_order) if visits is not None else None
+        return replace(claim, visits=visits, in_order=written.order is not None) if visits is not None else None
     if operand == "event":
         event = _event(reader, written.event)
         return replace(claim, event=event) if event is not None else None

@@ -148,7 +148,7 @@ class Claim(Part):
         event: of starts, ends, follows, followed.
         every: `runs every d`.
         visits: of visits.
-        in_order: `visits A, B in order`.
+        order: of `visits A, B in order`.
     """
 
     subject: Subject | None
@@ -160,7 +160,7 @@ class Claim(Part):
     event: Event | AnyEvent | None = None
     every: bool = False
     visits: tuple[NodeRef, ...] = ()
-    in_order: bool = False
+    order: Word | None = None
 
     @property
     def row(self) -> str:

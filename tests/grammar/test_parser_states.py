@@ -93,7 +93,7 @@ def test_nodes_to_visit(text: str, paths: list[str] | None, in_order: bool) -> N
     found, *_ = clauses(text.replace(" speed", ", speed"))
     assert isinstance(found, Claim)
     shown = ["/".join(name.raw for name in visit.path.names) for visit in found.visits]
-    assert (shown, found.in_order) == (paths or ["MoveTo", "Dock"], in_order)
+    assert (shown, found.order is not None) == (paths or ["MoveTo", "Dock"], in_order)
     if paths is None:
         pairs = [(pair.key.text, pair.value.text) for pair in found.visits[0].pairs if pair.value is not None]
         assert pairs == [("to", "A"), ("speed", "3 m/s")]
