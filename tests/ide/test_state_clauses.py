@@ -5,7 +5,10 @@ from __future__ import annotations
 import pytest
 from feature_asserts import check_hover, check_offers
 
-TREE = "BehaviorTree Main\n    ->\n        Move\n        Pick\n"
+TREE = (
+    "Action Move\n    input place : string\n    input speed : double\n"
+    "BehaviorTree Main\n    ->\n        Move\n        Pick\n"
+)
 BEFORE = "signal battery : % from {level} level\ncontext calm : battery > 50 %\nQualityReq r : safety\n    "
 
 
@@ -27,6 +30,10 @@ BEFORE = "signal battery : % from {level} level\ncontext calm : battery > 50 %\n
         ("assuming ", ("calm", "battery"), ("takes",)),
         ("assuming calm ", ("and",), ("if",)),
         ("mission visits ", ("Move", "Pick"), ("battery",)),
+        ("mission visits Move (", ("place",), ("takes at most",)),
+        ('mission visits Move (place = "A", ', ("speed",), ("place", "takes at most")),
+        ("mission visits Move (place = ", (), ("takes at most", "speed")),
+        ('mission visits Move (place = "A"), ', ("Move", "Pick"), ("speed",)),
         ("mission visits Move, ", ("Move", "Pick"), ()),
         ("mission visits Move, Pick ", ("in order",), ()),
         ("mission visits Move, Pick in ", ("order", "at least"), ()),
