@@ -199,7 +199,7 @@ class Session:
         }
 
 
-OVER_RUNS = ("tries", "runs", "follows", "starts", "ends", "visits")
+OVER_RUNS = ("tries", "runs", "follows", "starts", "ends", "followed", "visits")
 
 
 def alike(one: Verdict, other: Verdict) -> Verdict:
