@@ -286,7 +286,7 @@ def _plain(value: object, place: _Places) -> Json:
         record["is"] = _KINDS[type(value)]
     for field in fields_of(value):
         part = getattr(value, field)
-        if part is None or part == () or field in _LEFT_OUT or (field == "every" and not part):
+        if part is None or part == () or field in _LEFT_OUT or (field in ("every", "in_order") and not part):
             continue
         key = _RENAMED.get(field, field) if isinstance(value, ResolvedRequirement) else field
         record[key] = part.name if isinstance(part, ResolvedSignal) else _plain(part, place)
@@ -325,6 +325,8 @@ _KINDS: Final[dict[type, str]] = {
     model.DurationSum: "total",
     model.ResolvedEachEvent: "each",
     model.EveryNode: "every",
+    model.VisitedNode: "visited",
+    model.Visit: "visit",
     model.ResolvedClaim: "claim",
     model.ResolvedScope: "scope",
     model.ResolvedOdds: "odds",

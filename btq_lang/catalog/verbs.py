@@ -14,7 +14,7 @@ from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     Operand: TypeAlias = Literal[
-        "duration", "deadline", "condition", "use", "count", "rate", "reaction", "event", "answer", "stretch"
+        "duration", "deadline", "condition", "use", "count", "rate", "reaction", "event", "answer", "stretch", "visits"
     ]
     Judged: TypeAlias = Literal["at its start", "while it runs", "at its end", "over the run"]
     Limits: TypeAlias = Literal["", "completion", "success"]
@@ -28,7 +28,7 @@ class Verb(Record):
         word: one, or the first word of its clauses and what tells them from those of another verb: `ends with`.
         operand: what it is followed by: a bound of a duration, perhaps a deadline, a condition, a bound of the use of a
             signal, a bound of a count, a period or a rate, a deadline after an event, an event, an event or a condition
-            that answers one, a condition and how long it may hold.
+            that answers one, a condition and how long it may hold, nodes.
         measures: what is compared with the bound, or evaluated.
         judged: when it is known whether an activation, or a run, satisfies or violates it.
         phrases: for each continuation: its words, an example, what it is about, and when a clause is violated.
@@ -285,6 +285,23 @@ VERBS: Final = {
                 ("starts", "started", "A node that is active when the event happens has to start again"),
                 ("ends", "ended", "Only a node that is active when the event happens counts"),
             )
+        ),
+        Verb(
+            word="visits",
+            operand="visits",
+            measures="the successes of other nodes",
+            judged=_RUN,
+            phrases=(
+                (
+                    "visits",
+                    "visits HallA, HallB, Dock",
+                    "nodes that have to succeed",
+                    "it ends, but one of the nodes has not succeeded meanwhile; with `in order`, also where their "
+                    "first successes come in another order",
+                ),
+            ),
+            forms=(("visits", "visits ${1:A}, ${0:B}"),),
+            why_monitored="what was visited is known only at the end",
         ),
         Verb(
             word="follows",

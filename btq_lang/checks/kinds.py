@@ -533,6 +533,7 @@ def _is_clause(resolved: ResolvedNode) -> bool:
         name is not None
         and not (name.quoted or resolved.node.category or resolved.node.children)
         and (name.text in VERB_WORDS or name.text in HEADS)
+        and name.text != "visits"  # which is a clause only where nodes follow
     )
 
 

@@ -164,6 +164,7 @@ class JudgedClause:
             needed = [target_of(event) for event in self._events if event.condition is None]
             if isinstance(self.claim.per, NodeTarget):
                 needed.append(self.claim.per)
+            needed += [node.target for visit in self.claim.visits for node in visit.nodes]
             instances = [others.find(target) for target in needed]
             lost = [uids_of_target for uids_of_target in instances if isinstance(uids_of_target, UnknownValue)]
             for target in self._running:
@@ -200,7 +201,7 @@ class JudgedClause:
         self.broken.pop(activation.uid, None)
 
     def _judge_in(self, activation: Activation, guard: Guard | None, observed: Observed, path: str) -> None:
-        if guard is not None and self._is_own(guard):
+        if guard is not None and self._judge is not None and self._is_own(guard):
             self._margins.is_exact = False  # with another bound the guard would have done something else
             self._count(self._broken(activation, guard, observed), activation, path)
         elif self._judge is not None and self._running:

@@ -137,9 +137,7 @@ class Observed:
         begin, end = self.begin, self.end
         for part in parts:
             for read in parts_in(part):
-                if isinstance(read, Compare):
-                    moments.update([(time, 0) for time in self._ages(read) if begin[0] < time <= end[0]])
-                elif isinstance(read, SignalRead):
+                if isinstance(read, SignalRead):
                     moments.update([(time, 0) for time in self.signals.changes(read.signal, begin[0], end[0])])
                 elif isinstance(read, Running):
                     for activation in self.nodes.activations(read.target):
@@ -147,6 +145,8 @@ class Observed:
                         started = activation.begun(self.is_early)
                         since = started[0], started[1] + 1  # unknown from then on if the end is
                         moments.update([moment for moment in (started, since, stopped) if begin < moment <= end])
+                elif isinstance(read, Compare) and any(isinstance(operand, Age) for operand in read.operands):
+                    moments.update([(time, 0) for time in self._ages(read) if begin[0] < time <= end[0]])
         return sorted(moments)
 
     def _ages(self, compare: Compare) -> Iterator[int]:

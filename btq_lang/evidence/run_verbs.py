@@ -20,6 +20,7 @@ from btq_lang.evidence.model import UNKNOWN_BEGIN, UNKNOWN_END, Activation
 from btq_lang.evidence.over_run import Happening, OverRun, Stretch
 from btq_lang.evidence.signals import UnknownValue
 from btq_lang.evidence.verbs import OUT, Judgement, between, is_same
+from btq_lang.evidence.visits import visits
 from btq_lang.requirements.model import (
     Condition,
     DurationSum,
@@ -524,4 +525,5 @@ JUDGES: Final[dict[str, RunJudge]] = {
     "followed": _followed,
     "tries": _tries,
     "runs": _runs,
+    "visits": visits,
 }

@@ -20,6 +20,7 @@ from btq_lang.grammar.conditions import (
     RELATIONS,
     accept_one,
     bound_ahead,
+    close_group,
     parse_cases,
     parse_cond,
     parse_path,
@@ -29,7 +30,7 @@ from btq_lang.grammar.conditions import (
 from btq_lang.grammar.cursor import Cursor, shown
 from btq_lang.grammar.prose import MODALS, clause_meant, state_meant
 from btq_lang.syntax.scan import number_end
-from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
+from btq_lang.syntax.tokens import BRACED, CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
 from btq_lang.syntax.tree import (
     Amount,
     AnyEvent,
@@ -42,6 +43,8 @@ from btq_lang.syntax.tree import (
     Event,
     Every,
     Mission,
+    NodeRef,
+    Pair,
     Path,
     Subject,
     Sum,
@@ -63,9 +66,9 @@ def parse_claim(cursor: Cursor) -> Claim | None:
     if cursor.raw in _EACH and (verb := followed_ahead(cursor)):
         return parse_followed(cursor, verb)
     subject: Subject | None = None
-    if not (cursor.kind == NAME and cursor.raw in VERB_WORDS):
+    if not at_verb(cursor):
         subject = parse_subject(cursor)
-    if not (cursor.kind == NAME and cursor.raw in VERB_WORDS) and not blank_in_path(cursor, subject, VERB_WORDS):
+    if not at_verb(cursor) and not blank_in_path(cursor, subject, VERB_WORDS):
         if subject is not None:
             no_verb(cursor, subject)
         return None
@@ -84,6 +87,8 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
     per: Path | Word | None = None
     event: Event | AnyEvent | None = None
     every = False
+    order: Word | None = None
+    visits: tuple[NodeRef, ...] = ()
     operand = VERBS[verb.raw].operand
     if operand == "duration":
         bound = parse_bound(cursor)
@@ -120,12 +125,28 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
                 per = cursor.quantity("a duration: 1 s") if cursor.expect_word("per") else None
     elif operand == "event":
         event = parse_event(cursor)
+    elif operand == "visits":
+        visits, order = nodes_to_visit(cursor)
     elif verb.raw == "ends" and cursor.accept_word("with"):
         condition = None if signal_last(cursor, "ends with") else parse_cond(cursor)
     else:
         bound = parse_within(cursor) if cursor.expect_word("within") else None
         event = parse_event(cursor) if cursor.expect_word("after", ("of", "from", "since")) else None
-    return Claim(start, cursor.last_end(), subject, verb, bound, condition, resource, per, event, every)
+    end = cursor.last_end()
+    return Claim(start, end, subject, verb, bound, condition, resource, per, event, every, visits, order)
+
+
+def parse_node_ref(cursor: Cursor) -> NodeRef | None:
+    """NodeRef = Path [ "(" Pair { "," Pair } ")" ]"""
+    start = cursor.start()
+    path = parse_path(cursor, "a node")
+    if path is None or cursor.kind != OPEN:
+        return NodeRef(start, cursor.last_end(), path) if path is not None else None
+    cursor.advance()
+    cursor.group += 1
+    pairs = cursor.listed(port_value)
+    close_group(cursor, "`,` or `)`")
+    return NodeRef(start, cursor.last_end(), path, pairs)
 
 
 def parse_followed(cursor: Cursor, verb: int) -> Claim:
@@ -266,6 +287,35 @@ def parse_bounded(cursor: Cursor) -> Bounded | None:
 
 
 # ---- what productions ask and report ----
+
+
+def at_verb(cursor: Cursor) -> bool:
+    """Whether a verb is here; `visits` is one only where nodes follow, else a name."""
+    if cursor.kind != NAME or cursor.raw not in VERB_WORDS:
+        return False
+    return cursor.raw != "visits" or (cursor.kinds[cursor.index + 1] in (NAME, STRING) and not is_verb_ahead(cursor, 1))
+
+
+def nodes_to_visit(cursor: Cursor) -> tuple[tuple[NodeRef, ...], Word | None]:
+    """The nodes after `visits`, and the word `order` if they are to be visited in order."""
+    visits = cursor.listed(parse_node_ref, lambda cursor: cursor.accept_and() or cursor.accept(","))
+    if len(visits) == 1:
+        cursor.expected("`,` and another node", ("for one node write `Dock tries at least 1`",))
+    if not (cursor.at_word("in") and cursor.is_word(cursor.index + 1, "order")):
+        return visits, None
+    cursor.advance()
+    return visits, cursor.take()
+
+
+def port_value(cursor: Cursor) -> Pair | None:
+    """A port, `=`, and its value"""
+    key = cursor.name("a port")
+    if key is None or not cursor.expect("="):
+        return None
+    if cursor.kind not in (STRING, NAME, NUMBER, QUANTITY, BRACED):
+        cursor.expected("a value")
+        return Pair(key, None)
+    return Pair(key, cursor.take())
 
 
 def report_slip(cursor: Cursor) -> bool:

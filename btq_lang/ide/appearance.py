@@ -102,7 +102,7 @@ KEYWORDS: Final = frozenset(
     | {"TreeNodesModel", "xml", "parameters", "metadata", "Quality", "ID", "description", "true", "false"}
     | {"and", "or", "not", "if", "else", "node", "at", "to", "except", "of", "per", "under", "tagged", "within"}
     | {"most", "least", "less", "more", "than", "between", "after", "violation", "probability", "last", "by", "fresh"}
-    | {"for", "assuming"}
+    | {"for", "assuming", "order"}
     | {"from", "level", "counter", "gauge", "initially", *ON_VIOLATION, *METHODS}
     | CATEGORIES
     | NODE_CLAUSES

@@ -71,6 +71,8 @@ def expected(words: Sequence[Token]) -> Expected:
         return Expected(("or", *in_time), clause=True)
     if text == "with" and earlier[-1] == "ends with":
         return _CONDITION
+    if _begins_last(earlier[:-1], _CLAUSES) == "visits" and (text == "in" or text not in _AFTER):
+        return Expected(("order", "at least")) if text == "in" else Expected(("in order",), clause=True)
     if text in _AFTER:
         return _AFTER[text]
     if text in COMPARISONS or text in ("+", "-", "*", "/"):
@@ -263,6 +265,7 @@ _OPERANDS = {
     "deadline": Expected(("within",), clause=True),
     "reaction": Expected(("within",)),
     **dict.fromkeys(("condition", "stretch"), _CONDITION),
+    "visits": Expected(node=True),
     "event": _EVENT,
     "answer": Expected(("by",)),
 }

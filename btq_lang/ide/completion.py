@@ -23,7 +23,7 @@ from btq_lang.ide.clause_words import Expected, expected, is_count, is_window
 from btq_lang.ide.completion_list import listed
 from btq_lang.ide.meaning import entry_at
 from btq_lang.ide.measures import MeasuredValue, measured_at
-from btq_lang.ide.place import CursorPlace, item_tokens, open_brace, place_at, word_text
+from btq_lang.ide.place import CursorPlace, LineNode, item_tokens, open_brace, place_at, word_text
 from btq_lang.ide.proposals import Proposal
 from btq_lang.ide.snippets import snippets_for
 from btq_lang.ide.xml_completion import complete_in_xml
@@ -349,6 +349,11 @@ def _in_apply(workspace: Workspace, path: str, place: CursorPlace) -> Iterator[P
 def _in_requirement(workspace: Workspace, path: str, place: CursorPlace) -> Iterator[Proposal]:
     """What may follow `QualityReq` on its line, in brackets, or in its block."""
     words = place.group
+    if (visited := _visited(place)) is not None:
+        given = tuple(word.text for word in words)
+        ports = of_nodes.ports_of_line(workspace, path, visited) if given[-1:] in ((), (",",)) else ()
+        yield from of_nodes.ports(ports, given, visited)
+        return
     head = next((index for index in reversed(range(len(words))) if words[index].text == "QualityReq"), None)
     if head is not None:
         following = [word.text for word in words[head + 1 :]]
@@ -366,6 +371,15 @@ def _in_requirement(workspace: Workspace, path: str, place: CursorPlace) -> Iter
             yield from offer.words(('description = ""',), "keyword")
             return
     yield from _clause_words(workspace, path, expected(words), place)
+
+
+def _visited(place: CursorPlace) -> LineNode | None:
+    """The node after `visits` whose brackets are open."""
+    texts = [word.text for word in place.words]
+    opened = next((index for index in reversed(range(len(texts))) if texts[index] in ("(", ")")), 0)
+    if "visits" not in texts[:opened] or texts[opened] == ")" or "QualityReq" in texts[opened:]:
+        return None
+    return LineNode(word_text(place.words[opened - 1]), place.words[opened - 1].kind == STRING, None)
 
 
 def _clause_words(workspace: Workspace, path: str, wanted: Expected, place: CursorPlace) -> Iterator[Proposal]:

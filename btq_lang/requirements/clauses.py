@@ -16,6 +16,7 @@ from btq_lang.requirements import model, nodes
 from btq_lang.requirements.metadata import metadata_of
 from btq_lang.requirements.reader import Reader
 from btq_lang.requirements.terms import COUNT, DURATION, PERCENT, SORTS, TIME, Wanted, sort_of
+from btq_lang.requirements.visits import visits_of
 from btq_lang.syntax import tree as syntax
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span
@@ -113,6 +114,9 @@ def _verb(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | None:
     if operand == "stretch":
         condition, limit = reader.condition(written.condition), _limit(reader, written.bound, DURATION)
         return replace(claim, condition=condition, limit=limit) if condition is not None and limit is not None else None
+    if operand == "visits":
+        visits = visits_of(reader, written.visits)
+        return replace(claim, visits=visits, in_order=written.order is not None) if visits is not None else None
     if operand == "event":
         event = _event(reader, written.event)
         return replace(claim, event=event) if event is not None else None

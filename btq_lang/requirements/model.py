@@ -302,6 +302,20 @@ class EveryNode(Record):
 Subject: TypeAlias = NodeTarget | MissionRun | EveryNode | Interval | DurationSum | ResolvedEachEvent
 
 
+class VisitedNode(Record):
+    """A node that counts as visited when it succeeds; values: what the entries that its ports read hold then."""
+
+    target: NodeTarget
+    values: tuple[tuple[ResolvedSignal, str], ...] = ()
+
+
+class Visit(Record):
+    """What has to be visited: any of these nodes; text: as typed."""
+
+    text: str
+    nodes: tuple[VisitedNode, ...]
+
+
 class ResolvedClaim(Record):
     """What is demanded.
 
@@ -314,6 +328,7 @@ class ResolvedClaim(Record):
         per: of tries a node, of runs a duration.
         event: of starts, ends, follows, followed.
         every: `runs every d`.
+        visits, in_order: of visits.
         text: the clause as typed, blanks folded.
     """
 
@@ -327,6 +342,8 @@ class ResolvedClaim(Record):
     per: NodeTarget | Quantity | None = None
     event: ResolvedEvent | ResolvedAnyEvent | None = None
     every: bool = False
+    visits: tuple[Visit, ...] = ()
+    in_order: bool = False
 
     @property
     def head(self) -> str:

@@ -163,6 +163,15 @@ class Nodes:
         below = self._below(top.node)
         return tuple(node for node in self.every(name) if id(node) in below)
 
+    def ports_with(self, value: str) -> tuple[tuple[ResolvedNode, str], ...]:
+        """The ports of nodes that have a value, each with the first node that gives it so."""
+        ports: dict[tuple[str, str], ResolvedNode] = {}
+        for node in self.all:
+            for pair in node.node.attributes:
+                if pair.value is not None and pair.value.text == value and not pair.key.text.startswith("_"):
+                    ports.setdefault((node.node.id.text if node.node.id is not None else "", pair.key.text), node)
+        return tuple((node, port) for (_, port), node in ports.items())
+
     def has_name(self, name: str) -> bool:
         """Whether a name can occur in a path."""
         return name in self._by_name or name in self._roots
@@ -231,6 +240,7 @@ every = _of_nodes(Nodes.every)
 has_any = _of_nodes(Nodes.has_any)
 every_under = _of_nodes(Nodes.every_under)
 tagged = _of_nodes(Nodes.tagged)
+ports_with = _of_nodes(Nodes.ports_with)
 has_name = _of_nodes(Nodes.has_name)
 node_names = _of_nodes(Nodes.names)
 kinds = _of_nodes(Nodes.kinds)

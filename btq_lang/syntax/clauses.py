@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Final, TypeAlias
 
-from btq_lang.syntax.words import Word
+from btq_lang.syntax.words import Pair, Word
 from btq_lang.util.record import Part, Record
 from btq_lang.util.text import Span
 
@@ -125,6 +125,17 @@ class EachEvent(Part):
 Subject: TypeAlias = Path | Mission | Every | Between | Sum | EachEvent
 
 
+class NodeRef(Part):
+    """`MoveTo (station = "A")`: a node, and values that its ports have when it starts."""
+
+    path: Path
+    pairs: tuple[Pair, ...] = ()
+
+    @property
+    def span(self) -> Span:
+        return Span(self.start, self.end)
+
+
 class Claim(Part):
     """A demand of a requirement: a subject (None: the node it is attached to), a verb and its operands.
 
@@ -136,6 +147,8 @@ class Claim(Part):
         per: of tries: the path; of runs: the quantity.
         event: of starts, ends, follows, followed.
         every: `runs every d`.
+        visits: of visits.
+        order: of `visits A, B in order`.
     """
 
     subject: Subject | None
@@ -146,6 +159,8 @@ class Claim(Part):
     per: Path | Word | None = None
     event: Event | AnyEvent | None = None
     every: bool = False
+    visits: tuple[NodeRef, ...] = ()
+    order: Word | None = None
 
     @property
     def row(self) -> str:

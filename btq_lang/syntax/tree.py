@@ -41,6 +41,7 @@ from btq_lang.syntax.clauses import How as How
 from btq_lang.syntax.clauses import Mission as Mission
 from btq_lang.syntax.clauses import Mitigates as Mitigates
 from btq_lang.syntax.clauses import Negative as Negative
+from btq_lang.syntax.clauses import NodeRef as NodeRef
 from btq_lang.syntax.clauses import NodeRuns as NodeRuns
 from btq_lang.syntax.clauses import Not as Not
 from btq_lang.syntax.clauses import Odds as Odds

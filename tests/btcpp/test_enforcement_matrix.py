@@ -38,6 +38,7 @@ CLAUSES = {
     "runs": ("runs every 500 ms", "runs at most 9 per 10 s"),
     "starts": ("starts within 2 s after Other succeeds",),
     "ends": ("ends within 2 s after Other fails",),
+    "visits": ("visits Other, Step in order",),
     "follows": (
         *(f"follows Other {happening}" for happening in ("starts", "succeeds", "fails", "finishes", "halts")),
         "follows mission starts",

@@ -56,7 +56,7 @@ class World(OverRuns):
             if isinstance(applied.subject, MissionRun) and claim.verb == "succeeds":
                 found += self.mission_succeeds(uid, claim, requirement)  # of a run whose start was refused, too
                 continue
-            if claim.verb in ("tries", "runs", "follows"):
+            if claim.verb in ("tries", "runs", "follows", "visits"):
                 found += self.over_runs(uid, claim, requirement)
             elif claim.verb not in ("starts", "ends"):
                 found += self.of_activations(uid, claim, requirement, part)
@@ -199,7 +199,7 @@ class Session:
         }
 
 
-OVER_RUNS = ("tries", "runs", "follows", "starts", "ends")
+OVER_RUNS = ("tries", "runs", "follows", "starts", "ends", "followed", "visits")
 
 
 def alike(one: Verdict, other: Verdict) -> Verdict:

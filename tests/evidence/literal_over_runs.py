@@ -89,7 +89,7 @@ class OverRuns(OfActivations):
 
     def over_runs(self, uid: int, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Judged]:
         """tries, runs, follows at one instance of a node."""
-        judge = {"tries": self.tries, "runs": self.rate, "follows": self.follows}[claim.verb]
+        judge = {"tries": self.tries, "runs": self.rate, "follows": self.follows, "visits": self.visits}[claim.verb]
         found = []
         for run in self.runs:
             own = [each for each in self.of(uid) if each.run == run.run]
@@ -142,6 +142,30 @@ class OverRuns(OfActivations):
         if not_below is False and not_above:  # there might have been more
             return OUT
         return not_above if not_above is not False or p.is_exact else None
+
+    def visits(
+        self,
+        uid: int,
+        own: Sequence[Activation],
+        run: Activation,
+        claim: ResolvedClaim,
+        requirement: ResolvedRequirement,
+    ) -> list[Decided]:
+        """Whether each of the nodes has succeeded in an activation that has ended, their first successes in order."""
+        found: list[Decided] = []
+        for p in own:
+            firsts = []
+            for visit in claim.visits:
+                (node,) = visit.nodes
+                assert not node.values, "random ports have none"
+                of = [each for near in self.nearest(uid, self.uids(node.target)) for each in self.of(near)]
+                ends = [each.stop for each in of if each.outcome == "S" and p.shown <= each.stop <= p.stop]
+                firsts.append(min(ends, default=None))
+            times = [first for first in firsts if first is not None]
+            verdict: Verdict = len(times) == len(firsts) and (not claim.in_order or times == sorted(times))
+            verdict = OPEN if p.outcome == "O" else OUT if p.outcome == "H" else verdict
+            found.append((counted(self.counts(p, requirement), verdict), p.end))
+        return found
 
     def rate(
         self,

@@ -235,7 +235,9 @@ class OfActivations(Log):
                     is_short = self.within((times[last + 1] - times[first]) / 1e6, claim.limit, a)[0]
                     kept.append(is_short if is_short is None or is_short or holds else None)
         verdict: Verdict = both(*kept, True if False in kept or {*held} != {None} else None)
-        verdict = None if verdict is False and not a.is_exact else verdict
+        if not a.is_exact:  # it may have ended right after its start
+            verdict = None if verdict is False else verdict
+            in_scope[1:] = [None if counts else counts for counts in in_scope[1:]]
         counts = both(self.holds_all("when", requirement, a.start, a), either(*in_scope))
         return counted(counts, OPEN if verdict and a.outcome == "O" else verdict)
 

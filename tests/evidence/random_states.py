@@ -34,9 +34,12 @@ def _requirement(
 ) -> str:
     subject = chance.choice([*labels, *labels, "mission", "Part"])
     state = _state(chance, condition)
-    claim = chance.choice(
-        [f"ends with {state}", f"keeps {state}", f"never {state} for more than {chance.randint(1, 12) / 4:g} s"]
-    )
+    rounds = [*dict.fromkeys(labels)][: chance.choice([3, 4, len(labels)])]  # the first ones succeed more often
+    order = chance.choice(["", " in order"])
+    claims = [f"ends with {state}", f"keeps {state}", f"never {state} for more than {chance.randint(1, 12) / 4:g} s"]
+    if len(rounds) > 1:
+        claims.append(f"visits {', '.join(chance.sample(rounds, min(len(rounds), chance.choice([2, 2, 3]))))}{order}")
+    claim = chance.choice(claims)
     lines = [f"QualityReq {name} : reliability", f"{subject} {claim}"]
     words = ("while", "when", "assuming")
     lines += [f"{word} {_state(chance, condition)}" for word in words if chance.random() < 0.15]

@@ -63,6 +63,12 @@ LINES: list[tuple[str, str, str, str]] = [  # verb, demand, runs, line
         " sampled just before, while Pick::4 ran; Move::3 had failed before in this run",
     ),
     (
+        "visits",
+        "Task visits Move, Alarm",
+        TWICE,
+        "Task: `Alarm` did not start",
+    ),
+    (
         "leaves",
         "Move leaves battery >= 60 %",
         TWICE,

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import pytest
+from check_asserts import workspace_of
 
+from btq_lang.checks import check
 from btq_lang.parser import parse
 from btq_lang.syntax.tree import Assuming, Binary, Choice, Claim, Clause, Operand, Path, Requirement, walk
 
@@ -40,14 +42,6 @@ def test_the_row_of_a_verb(text: str, row: str) -> None:
     assert claim(text).row == row
 
 
-@pytest.mark.parametrize(
-    ("condition", "cases"),
-    [
-        ("speed <= (1 m/s if near else 2 m/s)", 1),
-        ("(-1 m/s if near, limit if far and calm else - 2 m/s) < speed", 2),
-        ("speed * (2 if near else 3) < 6 m/s or calm", 1),
-    ],
-)
 def test_an_assumption() -> None:
     first, second = clauses("Move takes at most 3 s assuming visible and not node Pick")
     assert isinstance(first, Claim)
@@ -72,9 +66,51 @@ def test_a_signal_that_is_called_age() -> None:
     assert [each.word.text for each in walk(claim("keeps age <= 3 s")) if isinstance(each, Operand)] == ["age", "3 s"]
 
 
+@pytest.mark.parametrize(
+    ("condition", "cases"),
+    [
+        ("speed <= (1 m/s if near else 2 m/s)", 1),
+        ("(-1 m/s if near, limit if far and calm else - 2 m/s) < speed", 2),
+        ("speed * (2 if near else 3) < 6 m/s or calm", 1),
+    ],
+)
 def test_a_choice_in_a_condition(condition: str, cases: int) -> None:
     found = [each for each in walk(claim(f"keeps {condition}")) if isinstance(each, Choice)]
     assert [(len(each.table.cases), each.table.otherwise is not None) for each in found] == [(cases, True)]
+
+
+@pytest.mark.parametrize(
+    ("text", "paths", "in_order"),
+    [
+        ("mission visits A, B in order", ["A", "B"], True),
+        ("visits A/B, 'C d', E", ["A/B", "'C d'", "E"], False),
+        ('visits MoveTo (to = "A" speed = 3 m/s), Dock', None, False),
+        ("visits visits A, B", ["A", "B"], False),  # a node of that name
+        ("visits A, B in at least 90 % of runs", ["A", "B"], False),
+    ],
+)
+def test_nodes_to_visit(text: str, paths: list[str] | None, in_order: bool) -> None:
+    found, *_ = clauses(text.replace(" speed", ", speed"))
+    assert isinstance(found, Claim)
+    shown = ["/".join(name.raw for name in visit.path.names) for visit in found.visits]
+    assert (shown, found.order is not None) == (paths or ["MoveTo", "Dock"], in_order)
+    if paths is None:
+        pairs = [(pair.key.text, pair.value.text) for pair in found.visits[0].pairs if pair.value is not None]
+        assert pairs == [("to", "A"), ("speed", "3 m/s")]
+
+
+@pytest.mark.parametrize("text", ["visits takes at most 3 s", "visits/Move needs calm", "Go/visits needs calm"])
+def test_a_node_that_is_called_visits(text: str) -> None:
+    found = claim(text)
+    assert isinstance(found.subject, Path)
+    assert found.verb.raw != "visits"
+
+
+def test_a_tree_with_a_node_that_is_called_visits() -> None:
+    workspace = workspace_of(
+        {"main.btq": "Root Main\nBehaviorTree Main\n    ->\n        visits\n        visits (a = 1)\n"}
+    )
+    assert [each.rule for each in check(workspace, "main.btq") if each.rule in ("clause-as-node", "syntax-error")] == []
 
 
 def test_a_node_that_is_called_for() -> None:
@@ -101,6 +137,8 @@ def test_a_node_that_is_called_for() -> None:
             "takes at most 3 s assumption visible",
             "`assumption` is not in btq; nearest is `assuming` with a condition",
         ),
+        ("visits A", "expected `,` and another node, found the end of the line"),
+        ("visits A (to), B", "expected `=`, found `)`"),
         ("Move ends in 3 s", "this clause is written `Move succeeds within 3 s` or `Move takes at most 3 s`"),
     ],
 )

@@ -5,6 +5,10 @@ from __future__ import annotations
 import pytest
 from feature_asserts import check_hover, check_offers
 
+TREE = (
+    "Action Move\n    input place : string\n    input speed : double\n"
+    "BehaviorTree Main\n    ->\n        Move\n        Pick\n"
+)
 BEFORE = "signal battery : % from {level} level\ncontext calm : battery > 50 %\nQualityReq r : safety\n    "
 
 
@@ -25,11 +29,19 @@ BEFORE = "signal battery : % from {level} level\ncontext calm : battery > 50 %\n
         ("takes at most 3 s if (calm ", ("and",), ("else", "if")),
         ("assuming ", ("calm", "battery"), ("takes",)),
         ("assuming calm ", ("and",), ("if",)),
+        ("mission visits ", ("Move", "Pick"), ("battery",)),
+        ("mission visits Move (", ("place",), ("takes at most",)),
+        ('mission visits Move (place = "A", ', ("speed",), ("place", "takes at most")),
+        ("mission visits Move (place = ", (), ("takes at most", "speed")),
+        ('mission visits Move (place = "A"), ', ("Move", "Pick"), ("speed",)),
+        ("mission visits Move, ", ("Move", "Pick"), ()),
+        ("mission visits Move, Pick ", ("in order",), ()),
+        ("mission visits Move, Pick in ", ("order", "at least"), ()),
         ("ends with (", ("battery",), ("station =",)),
     ],
 )
 def test_what_may_follow(clause: str, labels: tuple[str, ...], absent: tuple[str, ...]) -> None:
-    check_offers(f"{BEFORE}{clause}$0", *labels, absent=absent)
+    check_offers(f"{BEFORE}{clause}$0\n{TREE}", *labels, absent=absent)
 
 
 def test_what_is_shown_at_never() -> None:
