@@ -10,6 +10,7 @@ the next.  Checks do not know what an edit changed, nor how findings are printed
     kinds.py, names.py, ports.py, attributes.py, children.py, misplaced_children.py   what the engine would refuse
     known_ports.py, own_nodes.py   the ports of a node; nodes of a team with the name of one of Nav2
     trees.py, includes.py, elements.py, missing_ids.py, stale_models.py   likewise, of whole trees, models and files
+    signs_in_nodes.py   likewise, on the line of a node
     positional.py, literals.py, port_values.py, scripts.py, strings.py, typed_numbers.py   values, of ports too
     entries.py, pointers.py, writers.py, misspelt.py, meant_entries.py, mixed_types.py   blackboard entries
     calls.py, flow.py, unset.py, arguments.py   entries across trees: read and never set, given and never read
@@ -385,8 +386,10 @@ def _reported(
     if entry.diagnostics:
         from btq_lang.checks.misplaced_children import reword_diagnostics  # few items have mistakes in their syntax
         from btq_lang.checks.positional import with_ports
+        from btq_lang.checks.signs_in_nodes import without_signs
 
-        reported = meant_entries.with_entries(view, with_ports(view, reword_diagnostics(view, entry.diagnostics)))
+        reworded = without_signs(view, reword_diagnostics(view, entry.diagnostics))
+        reported = meant_entries.with_entries(view, with_ports(view, reworded))
         diagnostics = (*reported, *_on_sound_lines(diagnostics, entry, view.text))
     elif not diagnostics:
         return None

@@ -73,7 +73,7 @@ def _reworded(view: View, reported: Diagnostic) -> Diagnostic:
     node = resolved.node
     if reported.notes == (CHILD,):
         word = text[offset : reported.span.end]
-        if node.label is not None or not is_name(word) or (node.children and not _is_node(view, word)):
+        if node.label is not None or not is_name(word) or (node.children and not is_node(view, word)):
             return reported
         fixes = () if node.children else _line_break_fixes(view, node, (offset,))
         return replace(reported, message=CHILD, notes=(), fixes=fixes)
@@ -89,7 +89,8 @@ def _reworded(view: View, reported: Diagnostic) -> Diagnostic:
     )
 
 
-def _is_node(view: View, word: str) -> bool:
+def is_node(view: View, word: str) -> bool:
+    """Whether a word is a built-in, or the name of a declared node or tree."""
     return (
         lookup(word) is not None
         or view.ask(lookups.is_defined, Kind.MODEL, word)

@@ -162,12 +162,15 @@ def parse_node(cursor: Cursor, level: int) -> Node | None:
         clauses.append(parse_node_clause(cursor))
     bare = False
     if cursor.kind != NEWLINE:
-        bare = cursor.index == 1 and at_bare_value(cursor)  # `key = value` after a forgotten bracket
+        # `key = value` after a forgotten bracket
+        bare = cursor.index == 1 and at_bare_value(cursor) and OPEN not in cursor.kinds
         if not child_on_the_line(cursor, label):
             leftover(cursor, kind, label is not None, clauses)
     end = cursor.end_line()
     if bare and not cursor.deeper(level):
         return None
+    if bare:
+        cursor.bare_until = -1  # a node has a block, so the next line is no attribute
     return Node(start, end, category, kind, label, attributes, tuple(clauses) if clauses else (), ())
 
 
@@ -497,7 +500,7 @@ def bare_attributes(cursor: Cursor) -> None:
     """Report `MoveBase station = "charger"`, and several lines `key = value` once."""
     lexer = cursor.lexer
     start, end = cursor.starts[cursor.index - 1], cursor.starts[-2] + len(cursor.raws[-2])
-    if cursor.index == 1:
+    if cursor.index == 1 and OPEN not in cursor.kinds:
         is_next = cursor.bare_until >= 0 and not cursor.text[cursor.bare_until : lexer.line_start].strip()
         cursor.bare_until = lexer.position
         lexer.ended_early = 1  # the `)` after them is not another mistake
@@ -517,8 +520,7 @@ def bare_attributes(cursor: Cursor) -> None:
         changes += (FixEdit(Place(Span(end, end)), ")"),)
     safe = plain and not closing and are_plain_pairs(cursor.text[start:end])
     fixes = (Fix("Put brackets around them", changes, safe),) if plain or closing else ()
-    message = "attributes go in brackets: `(key = value)`"
-    cursor.complain_instead(closing[-1:], Diagnostic("syntax-error", Span(start, end), message, fixes=fixes))
+    cursor.complain_instead(closing[-1:], Diagnostic("syntax-error", Span(start, end), BARE, fixes=fixes))
 
 
 def is_stray_bracket(cursor: Cursor, problem: Diagnostic) -> bool:
@@ -573,6 +575,7 @@ XML: Final = (
     "if this is BehaviorTree.CPP XML, rename the file to .xml, or convert it with `btq import`; "
     "a comment begins with `#`, not `<!--`"
 )
+BARE: Final = "attributes go in brackets: `(key = value)`"
 CHILD: Final = "a child goes on a line of its own below its parent, indented"
 _TAG: Final = re.compile(r"""<([^\W\d]\w*)((?:\s+[\w:]+\s*=\s*(?:"[^"<]*"|'[^'<]*'))*)\s*(/?)>""")
 _NO_KINDS: Final = NODE_CLAUSES | DIRECTIONS | {"QualityReq", "xml"}

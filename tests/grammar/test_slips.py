@@ -232,6 +232,38 @@ SCRIPTS: Final[list[Case]] = [
     ),
 ]
 
+SIGNS: Final[list[Case]] = [
+    *(
+        (
+            tree(*lines),
+            f"{place} error syntax-error «{sign}» unexpected `{sign}` | a node is written `kind name`",
+            tree(*mended),
+        )
+        for place, sign, lines, mended in (
+            ("2:13", ":", ("Sequence: Rows", "    Go"), ("Sequence Rows", "    Go")),
+            ("2:14", ":", ("Fallback : Photo", "    Go"), ("Fallback Photo", "    Go")),
+            ("2:14", "=", ("Fallback = Photo", "    Go"), ("Fallback Photo", "    Go")),
+        )
+    ),
+    *(
+        (
+            f"Action Go\n    input at\n{tree('->', f'    {written}')}",
+            f"5:{9 + at} error syntax-error «{span}» {message}",
+            f"Action Go\n    input at\n{tree('->', '    Go Home (at = 3)')}",
+        )
+        for written, at, span, message in (
+            ("Go: Home (at = 3)", 2, ":", "unexpected `:` | a node is written `kind name`"),
+            ("Home: Go (at = 3)", 0, "Home: Go", "a node's name goes after its kind: `Go Home (…)`"),
+            ("Home = Go (at = 3)", 0, "Home = Go", "a node's name goes after its kind: `Go Home (…)`"),
+        )
+    ),
+    (
+        tree("->", "    Home: AlwaysSuccess  # later"),
+        "3:9 error syntax-error «Home: AlwaysSuccess» a node's name goes after its kind: `AlwaysSuccess Home`",
+        tree("->", "    AlwaysSuccess Home  # later"),
+    ),
+]
+
 SIGNALS: Final[list[Case]] = [
     *(
         (
@@ -519,7 +551,7 @@ def test_what_a_check_mends_by_itself(text: str, fixed: str | None) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "said", "mended"), [*ON_ONE_LINE, *VALUES, *SCRIPTS, *SIGNALS, *PROSE, *OF_OTHER_LIBRARIES]
+    ("text", "said", "mended"), [*ON_ONE_LINE, *VALUES, *SCRIPTS, *SIGNS, *SIGNALS, *PROSE, *OF_OTHER_LIBRARIES]
 )
 def test_a_slip_is_one_diagnostic(text: str, said: str, mended: str | None) -> None:
     found = mistakes(text)
@@ -1059,6 +1091,13 @@ def test_a_leaf_with_a_label(node: str) -> None:
 )
 def test_a_label_after_brackets_may_be_one(text: str) -> None:
     assert mistakes(text)[0].message == "a node's label goes before its brackets"
+
+
+def test_each_node_with_a_sign_is_reported() -> None:
+    text = tree("Sequence: Rows", "    Fallback: Photo", "        Go: Home (at = 3)", "        Turn: Back (at = 3)")
+    assert [text[found.span.start :].split(":")[0] for found in parse(text).diagnostics] == [
+        *("Sequence", "Fallback", "Go", "Turn")
+    ]
 
 
 def test_the_start_of_the_next_line_is_no_value() -> None:
