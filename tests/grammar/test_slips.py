@@ -341,6 +341,10 @@ PROSE: Final[list[Case]] = [
             ("Main/Go shall not exceed 30 s", "shall not exceed", "Main/Go takes at most 30 s"),
             ("must not take longer than 30 s", "must not take longer than", "takes at most 30 s"),
             ("Go must not fail", "must not fail", "Go succeeds"),
+            ("mission must take at most 1 h", "must take", "mission takes at most 1 h"),
+            ("mission needs to take at most 1 h", "needs to take", "mission takes at most 1 h"),
+            ("every Go shall not exceed 30 s", "shall not exceed", "every Go takes at most 30 s"),
+            ("sum of Go, Go must take at most 3 s", "must take", "sum of Go, Go takes at most 3 s"),
         )
     ),
     *(
@@ -366,6 +370,26 @@ PROSE: Final[list[Case]] = [
             ("v shall not exceed 1 m/s", "v shall not exceed", "keeps v <= 1 m/s"),
             ("v is below 1 m/s", "v is below", "keeps v < 1 m/s"),
         )
+    ),
+    *(
+        (
+            OF_A_SIGNAL + f"{subject} {prose}\n",
+            f"5:{6 + len(subject)} error syntax-error «{prose.removesuffix(' 1 m/s')}» "
+            f"this clause is written `{subject} keeps v < 1 m/s`",
+            OF_A_SIGNAL + f"{subject} keeps v < 1 m/s\n",
+        )
+        for subject in ("Go", "Main/Go", "every Go", "mission")
+        for prose in ("v stays below 1 m/s", "v must be less than 1 m/s")
+    ),
+    *(
+        (
+            OF_A_SIGNAL + f"{subject}v < 1 m/s\n",
+            f"5:{5 + len(subject)} error syntax-error «v <» expected a verb before the condition: "
+            "`keeps`, `never`, `needs` or `leaves` | "
+            "`keeps` holds while the node runs, `needs` when it starts, `leaves` when it has succeeded",
+            OF_A_SIGNAL + f"{subject}keeps v < 1 m/s\n",
+        )
+        for subject in ("", "Go ", "every Go ", "mission ")
     ),
     (
         OF_A_SIGNAL + "takes at most 30 s\n    if v > 1 m/s\n",
@@ -419,6 +443,20 @@ CLAUSES: Final[list[tuple[str, tuple[str, ...], str]]] = [
         for clause in ("succeeds in 30 s", "succeeds by 30 s", "succeeds within at most 30 s", "done within 30 s")
     ),
     ("Go succeeds in under 30 s", ("Go succeeds within 30 s",), ""),
+    *(
+        (clause, ("mission succeeds within 1 h", "mission takes at most 1 h"), _FAILURE)
+        for clause in ("mission finishes within 1 h", "mission ends within 1 h", "mission is finished in less than 1 h")
+    ),
+    (
+        "every Go finishes within 40 s",
+        ("every Go succeeds within 40 s", "every Go takes at most 40 s"),
+        _FAILURE,
+    ),
+    ("is finished in 40 s", ("succeeds within 40 s", "takes at most 40 s"), _FAILURE),
+    ("mission duration <= 1 h", ("mission takes at most 1 h",), ""),
+    ("every Go runs at 10 Hz", ("every Go runs at least 10 per 1 s",), ""),
+    ("every Go ends before Turn", ("Turn follows <node> finishes",), _OTHER),
+    ("Go succeeds 95 % of runs", ("Go succeeds in at least 95 % of runs",), ""),
     *(
         (clause, ("succeeds within 30 s", "takes at most 30 s"), _FAILURE)
         for clause in ("finishes within 30 s", "completes within 30 s", "ends before 30 s", "must finish in 30 s")
