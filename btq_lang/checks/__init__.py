@@ -11,7 +11,8 @@ the next.  Checks do not know what an edit changed, nor how findings are printed
     known_ports.py, own_nodes.py   the ports of a node; nodes of a team with the name of one of Nav2
     trees.py, includes.py, elements.py, missing_ids.py, stale_models.py   likewise, of whole trees, models and files
     signs_in_nodes.py   likewise, on the line of a node
-    positional.py, literals.py, port_values.py, scripts.py, strings.py, typed_numbers.py   values, of ports too
+    positional.py, literals.py, port_values.py, scripts.py, strings.py   values, of ports too
+    typed_numbers.py, passed_literals.py   values that a SubTree passes to the nodes below it
     entries.py, pointers.py, writers.py, misspelt.py, meant_entries.py, mixed_types.py   blackboard entries
     calls.py, flow.py, unset.py, arguments.py   entries across trees: read and never set, given and never read
     engines.py, version3.py   which versions of the engine a file is for
@@ -49,6 +50,7 @@ from btq_lang.checks import (
     names,
     nav2_literals,
     nav2_nodes,
+    passed_literals,
     placeholders,
     port_values,
     ports,
@@ -156,6 +158,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         literals.number_for_text,
         mixed_types.entry_with_two_types,
         typed_numbers.number_of_another_type,
+        passed_literals.passed_literal,
         port_values.literal_for_output,
         port_values.count_of_nothing,
         children.child_count,
