@@ -29,6 +29,7 @@ from btq_lang.syntax.tree import Node, Tree, is_name, written
 from btq_lang.util.text import Span
 from btq_lang.workspace.resolved import ResolvedNode
 
+_NUMBERS = dict(enumerate(("two", "three", "four", "five", "six", "seven"), start=2))
 _INTEGER = re.compile(r"-?[0-9]{1,18}")
 _QUOTED = re.compile("'([^']*)'")
 
@@ -150,6 +151,8 @@ def switch_cases(view: View) -> Iterator[Diagnostic]:
             note = f"its cases are `case_1` to `{cases[-1]}`"
             if by_children:
                 note = f"with {count} children {note}: one child for each, and the last for the default"
+            elif (more := number + len(extra)) <= 6 and all(f"case_{case}" in keys for case in range(1, more + 1)):
+                note = f"{_NUMBERS[more]} cases need `Switch{more}`, with {_NUMBERS[more + 1]} children"
             yield Diagnostic("switch-cases", extra[0].span, message, notes=(note,))
         elif missing:
             message = f"{resolved.shown_kind} lacks {' and '.join(f'`{name}`' for name in missing)}"

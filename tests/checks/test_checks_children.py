@@ -93,6 +93,9 @@ def test_a_case_too_many_is_told_once(switch: str) -> None:
     column = text.index("case_3") - text.index("\n")
     shown = switch.strip('"')
     assert_problems(text, f"2:{column} error switch-cases «case_3» `{shown}` has no case `case_3`")
+    of_children = "with 3 children its cases are `case_1` to `case_2`: one child for each, and the last for the default"
+    note = of_children if switch == "Switch" else "three cases need `Switch3`, with four children"
+    assert [problem.notes for problem in problems(text, "switch-cases")] == [(note,)]
 
 
 def test_a_numbered_switch_counts_its_children() -> None:
