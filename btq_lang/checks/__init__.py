@@ -192,6 +192,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         nav2_nodes.isolated_node,
         nav2_nodes.shared_server,
         nav2_literals.wrong_number_of_fields,
+        nav2_literals.percentage_for_share,
         resets.memory_lost,
         resets.last_success_lost,
         unread.default_instead,

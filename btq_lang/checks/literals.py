@@ -15,6 +15,7 @@ from btq_lang.catalog.units import a_dimension, convert, parse_unit
 from btq_lang.catalog.versions import ENTRY_WITHOUT_DOLLAR, TYPED_CONSTANTS
 from btq_lang.checks import lookups
 from btq_lang.checks.meant_entries import entry_in, entry_of
+from btq_lang.checks.nav2_literals import share_meant
 from btq_lang.checks.view import View, port_of
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
@@ -228,6 +229,8 @@ def _values(view: View) -> Iterator[tuple[_Target, Word]]:
     for resolved, pair, value in view.seen.values():
         if resolved.is_placeholder or (value.kind == BRACED and pair.key.text != "_autoremap"):
             continue
+        if share_meant(view, resolved, pair, value) is not None:
+            continue  # which percentage_for_share reports
         if (target := _target(view, resolved, pair, value)) is not None:
             yield target, value
 
