@@ -18,7 +18,7 @@ from btq_lang.grammar.claims import (
     parse_claim,
     report_slip,
 )
-from btq_lang.grammar.conditions import HEADS, SUBJECT_HEADS, parse_cond
+from btq_lang.grammar.conditions import HEADS, SUBJECT_HEADS, bound_ahead, parse_cond
 from btq_lang.grammar.cursor import Cursor
 from btq_lang.syntax.scan import line_end, line_start
 from btq_lang.syntax.suggestions import unknown_unit
@@ -200,6 +200,7 @@ def parse_on_violation(cursor: Cursor) -> OnViolation:
 def parse_goal(cursor: Cursor) -> Goal:
     """ "goal" Bounded"""
     start = cursor.take().start
+    skip_bound_of_goal(cursor)
     value = parse_bounded(cursor)
     return Goal(start, cursor.last_end(), value)
 
@@ -263,6 +264,18 @@ def parse_one_of(cursor: Cursor, words: tuple[str, ...]) -> Word | None:
 
 
 # ---- what productions ask and report ----
+
+
+def skip_bound_of_goal(cursor: Cursor) -> None:
+    """Report and skip the words of a bound after `goal`: `goal at most 30 s`."""
+    length, _ = bound_ahead(cursor) or (0, None)
+    value = cursor.index + length
+    if length and cursor.kinds[value] in (QUANTITY, NUMBER):
+        span = Span(cursor.here().start, cursor.starts[value])
+        words = cursor.text[span.start : span.end].strip()
+        message = f"a goal is a value: `goal {cursor.raws[value]}`"
+        cursor.complain(Span(span.start, span.start + len(words)), message, replace_fix(f"Remove `{words}`", span, ""))
+        cursor.go_to(value)
 
 
 def is_other_clause(cursor: Cursor) -> bool:

@@ -109,6 +109,11 @@ def parse_other_line(cursor: Cursor, level: int, blocks: list[OpenBlock], ports:
             cursor.complain(cursor.here(), "ports go before satisfices, satisfies and tags")
         ports.append(parse_port(cursor))
         no_block(cursor, level)
+    elif word in _PARAMETERS and len(blocks) == 1 and not block.has_nodes() and cursor.is_operator(2, ":"):
+        port = f"`input {cursor.raws[1]} : type`"
+        cursor.complain(cursor.here(), f"a port of a tree is written {port}", write_fix("input", cursor.here()))
+        ports.append(parse_port(cursor, "input"))
+        no_block(cursor, level)
     elif word in DIRECTIONS and cursor.kinds[cursor.index + 1] == NAME and cursor.is_operator(cursor.index + 2, ":"):
         tree = blocks[0]
         port_below_node(cursor, tree.children[0] if tree.children and not tree.clauses else None)
@@ -390,6 +395,9 @@ def leftover(cursor: Cursor, kind: Word | None, has_label: bool, clauses: list[N
         attaches_nothing(cursor, kind.span.shifted(cursor.base), meant)
     elif at_bare_value(cursor) and cursor.index > 0 and cursor.kinds[cursor.index - 1] in (NAME, STRING):
         bare_attributes(cursor)
+    elif cursor.at_key() and has_label and OPEN not in cursor.kinds and not clauses:
+        cursor.advance()
+        bare_attributes(cursor)
     elif cursor.at_name() and cursor.kinds[cursor.index - 1] == CLOSE and ends_label(cursor, clauses):
         label_after_brackets(cursor, kind, has_label)
     elif cursor.at("-") and cursor.text.startswith("-- ", cursor.here().start):
@@ -578,7 +586,8 @@ XML: Final = (
 BARE: Final = "attributes go in brackets: `(key = value)`"
 CHILD: Final = "a child goes on a line of its own below its parent, indented"
 _TAG: Final = re.compile(r"""<([^\W\d]\w*)((?:\s+[\w:]+\s*=\s*(?:"[^"<]*"|'[^'<]*'))*)\s*(/?)>""")
-_NO_KINDS: Final = NODE_CLAUSES | DIRECTIONS | {"QualityReq", "xml"}
+_PARAMETERS: Final = frozenset(("param", "parameter", "argument"))
+_NO_KINDS: Final = NODE_CLAUSES | DIRECTIONS | _PARAMETERS | {"QualityReq", "xml"}
 _NOT_NODES: Final = frozenset(("root", "BehaviorTree", "TreeNodesModel", "include"))
 _COMMENT_ENDS: Final = ("-->", '"""', "'''")
 _STATEMENTS: Final = {

@@ -264,6 +264,35 @@ SIGNS: Final[list[Case]] = [
     ),
 ]
 
+OTHER_WORDS: Final[list[Case]] = [
+    (
+        tree('Go Home place="home" at = 3'),
+        '2:13 error syntax-error «place="home" at = 3» attributes go in brackets: `(key = value)`',
+        tree('Go Home (place="home" at = 3)'),
+    ),
+    *(
+        (
+            tree(f"{word} row : string", "Go (at = {row})"),
+            f"2:5 error syntax-error «{word}» a port of a tree is written `input row : type`",
+            tree("input row : string", "Go (at = {row})"),
+        )
+        for word in ("param", "parameter", "argument")
+    ),
+    (
+        'Action Go\n    input at : string default "home"\n' + tree("Go"),
+        '2:23 error syntax-error «default» a default is written `= "home"`',
+        'Action Go\n    input at : string = "home"\n' + tree("Go"),
+    ),
+    *(
+        (
+            requirement("takes at most 40 s", f"goal {bound} 30 s"),
+            f"5:10 error syntax-error «{bound}» a goal is a value: `goal 30 s`",
+            requirement("takes at most 40 s", "goal 30 s"),
+        )
+        for bound in ("at most", "<=")
+    ),
+]
+
 SIGNALS: Final[list[Case]] = [
     *(
         (
@@ -589,7 +618,8 @@ def test_what_a_check_mends_by_itself(text: str, fixed: str | None) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "said", "mended"), [*ON_ONE_LINE, *VALUES, *SCRIPTS, *SIGNS, *SIGNALS, *PROSE, *OF_OTHER_LIBRARIES]
+    ("text", "said", "mended"),
+    [*ON_ONE_LINE, *VALUES, *SCRIPTS, *SIGNS, *OTHER_WORDS, *SIGNALS, *PROSE, *OF_OTHER_LIBRARIES],
 )
 def test_a_slip_is_one_diagnostic(text: str, said: str, mended: str | None) -> None:
     found = mistakes(text)
