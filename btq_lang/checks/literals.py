@@ -60,6 +60,7 @@ class _Target(Record):
         is_output: whether it is an output; another rule reports every literal for one.
         is_count: whether it says how often a child runs, and -1 means endless.
         is_number_of_children: whether it says how many of them must succeed or fail.
+        doc: the port's description.
     """
 
     port: str
@@ -69,6 +70,7 @@ class _Target(Record):
     is_output: bool = False
     is_count: bool = False
     is_number_of_children: bool = False
+    doc: str = ""
 
 
 def old_entry(view: View) -> Iterator[Diagnostic]:
@@ -183,6 +185,17 @@ def _quantity(target: _Target, value: Word, version: str) -> Iterator[Diagnostic
         return  # an unknown unit, which is reported
     port_unit = parse_unit(target.unit) if target.unit is not None else None
     if port_unit is None:
+        stated = parse_unit(target.doc) if target.doc else None
+        if stated is not None and stated.dimension == quantity[1].dimension:
+            number = f"{convert(quantity[0], quantity[1], stated):.10g}"
+            yield Diagnostic(
+                "quantity-on-unitless-port",
+                value.span,
+                f"unknown unit of the port `{target.port}`",
+                notes=(f"its description is `{target.doc}`: write the number in that unit, `{number}`",),
+                fixes=(replace_fix(f"Write `{number}`", value.span, number),),
+            )
+            return
         as_text = check_literal(target.type, value.raw, version) is None
         # No fix: without its unit the number may mean something else, and not every node reads the text.
         yield Diagnostic(
@@ -251,7 +264,7 @@ def _target(view: View, resolved: ResolvedNode, pair: Pair, value: Word) -> _Tar
     )
     is_number_of_children = port.role in ("successes", "failures")
     type_, is_output = port.literal or port.type, port.direction == "output"
-    return _Target(key, type_, port.unit, converts, is_output, is_count, is_number_of_children)
+    return _Target(key, type_, port.unit, converts, is_output, is_count, is_number_of_children, port.doc)
 
 
 def _accepted(target: _Target, value: Word, version: str) -> tuple[Fix, ...]:
