@@ -175,7 +175,7 @@ def parse_node(cursor: Cursor, level: int) -> Node | None:
     if bare and not cursor.deeper(level):
         return None
     if bare:
-        cursor.bare_until = -1  # a node has a block, so the next line is no attribute
+        cursor.bare_until = -1  # it has a block, so it is a node, and the next line may be one too
     return Node(start, end, category, kind, label, attributes, tuple(clauses) if clauses else (), ())
 
 
