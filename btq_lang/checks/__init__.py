@@ -10,7 +10,9 @@ the next.  Checks do not know what an edit changed, nor how findings are printed
     kinds.py, names.py, ports.py, attributes.py, children.py, misplaced_children.py   what the engine would refuse
     known_ports.py, own_nodes.py   the ports of a node; nodes of a team with the name of one of Nav2
     trees.py, includes.py, elements.py, missing_ids.py, stale_models.py   likewise, of whole trees, models and files
-    positional.py, literals.py, port_values.py, scripts.py, strings.py, typed_numbers.py   values, of ports too
+    signs_in_nodes.py   likewise, on the line of a node
+    positional.py, literals.py, port_values.py, scripts.py, strings.py   values, of ports too
+    typed_numbers.py, passed_literals.py   values that a SubTree passes to the nodes below it
     entries.py, pointers.py, writers.py, misspelt.py, meant_entries.py, mixed_types.py   blackboard entries
     calls.py, flow.py, unset.py, arguments.py   entries across trees: read and never set, given and never read
     engines.py, version3.py   which versions of the engine a file is for
@@ -51,6 +53,7 @@ from btq_lang.checks import (
     names,
     nav2_literals,
     nav2_nodes,
+    passed_literals,
     placeholders,
     port_values,
     ports,
@@ -163,6 +166,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         literals.number_for_text,
         mixed_types.entry_with_two_types,
         typed_numbers.number_of_another_type,
+        passed_literals.passed_literal,
         port_values.literal_for_output,
         port_values.count_of_nothing,
         children.child_count,
@@ -196,6 +200,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         nav2_nodes.isolated_node,
         nav2_nodes.shared_server,
         nav2_literals.wrong_number_of_fields,
+        nav2_literals.percentage_for_share,
         resets.memory_lost,
         resets.last_success_lost,
         unread.default_instead,
@@ -395,8 +400,10 @@ def _reported(
     if entry.diagnostics:
         from btq_lang.checks.misplaced_children import reword_diagnostics  # few items have mistakes in their syntax
         from btq_lang.checks.positional import with_ports
+        from btq_lang.checks.signs_in_nodes import without_signs
 
-        reported = meant_entries.with_entries(view, with_ports(view, reword_diagnostics(view, entry.diagnostics)))
+        reworded = without_signs(view, reword_diagnostics(view, entry.diagnostics))
+        reported = meant_entries.with_entries(view, with_ports(view, reworded))
         diagnostics = (*reported, *_on_sound_lines(diagnostics, entry, view.text))
     elif not diagnostics:
         return None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from btq_lang.catalog.kinds import CHILDREN
 from btq_lang.catalog.literals import is_pointer
@@ -16,6 +16,8 @@ from btq_lang.checks.misplaced_children import (
     dedent_fixes,
     indent_below_fixes,
     label_as_child,
+    most_children,
+    outdented,
     wrap_in_sequence_fixes,
 )
 from btq_lang.checks.view import View, misspelt_clause
@@ -27,6 +29,7 @@ from btq_lang.syntax.tree import Node, Tree, is_name, written
 from btq_lang.util.text import Span
 from btq_lang.workspace.resolved import ResolvedNode
 
+_NUMBERS = dict(enumerate(("two", "three", "four", "five", "six", "seven"), start=2))
 _INTEGER = re.compile(r"-?[0-9]{1,18}")
 _QUOTED = re.compile("'([^']*)'")
 
@@ -35,13 +38,11 @@ def child_count(view: View) -> Iterator[Diagnostic]:
     """More or fewer children than the node takes."""
     nodes = view.nodes
     for index, resolved in enumerate(nodes):
-        category = resolved.stated_category
-        if category is None:
+        numbers = wrong_number(resolved)
+        if numbers is None or _is_of_another_line(view, resolved, nodes[index + 1 : index + 2]):
             continue
-        least, most = resolved.behavior.children if resolved.behavior is not None else CHILDREN[category]
-        count = len(resolved.node.children)
-        if (least <= count and (most is None or count <= most)) or _is_by_children(resolved):
-            continue
+        least, most = numbers
+        category, count = resolved.stated_category, len(resolved.node.children)
         declared = declared_category(resolved)
         if (
             resolved.kind is None
@@ -78,11 +79,33 @@ def child_count(view: View) -> Iterator[Diagnostic]:
         fixes = wrap_in_sequence_fixes(view, resolved.node.children) if most == 1 < count else ()
         if most is not None and count > most and (moved := dedent_fixes(view, resolved, resolved.node.children[most:])):
             notes, fixes = (*notes, TOO_FAR), moved + fixes
+        fixes = outdented(view, resolved) + fixes
         if count == 0 and resolved.behavior is not None:
             as_child, fixes = label_as_child(view, resolved)
             beside, below_it = ((), ()) if as_child else _beside(view, resolved, most)
             notes, fixes = notes + as_child + beside, fixes + below_it
         yield Diagnostic("child-count", resolved.node.head.span, message, related=related, notes=notes, fixes=fixes)
+
+
+def wrong_number(resolved: ResolvedNode) -> tuple[int, int | None] | None:
+    """The least and the most children that a node takes, if it has fewer or more."""
+    category, count = resolved.stated_category, len(resolved.node.children)
+    if category is None or _is_by_children(resolved):
+        return None
+    least, most = resolved.behavior.children if resolved.behavior is not None else CHILDREN[category]
+    return None if least <= count and (most is None or count <= most) else (least, most)
+
+
+def _is_of_another_line(view: View, resolved: ResolvedNode, following: Sequence[ResolvedNode]) -> bool:
+    """Whether a wrong number of children follows from a line that is not indented enough, which is reported there."""
+    tree = view.item
+    if isinstance(tree, Tree) and resolved.parent is None and len(tree.children) > 1:
+        if resolved.node.children:
+            return len(tree.children) == 2 and bool(outdented(view, resolved))
+        if resolved.index == 0 and resolved.node.label is None and most_children(resolved) is None:
+            return bool(indent_below_fixes(view, resolved.node, tree.children[1:]))
+    is_beside = not resolved.node.children and bool(following) and following[0].parent is resolved.parent
+    return is_beside and bool(outdented(view, following[0]))
 
 
 def _in_one(resolved: ResolvedNode, most: int) -> str:
@@ -101,7 +124,7 @@ def _beside(view: View, resolved: ResolvedNode, most: int | None) -> tuple[tuple
         return (), ()
     if most == 1:
         return (CHILD,), indent_below_fixes(view, resolved.node, siblings[:1])
-    return (BELOW,), ()  # at the top of a tree, tree_root_count indents them
+    return (BELOW,), ()
 
 
 def switch_cases(view: View) -> Iterator[Diagnostic]:
@@ -128,6 +151,8 @@ def switch_cases(view: View) -> Iterator[Diagnostic]:
             note = f"its cases are `case_1` to `{cases[-1]}`"
             if by_children:
                 note = f"with {count} children {note}: one child for each, and the last for the default"
+            elif (more := number + len(extra)) <= 6 and all(f"case_{case}" in keys for case in range(1, more + 1)):
+                note = f"{_NUMBERS[more]} cases need `Switch{more}`, with {_NUMBERS[more + 1]} children"
             yield Diagnostic("switch-cases", extra[0].span, message, notes=(note,))
         elif missing:
             message = f"{resolved.shown_kind} lacks {' and '.join(f'`{name}`' for name in missing)}"

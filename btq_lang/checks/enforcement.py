@@ -9,6 +9,7 @@ from typing import TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks import lookups
+from btq_lang.checks.children import wrong_number
 from btq_lang.checks.demanded import Demanded, PlacedDiagnostic, diagnostic_at, enforceability_of, reported_at
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
@@ -29,7 +30,11 @@ Swallower: TypeAlias = tuple[ResolvedNode, str]  # the node that does not fail w
 def not_enforced(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
     """A claim about a node that no build enforces, or only a build into one file."""
     for applied, claim, node, place, why in demanded.hard:
-        if place is None or _is_reported_otherwise(demanded, applied, claim, node, place):
+        if (
+            place is None
+            or wrong_number(node) is not None
+            or _is_reported_otherwise(demanded, applied, claim, node, place)
+        ):
             continue
         related = () if place == node.place else (Related(node.place, "node"),)
         if why is not None:

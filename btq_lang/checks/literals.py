@@ -15,6 +15,7 @@ from btq_lang.catalog.units import a_dimension, convert, parse_unit
 from btq_lang.catalog.versions import ENTRY_WITHOUT_DOLLAR, TYPED_CONSTANTS
 from btq_lang.checks import lookups
 from btq_lang.checks.meant_entries import entry_in, entry_of
+from btq_lang.checks.nav2_literals import share_meant
 from btq_lang.checks.view import View, port_of
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
@@ -59,6 +60,7 @@ class _Target(Record):
         is_output: whether it is an output; another rule reports every literal for one.
         is_count: whether it says how often a child runs, and -1 means endless.
         is_number_of_children: whether it says how many of them must succeed or fail.
+        doc: the port's description.
     """
 
     port: str
@@ -68,6 +70,7 @@ class _Target(Record):
     is_output: bool = False
     is_count: bool = False
     is_number_of_children: bool = False
+    doc: str = ""
 
 
 def old_entry(view: View) -> Iterator[Diagnostic]:
@@ -182,6 +185,17 @@ def _quantity(target: _Target, value: Word, version: str) -> Iterator[Diagnostic
         return  # an unknown unit, which is reported
     port_unit = parse_unit(target.unit) if target.unit is not None else None
     if port_unit is None:
+        stated = parse_unit(target.doc) if target.doc else None
+        if stated is not None and stated.dimension == quantity[1].dimension:
+            number = f"{convert(quantity[0], quantity[1], stated):.10g}"
+            yield Diagnostic(
+                "quantity-on-unitless-port",
+                value.span,
+                f"unknown unit of the port `{target.port}`",
+                notes=(f"its description is `{target.doc}`: write the number in that unit, `{number}`",),
+                fixes=(replace_fix(f"Write `{number}`", value.span, number),),
+            )
+            return
         as_text = check_literal(target.type, value.raw, version) is None
         # No fix: without its unit the number may mean something else, and not every node reads the text.
         yield Diagnostic(
@@ -228,6 +242,8 @@ def _values(view: View) -> Iterator[tuple[_Target, Word]]:
     for resolved, pair, value in view.seen.values():
         if resolved.is_placeholder or (value.kind == BRACED and pair.key.text != "_autoremap"):
             continue
+        if share_meant(view, resolved, pair, value) is not None:
+            continue  # which percentage_for_share reports
         if (target := _target(view, resolved, pair, value)) is not None:
             yield target, value
 
@@ -248,7 +264,7 @@ def _target(view: View, resolved: ResolvedNode, pair: Pair, value: Word) -> _Tar
     )
     is_number_of_children = port.role in ("successes", "failures")
     type_, is_output = port.literal or port.type, port.direction == "output"
-    return _Target(key, type_, port.unit, converts, is_output, is_count, is_number_of_children)
+    return _Target(key, type_, port.unit, converts, is_output, is_count, is_number_of_children, port.doc)
 
 
 def _accepted(target: _Target, value: Word, version: str) -> tuple[Fix, ...]:

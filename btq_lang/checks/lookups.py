@@ -8,6 +8,7 @@ import re
 from math import inf
 from typing import TYPE_CHECKING
 
+from btq_lang.catalog.literals import plain_type
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name, model_name_problem
 from btq_lang.catalog.nav2 import FILES, distribution_among
@@ -251,6 +252,21 @@ def types_below(
             for met in meetings(workspace.scope(viewpoint), version, tree, port)
         ]
     )
+
+
+@of_viewpoint
+def read_below(
+    workspace: Workspace, viewpoint: str, tree: str, port: str, version: str
+) -> tuple[Place, str, str, str] | None:
+    """The first port that reads what is passed to a port of a tree, in that tree or below: place, name, node and type;
+    None if they have several types, or one of them writes it.
+    """
+    met = list(meetings(workspace.scope(viewpoint), version, tree, port))
+    if len({plain_type(one.type) for one in met}) != 1 or any(one.direction != "input" for one in met):
+        return None
+    first = met[0]
+    place = Place(first.pair.key.span, first.tree.path, first.tree.entry.item)
+    return place, first.pair.key.text, first.node.head.text, first.type
 
 
 @of_viewpoint

@@ -73,7 +73,7 @@ def _reworded(view: View, reported: Diagnostic) -> Diagnostic:
     node = resolved.node
     if reported.notes == (CHILD,):
         word = text[offset : reported.span.end]
-        if node.label is not None or not is_name(word) or (node.children and not _is_node(view, word)):
+        if node.label is not None or not is_name(word) or (node.children and not is_node(view, word)):
             return reported
         fixes = () if node.children else _line_break_fixes(view, node, (offset,))
         return replace(reported, message=CHILD, notes=(), fixes=fixes)
@@ -89,7 +89,8 @@ def _reworded(view: View, reported: Diagnostic) -> Diagnostic:
     )
 
 
-def _is_node(view: View, word: str) -> bool:
+def is_node(view: View, word: str) -> bool:
+    """Whether a word is a built-in, or the name of a declared node or tree."""
     return (
         lookup(word) is not None
         or view.ask(lookups.is_defined, Kind.MODEL, word)
@@ -127,16 +128,53 @@ def indent_below_fixes(view: View, parent: Node, siblings: Sequence[Node | Verba
     return (Fix(title, tuple(_indented(starts, step))),) if starts else ()
 
 
+def outdented(view: View, resolved: ResolvedNode) -> tuple[Fix, ...]:
+    """The fix that indents the line of a node that takes no children and has some: those are its siblings, and the node
+    before it is their parent.  None if another line may be the wrong one.
+    """
+    node, parent = resolved.node, _before(view, resolved)
+    if view.is_xml or view.entry.diagnostics or not node.children or most_children(resolved) != 0 or parent is None:
+        return ()
+    if parent.behavior is None or parent.behavior.children[1] is not None:
+        return ()
+    margin, meant = _margin(view, node), _margin(view, node.children[0])
+    siblings = parent.node.children
+    if margin.strip() or not meant.startswith(margin) or (siblings and _margin(view, siblings[-1]) != meant):
+        return ()
+    start = node.start - len(margin)
+    return (Fix(f"Indent it below `{parent.node.head.text}`", (FixEdit(Place(Span(start, node.start)), meant),)),)
+
+
+def most_children(resolved: ResolvedNode) -> int | None:
+    """How many children a node takes; None if any number, or if it is unknown."""
+    if resolved.behavior is not None:
+        return resolved.behavior.children[1]
+    return CHILDREN[resolved.stated_category][1] if resolved.stated_category is not None else None
+
+
+def _before(view: View, resolved: ResolvedNode) -> ResolvedNode | None:
+    """The sibling before a node."""
+    before = view.node_before(resolved.node.start)
+    while before is not None and before.parent is not resolved.parent:
+        before = before.parent
+    return before
+
+
+def _margin(view: View, child: Node | Verbatim) -> str:
+    return view.text[line_start(view.text, 0, child.start) : child.start]
+
+
 def dedent_fixes(view: View, resolved: ResolvedNode, children: Sequence[Node | Verbatim]) -> tuple[Fix, ...]:
-    """The fix that dedents some children of a node to its level; none if its parent takes no more."""
-    parent = resolved.parent
-    category = parent.stated_category if parent is not None else None
-    if parent is None or (
-        category and (parent.behavior.children if parent.behavior else CHILDREN[category])[1] is not None
-    ):
+    """The fix that dedents some children of a node to its level; none if its parent takes no more, or the node before
+    it lacks children.
+    """
+    parent, before = resolved.parent, _before(view, resolved)
+    if parent is None or most_children(parent) is not None:
+        return ()
+    if before is not None and not before.node.children and before.behavior and before.behavior.children[0]:
         return ()
     margin, _, starts = _movable_lines(view, children)
-    outer = view.text[line_start(view.text, 0, resolved.node.start) : resolved.node.start]
+    outer = _margin(view, resolved.node)
     if not margin.startswith(outer) or not all(view.text.startswith(margin, start) for start in starts):
         return ()
     changes = [FixEdit(Place(Span(start + len(outer), start + len(margin))), "") for start in starts]

@@ -23,7 +23,7 @@ from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related, replace_fix, write_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tokens import NUMBER, QUANTITY
-from btq_lang.syntax.tree import Model, Node, Verbatim, Word, quote, written
+from btq_lang.syntax.tree import Model, Node, Verbatim, Word, is_name, quote, written
 from btq_lang.util.spelling import did_you_mean, distance, near
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
@@ -41,6 +41,7 @@ def unknown_port(view: View) -> Iterator[Diagnostic]:
             ports is None
             or not (unknown_keys := _unknown_keys(view, resolved, ports))
             or _may_have_more(view, resolved)
+            or _assignments(resolved, ports) is not None  # which missing_port reports
         ):
             continue
         all_ports = ports.all
@@ -130,6 +131,7 @@ def missing_port(view: View) -> Iterator[Diagnostic]:
                     if port.name[:1] == "_"
                 ),
                 *as_value,
+                *(f"write `{script}`" for script in (_assignments(resolved, ports),) if script is not None),
                 *(WHY if is_own else ()),
             ),
             fixes=(*to_port, *_passing_on(view, resolved, missing)),
@@ -312,6 +314,18 @@ def _assigned(
     changes = (FixEdit(Place(key.span), port.name), FixEdit(Place(value.span), written_value))
     shown = f'{port.name} = "{script}"'
     return (shown,), (Fix(f"Write `{shown}`", changes),)
+
+
+def _assignments(resolved: ResolvedNode, ports: KnownPorts) -> str | None:
+    """The script for `<Script tries="0" place="shelf"/>`, which assigns to several entries as if they were ports."""
+    given = {pair.key.text: pair.value.text for pair in resolved.node.attributes if pair.value is not None}
+    entries = {key: text for key, text in given.items() if is_name(key) and key[0] != "_" and key != "name"}
+    is_script = resolved.flow == "succeeds" and [port.content for port in ports.required] == ["script"]
+    is_plain = len(entries) > 1 and all(_ASSIGNABLE.fullmatch(text) or is_name(text) for text in entries.values())
+    if not is_script or not is_plain or not ports.names.isdisjoint(entries):
+        return None
+    values = {key: text.strip("{}") if _ASSIGNABLE.fullmatch(text) else f"'{text}'" for key, text in entries.items()}
+    return f'{ports.required[0].name}="{"; ".join(f"{key} := {value}" for key, value in values.items())}"'
 
 
 def _forbidden_id(resolved: ResolvedNode) -> Iterator[Diagnostic]:

@@ -12,12 +12,13 @@ from btq_lang.catalog.versions import DEEP_TREES
 from btq_lang.checks import calls, cpp_lookups, lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.lookups import VisibleMeaning
-from btq_lang.checks.misplaced_children import indent_below_fixes, wrap_in_sequence_fixes
+from btq_lang.checks.misplaced_children import indent_below_fixes, outdented, wrap_in_sequence_fixes
 from btq_lang.checks.missing_ids import missing_id
 from btq_lang.checks.view import View, is_first_tree, near_names
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related, Tag, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.nodes import OF_ITS_OWN
+from btq_lang.syntax.suggestions import CHILDREN
 from btq_lang.syntax.tree import Model, Node, Root, Tree, written
 from btq_lang.util.record import replace
 from btq_lang.util.spelling import did_you_mean
@@ -230,8 +231,12 @@ def tree_root_count(view: View) -> Iterator[Diagnostic]:
     notes = (f"put them below one node, such as a Sequence{'' if view.is_xml else ' `->`'}",)
     related = (Related(Place(first), "first one"),)
     fixes = wrap_in_sequence_fixes(view, tree.children)
-    if (top := _lacks_children(view)) is not None:
+    beside = next((resolved for resolved in view.nodes if resolved.node is second), None)
+    if beside is not None and len(tree.children) == 2 and (moved := outdented(view, beside)):
+        notes, fixes = (f"{beside.shown_kind} takes no children: it goes where those below it are",), moved
+    elif (top := _lacks_children(view)) is not None:
         fixes = indent_below_fixes(view, top, tree.children[1:])
+        notes = (CHILDREN,) if fixes else notes
     yield Diagnostic("tree-root-count", extra, message, related, notes, fixes)
 
 

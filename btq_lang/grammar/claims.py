@@ -387,7 +387,7 @@ def is_verb_ahead(cursor: Cursor, further: int) -> bool:
 def no_verb(cursor: Cursor, subject: Subject) -> None:
     """Report a subject without a verb, or of a misspelt verb that was read as a subject."""
     first = subject.names[0] if isinstance(subject, Path) and len(subject.names) == 1 else None
-    if isinstance(subject, Path) and (in_other_words(cursor, subject) or situation(cursor, first)):
+    if in_other_words(cursor, subject) or situation(cursor, first):
         cursor.recover()
     elif isinstance(subject, Path) and cursor.raw in HAPPENINGS and followed_ahead(cursor):
         before = Span(subject.span.start + cursor.base, subject.span.start + cursor.base)
@@ -403,14 +403,14 @@ def no_verb(cursor: Cursor, subject: Subject) -> None:
         cursor.expected(f"a verb before `at {cursor.raw}`", (MEANT["at"],), fixes)
     elif first is not None and first.kind == NAME and (noted := MEANT.get(first.raw) or NO_VERBS.get(first.raw)):
         cursor.expected(f"a verb after `{first.raw}` (takes, succeeds, needs, keeps, …)", (noted,))
-    elif first is not None and cursor.kind == OPERATOR and cursor.raw in COMPARISONS and report_slip(cursor):
+    elif (signal := compared(cursor, first)) is not None and report_slip(cursor):
         cursor.recover()
-    elif first is not None and cursor.kind == OPERATOR and cursor.raw in COMPARISONS:
-        start = first.start + cursor.base
+    elif signal is not None:
+        start, index = signal.start + cursor.base, cursor.kinds.index(OPERATOR, cursor.index)
         fix = replace_fix("Put `keeps` before it", Span(start, start), "keeps ")
         message = "expected a verb before the condition: `keeps`, `never`, `needs` or `leaves`"
         notes = ("`keeps` holds while the node runs, `needs` when it starts, `leaves` when it has succeeded",)
-        cursor.complain(Span(start, cursor.here().end), message, fix, notes=notes)
+        cursor.complain(Span(start, cursor.starts[index] + len(cursor.raws[index])), message, fix, notes=notes)
         cursor.recover()
     elif cursor.kind == NAME and (likely := near(cursor.raw, VERB_WORDS, limit=1)):
         cursor.misspelt(cursor.here(), cursor.raw, likely[0])
@@ -437,25 +437,40 @@ def no_verb(cursor: Cursor, subject: Subject) -> None:
         cursor.expected(f"a verb after `{shown(name)}` (takes, succeeds, needs, keeps, …)", (note,))
 
 
-def in_other_words(cursor: Cursor, subject: Path) -> bool:
+def compared(cursor: Cursor, first: Word | None) -> Word | None:
+    """The signal of a comparison without a verb: the word that was read as the subject, or the one after a subject."""
+    index = cursor.index + (cursor.kind == NAME)
+    if cursor.kinds[index] != OPERATOR or cursor.raws[index] not in COMPARISONS:
+        return None
+    if index == cursor.index:
+        return first
+    is_misspelt_verb = first is not None and near(first.raw, VERB_WORDS, limit=1)
+    return Word(NAME, cursor.start(), cursor.raw) if not is_misspelt_verb else None
+
+
+def in_other_words(cursor: Cursor, subject: Subject) -> bool:
     """Report `must take at most 30 s`, `Go should be reached within 30 s` and `speed must stay below 1 m/s`."""
-    word = subject.names[0]
-    is_word = len(subject.names) == 1 and word.kind == NAME
+    is_word = isinstance(subject, Path) and len(subject.names) == 1 and subject.names[0].kind == NAME
     if is_word and verb_in_other_words(cursor, cursor.index - 1, ""):
         return True
-    if verb_in_other_words(cursor, cursor.index, before_verb(cursor, subject)):
+    before = before_verb(cursor, subject)
+    if verb_in_other_words(cursor, cursor.index, before):
         return True
-    state = state_meant(cursor.raws, cursor.index) if is_word else None
-    if state is not None:
-        written_as(cursor, cursor.index - 1, state[0], "", f"keeps {word.raw} {state[1]}")
-    return state is not None
+    for begin in (cursor.index - 1, cursor.index) if is_word else (cursor.index,):
+        state = state_meant(cursor.raws, begin + 1) if cursor.kinds[begin] == NAME else None
+        if state is not None:
+            node = before if begin == cursor.index else ""
+            written_as(cursor, begin, state[0], node, f"keeps {cursor.raws[begin]} {state[1]}")
+            return True
+    return False
 
 
 def before_verb(cursor: Cursor, subject: Subject | None) -> str:
-    """The text of a subject that is a path."""
-    if not isinstance(subject, Path):
+    """The text of a subject; empty if there is none."""
+    if subject is None:
         return ""
-    return cursor.text[subject.span.start + cursor.base : subject.span.end + cursor.base]
+    span = subject.span if isinstance(subject, Path) else Span(subject.start, subject.end)
+    return cursor.text[span.start + cursor.base : span.end + cursor.base]
 
 
 def verb_in_other_words(cursor: Cursor, begin: int, subject: str) -> bool:

@@ -37,7 +37,8 @@ def clause_slip(text: str) -> ClauseMeant | None:
             bound = BOUNDS.get(tuple(parts.get("bound", "").split()), ("at", "most"))
             parts |= {"bound": " ".join(bound), "sign": RELATIONS[bound]}
             subject = parts.get("subject", "")
-            parts |= {"subject": f"{subject} " if subject else "", "node": subject or "<node>"}
+            node = subject if not subject.startswith("every ") else ""
+            parts |= {"subject": f"{subject} " if subject else "", "node": node or "<node>"}
             return ClauseMeant(match.end(), tuple([clause.format_map(parts) for clause in clauses]), note)
     return None
 
@@ -60,10 +61,11 @@ def _any(*words: str) -> str:
 
 _GOES: Final = ("starts?", "runs?", "begins?", "comes?", "happens?", "goes", "executes?")
 _PATH: Final = r"[^\W\d][\w-]*(?:/[^\W\d][\w-]*)*"
+_SEVERAL: Final = r"mission|every +[^\W\d]\w*"
 _BOUNDS: Final = sorted((" ".join(map(re.escape, words)) for words in BOUNDS), key=len, reverse=True)
-_NO_NODES: Final = rf"(?!{_any(*HEADS, *VERBS, *MODALS, 'of', 'has', 'have', 'ought', 'needs', *_GOES)}\b)"
+_NO_NODES: Final = rf"(?!{_any(*HEADS, *VERBS, *MODALS, 'of', 'is', 'be', 'has', 'have', 'ought', 'needs', *_GOES)}\b)"
 _PIECES: Final = {
-    "SUBJECT": rf"(?:(?P<subject>{_NO_NODES}{_PATH}) +)?",
+    "SUBJECT": rf"(?:(?P<subject>{_SEVERAL}|{_NO_NODES}{_PATH}) +)?",
     "OTHER": rf"(?P<other>{_NO_NODES}{_PATH})",
     "BOUND": rf"(?:(?:is|be|of) )?(?P<bound>{'|'.join(_BOUNDS)}) *",
     "CONDITION": rf"(?P<condition>.+?)(?= +{_any(*HEADS - {'in', 'with'}, 'in at', 'with probability')}\b|$)",
@@ -121,6 +123,7 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
         ("{subject}takes {bound} {time}",),
         "",
     ),
+    (rf"(?P<subject>{_SEVERAL}) {_TIMES} *BOUNDTIME", ("{subject}takes {bound} {time}",), ""),
     (rf"(?:(?:max(?:imum)? )?{_TIMES}|timeout|time limit)(?: *[:=]| of)? *TIME", ("takes at most {time}",), ""),
     ("deadline(?: *[:=]| of)? *TIME", ("succeeds within {time}",), ""),
     # what then
@@ -143,7 +146,12 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
         "",
     ),
     (
-        "SUBJECTsucceeds (?:at least )?SHARE(?: of (?:the time|times|activations))?",
+        "SUBJECTsucceeds (?:at least )?SHARE of (?P<experiments>runs|activations)",
+        ("{subject}succeeds in at least {share} of {experiments}",),
+        "",
+    ),
+    (
+        "SUBJECTsucceeds (?:at least )?SHARE(?: of (?:the time|times))?",
         ("{subject}succeeds in at least {share} of activations", "{subject}succeeds in at least {share} of runs"),
         "",
     ),
@@ -196,9 +204,9 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
         ("{other} follows {node} succeeds",),
         _AT_THE_OTHER,
     ),
-    (f"SUBJECT{_any(*_GOES)} (?:only )?after OTHER EVENT", ("{subject}follows {other} {event}",), ""),
+    (f"(?!mission)SUBJECT{_any(*_GOES)} (?:only )?after OTHER EVENT", ("{subject}follows {other} {event}",), ""),
     (
-        f"SUBJECT(?:{_any(*_GOES)} (?:only )?after|follows) OTHER",
+        f"(?!mission)SUBJECT(?:{_any(*_GOES)} (?:only )?after|follows) OTHER",
         ("{subject}follows {other} succeeds", "{subject}follows {other} finishes"),
         "`finishes` is a success or a failure",
     ),

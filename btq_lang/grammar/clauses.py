@@ -18,7 +18,7 @@ from btq_lang.grammar.claims import (
     parse_claim,
     report_slip,
 )
-from btq_lang.grammar.conditions import HEADS, METADATA_HEADS, SUBJECT_HEADS, parse_cond
+from btq_lang.grammar.conditions import HEADS, METADATA_HEADS, SUBJECT_HEADS, bound_ahead, parse_cond
 from btq_lang.grammar.cursor import Cursor
 from btq_lang.grammar.metadata import begins_metadata, list_goes_on, parse_metadata, parse_text
 from btq_lang.syntax.scan import line_start
@@ -215,6 +215,7 @@ def parse_on_violation(cursor: Cursor) -> OnViolation:
 def parse_goal(cursor: Cursor) -> Goal:
     """ "goal" Bounded"""
     start = cursor.take().start
+    skip_bound_of_goal(cursor)
     value = parse_bounded(cursor)
     return Goal(start, cursor.last_end(), value)
 
@@ -303,6 +304,18 @@ def is_bare_id(cursor: Cursor) -> bool:
 def is_assumption(cursor: Cursor) -> bool:
     """Whether `assuming` begins a clause, and is not the subject of one."""
     return not (is_verb_ahead(cursor, 1) or cursor.is_operator(cursor.index + 1, "/"))
+
+
+def skip_bound_of_goal(cursor: Cursor) -> None:
+    """Report and skip the words of a bound after `goal`: `goal at most 30 s`."""
+    length, _ = bound_ahead(cursor) or (0, None)
+    value = cursor.index + length
+    if length and cursor.kinds[value] in (QUANTITY, NUMBER):
+        span = Span(cursor.here().start, cursor.starts[value])
+        words = cursor.text[span.start : span.end].strip()
+        message = f"a goal is a value: `goal {cursor.raws[value]}`"
+        cursor.complain(Span(span.start, span.start + len(words)), message, replace_fix(f"Remove `{words}`", span, ""))
+        cursor.go_to(value)
 
 
 def is_other_clause(cursor: Cursor) -> bool:

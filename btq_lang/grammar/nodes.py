@@ -109,6 +109,11 @@ def parse_other_line(cursor: Cursor, level: int, blocks: list[OpenBlock], ports:
             cursor.complain(cursor.here(), "ports go before satisfices, satisfies and tags")
         ports.append(parse_port(cursor))
         no_block(cursor, level)
+    elif word in _PARAMETERS and len(blocks) == 1 and not block.has_nodes() and cursor.is_operator(2, ":"):
+        port = f"`input {cursor.raws[1]} : type`"
+        cursor.complain(cursor.here(), f"a port of a tree is written {port}", write_fix("input", cursor.here()))
+        ports.append(parse_port(cursor, "input"))
+        no_block(cursor, level)
     elif word in DIRECTIONS and cursor.kinds[cursor.index + 1] == NAME and cursor.is_operator(cursor.index + 2, ":"):
         tree = blocks[0]
         port_below_node(cursor, tree.children[0] if tree.children and not tree.clauses else None)
@@ -162,12 +167,15 @@ def parse_node(cursor: Cursor, level: int) -> Node | None:
         clauses.append(parse_node_clause(cursor))
     bare = False
     if cursor.kind != NEWLINE:
-        bare = cursor.index == 1 and at_bare_value(cursor)  # `key = value` after a forgotten bracket
+        # `key = value` after a forgotten bracket
+        bare = cursor.index == 1 and at_bare_value(cursor) and OPEN not in cursor.kinds
         if not child_on_the_line(cursor, label):
             leftover(cursor, kind, label is not None, clauses)
     end = cursor.end_line()
     if bare and not cursor.deeper(level):
         return None
+    if bare:
+        cursor.bare_until = -1  # it has a block, so it is a node, and the next line may be one too
     return Node(start, end, category, kind, label, attributes, tuple(clauses) if clauses else (), ())
 
 
@@ -387,6 +395,9 @@ def leftover(cursor: Cursor, kind: Word | None, has_label: bool, clauses: list[N
         attaches_nothing(cursor, kind.span.shifted(cursor.base), meant)
     elif at_bare_value(cursor) and cursor.index > 0 and cursor.kinds[cursor.index - 1] in (NAME, STRING):
         bare_attributes(cursor)
+    elif cursor.at_key() and has_label and OPEN not in cursor.kinds and not clauses:
+        cursor.advance()
+        bare_attributes(cursor)
     elif cursor.at_name() and cursor.kinds[cursor.index - 1] == CLOSE and ends_label(cursor, clauses):
         label_after_brackets(cursor, kind, has_label)
     elif cursor.at("-") and cursor.text.startswith("-- ", cursor.here().start):
@@ -497,7 +508,7 @@ def bare_attributes(cursor: Cursor) -> None:
     """Report `MoveBase station = "charger"`, and several lines `key = value` once."""
     lexer = cursor.lexer
     start, end = cursor.starts[cursor.index - 1], cursor.starts[-2] + len(cursor.raws[-2])
-    if cursor.index == 1:
+    if cursor.index == 1 and OPEN not in cursor.kinds:
         is_next = cursor.bare_until >= 0 and not cursor.text[cursor.bare_until : lexer.line_start].strip()
         cursor.bare_until = lexer.position
         lexer.ended_early = 1  # the `)` after them is not another mistake
@@ -517,8 +528,7 @@ def bare_attributes(cursor: Cursor) -> None:
         changes += (FixEdit(Place(Span(end, end)), ")"),)
     safe = plain and not closing and are_plain_pairs(cursor.text[start:end])
     fixes = (Fix("Put brackets around them", changes, safe),) if plain or closing else ()
-    message = "attributes go in brackets: `(key = value)`"
-    cursor.complain_instead(closing[-1:], Diagnostic("syntax-error", Span(start, end), message, fixes=fixes))
+    cursor.complain_instead(closing[-1:], Diagnostic("syntax-error", Span(start, end), BARE, fixes=fixes))
 
 
 def is_stray_bracket(cursor: Cursor, problem: Diagnostic) -> bool:
@@ -573,9 +583,11 @@ XML: Final = (
     "if this is BehaviorTree.CPP XML, rename the file to .xml, or convert it with `btq import`; "
     "a comment begins with `#`, not `<!--`"
 )
+BARE: Final = "attributes go in brackets: `(key = value)`"
 CHILD: Final = "a child goes on a line of its own below its parent, indented"
 _TAG: Final = re.compile(r"""<([^\W\d]\w*)((?:\s+[\w:]+\s*=\s*(?:"[^"<]*"|'[^'<]*'))*)\s*(/?)>""")
-_NO_KINDS: Final = NODE_CLAUSES | DIRECTIONS | {"QualityReq", "xml"}
+_PARAMETERS: Final = frozenset(("param", "parameter", "argument"))
+_NO_KINDS: Final = NODE_CLAUSES | DIRECTIONS | _PARAMETERS | {"QualityReq", "xml"}
 _NOT_NODES: Final = frozenset(("root", "BehaviorTree", "TreeNodesModel", "include"))
 _COMMENT_ENDS: Final = ("-->", '"""', "'''")
 _STATEMENTS: Final = {

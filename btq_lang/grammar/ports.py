@@ -8,7 +8,7 @@ from typing import Final
 from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, replace_fix, write_fix
 from btq_lang.grammar.attributes import parse_pairs, parse_value
-from btq_lang.grammar.cursor import Cursor
+from btq_lang.grammar.cursor import VALUES, Cursor, shown
 from btq_lang.syntax.scan import line_end, line_start
 from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NODE_CLAUSES, OPEN, STRING
 from btq_lang.syntax.tree import Node, Port, TypeWord, Verbatim, Word, is_name, quote
@@ -37,7 +37,7 @@ def parse_port(cursor: Cursor, meant: str = "") -> Port:
     elif name is not None and cursor.kind == NAME:
         notes = ("a port is written `input name : type`",)
         cursor.expected("`:` and the port's type", notes, (type_first(cursor, name) or cursor.put_before(":"),))
-    default = parse_value(cursor) if cursor.accept("=") else None
+    default = parse_value(cursor) if cursor.accept("=") or skip_default(cursor) else None
     attributes = parse_pairs(cursor)
     text = cursor.take() if cursor.kind == STRING else None
     notes = ("write a port's type after `:`, and its text in quotes",)
@@ -56,6 +56,17 @@ def parse_type(cursor: Cursor) -> Word | None:
 
 
 # ---- what productions ask and report ----
+
+
+def skip_default(cursor: Cursor) -> bool:
+    """Report and skip the word before a default: `input place : string default "home"`."""
+    value = cursor.index + 1
+    if not cursor.at_word("default") or cursor.kinds[value] not in VALUES:
+        return False
+    message = f"a default is written `= {shown(cursor.raws[value])}`"
+    cursor.complain(cursor.here(), message, write_fix("=", cursor.here()))
+    cursor.advance()
+    return True
 
 
 def port_below_node(cursor: Cursor, first: Node | Verbatim | None) -> None:

@@ -28,12 +28,14 @@ class Meeting(Record):
     Attributes:
         tree: of the node.
         type: of the port, as the engine prints it or as the node's model declares it.
+        direction: of the port.
     """
 
     tree: Definition
     node: Node
     pair: Pair
     type: str
+    direction: str
 
 
 def meetings(scope: Scope, version: str, tree: str, port: str) -> Iterator[Meeting]:
@@ -52,8 +54,9 @@ def meetings(scope: Scope, version: str, tree: str, port: str) -> Iterator[Meeti
                 if text != f"{{{key}}}" and not (text == "{=}" and meets == key):
                     continue
                 if not is_subtree:
-                    if type_ := _port_type(scope, version, node, meets):
-                        yield Meeting(definition, node, pair, type_)
+                    type_, direction = _type_and_direction(scope, version, node, meets)
+                    if type_:
+                        yield Meeting(definition, node, pair, type_, direction)
                 elif (below := (node.id.text if node.id is not None else "", meets)) not in seen:
                     waiting.append(below)
                     seen.add(below)
@@ -91,15 +94,16 @@ def is_number(text: str) -> bool:
     return text[:1] in _BEGINS_NUMBER and _NUMBER.fullmatch(text) is not None
 
 
-def _port_type(scope: Scope, version: str, node: Node, key: str) -> str:
+def _type_and_direction(scope: Scope, version: str, node: Node, key: str) -> tuple[str, str]:
     if node.id is None:
-        return ""
+        return "", ""
     builtin = BUILTINS.get(tag_of(node))
     if builtin is not None:
         port = builtin.port(key)
-        return _plain(of_version(port, version).type) if port is not None else ""
+        return (_plain(of_version(port, version).type), port.direction) if port is not None else ("", "")
     model = scope.target(Kind.MODEL, node.id.text)
-    return declared_type(model.ports, key) if isinstance(model, Model) else ""
+    declared = port_named(model.ports, key) if isinstance(model, Model) else None
+    return (_plain(declared.type.text), declared.direction.raw) if declared and declared.type else ("", "")
 
 
 def _plain(type_: str) -> str:

@@ -93,6 +93,9 @@ def test_a_case_too_many_is_told_once(switch: str) -> None:
     column = text.index("case_3") - text.index("\n")
     shown = switch.strip('"')
     assert_problems(text, f"2:{column} error switch-cases «case_3» `{shown}` has no case `case_3`")
+    of_children = "with 3 children its cases are `case_1` to `case_2`: one child for each, and the last for the default"
+    note = of_children if switch == "Switch" else "three cases need `Switch3`, with four children"
+    assert [problem.notes for problem in problems(text, "switch-cases")] == [(note,)]
 
 
 def test_a_numbered_switch_counts_its_children() -> None:
@@ -169,6 +172,45 @@ def test_two_nodes_of_a_tree_are_put_below_a_sequence() -> None:
 
 def test_a_string_over_lines_is_not_indented() -> None:
     assert fixes(tree("Inverter", '    A (x = "1', '    2")', "    B"), "child-count") == []
+
+
+LEAF = "Action Go\nAction Turn\n"
+NOT_IN = "`Go` takes no children: it goes where those below it are"
+
+
+@pytest.mark.parametrize("before", [(), ("    Turn",), ("    ?", "        Turn")])
+def test_a_line_at_the_top_that_is_indented_less_than_its_siblings(before: tuple[str, ...]) -> None:
+    text = LEAF + tree("->", *before, "Go", "    Turn", "    ?", "        Turn")
+    assert_problems(
+        text,
+        f"{5 + len(before)}:5 error tree-root-count «Go» a tree must have one node at its top, found 2",
+    )
+    assert [problem.notes for problem in problems(text, "tree-root-count")] == [(NOT_IN,)]
+    assert_fix(text, "Indent it below `->`", LEAF + tree("->", *before, "    Go", "    Turn", "    ?", "        Turn"))
+
+
+def test_a_line_in_a_tree_that_is_indented_less_than_its_siblings() -> None:
+    text = LEAF + tree("?", "    ->", "    Go", "        Turn", "        Turn")
+    assert_problems(text, "6:9 error child-count «Go» the Action `Go` requires no children, found 2")
+    assert_fix(text, "Indent it below `->`", LEAF + tree("?", "    ->", "        Go", "        Turn", "        Turn"))
+
+
+def test_another_line_that_may_be_indented_wrongly() -> None:
+    text = LEAF + tree("->", "    Turn", "Go", "  Turn")
+    assert [problem.rule for problem in problems(text, "child-count", "tree-root-count")] == [
+        *("child-count", "tree-root-count")
+    ]
+    assert fixes(text, "child-count") == []
+
+
+def test_nothing_is_said_of_enforcement_at_a_node_with_a_wrong_number_of_children() -> None:
+    claim = "QualityReq r : reliability\n    takes at most 3 s\n    on violation halt\n"
+    main = tree("->", "    Go satisfies r", '        Precondition (if = "a")', "            Turn")
+    text = LEAF + claim + main
+    assert [problem.message for problem in problems(text, "child-count")] == [
+        "the Action `Go` requires no children, found 1"
+    ]
+    assert problems(text, "not-enforced") == []
 
 
 def test_a_leaf_gets_no_sequence() -> None:

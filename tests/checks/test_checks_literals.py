@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from check_asserts import apply, assert_clean, assert_fix, assert_problems, problems, workspace_of
+from check_asserts import after, apply, assert_clean, assert_fix, assert_problems, problems, workspace_of
 
 from btq_lang.checks import check
 from btq_lang.workspace.config import Project
@@ -273,3 +273,16 @@ BehaviorTree Part
     for remap in ("{=}", "{v}", '"{v}"'):
         shown = remap.strip('"')
         assert found("SUCCESS", remap) == [(f"expected true or false for `_autoremap`, found `{shown}`", note)]
+
+
+@pytest.mark.parametrize(
+    ("unit", "value", "number"), [("m/s", "1.8 km/h", "0.5"), ("l/min", "2.5 l/min", "2.5"), ("s", "2 min", "120")]
+)
+def test_a_quantity_where_the_description_of_a_port_is_a_unit(unit: str, value: str, number: str) -> None:
+    text = f'Action Go\n    input v : double "{unit}"\nBehaviorTree Main\n    Go (v = {{}})\n'
+    (found,) = problems(text.format(value), "quantity-on-unitless-port")
+    assert found.message == "unknown unit of the port `v`"
+    assert found.notes == (f"its description is `{unit}`: write the number in that unit, `{number}`",)
+    assert [after(text.format(value), fix) for fix in found.fixes] == [text.format(number)]
+    (other,) = problems(text.format("2 kg"), "quantity-on-unitless-port")
+    assert other.fixes == ()

@@ -565,6 +565,22 @@ def test_a_pose_with_other_fields(distribution: str, value: str, number: int) ->
         assert "invalid-literal" not in str(found(text.replace(value, right), distribution))
 
 
+@pytest.mark.parametrize("distribution", ["humble", "jazzy", "lyrical"])
+@pytest.mark.parametrize(("value", "share"), [("20", "0.2"), ('"20%"', "0.2"), ("7.5", "0.075"), ('"0.5 %"', "0.005")])
+def test_a_battery_in_percent(distribution: str, value: str, share: str) -> None:
+    """Source: batteryCallback in is_battery_low_condition.cpp: BatteryState.percentage is a share from 0 to 1."""
+    text = tree(f'IsBatteryLow (min_battery = {value} battery_topic = "/battery")')
+    message = f"`min_battery` is a share from 0 to 1, unless `is_voltage` is true: write `{share}`"
+    where = f"2:33 warning invalid-literal «{value}» {message}"
+    assert [each for each in found(text, distribution) if "min_battery" in each] == [where]
+    for voltage in ("false", "False", "0"):
+        assert message in str(found(text.replace(")", f" is_voltage = {voltage})"), distribution))
+    for right in ("0.2", "1", "1.0", "{limit}"):
+        assert "share" not in str(found(text.replace(value, right), distribution))
+    for voltage in ("true", "1", "{volts}"):
+        assert "share" not in str(found(text.replace(")", f" is_voltage = {voltage})"), distribution))
+
+
 def test_a_pose_in_xml() -> None:
     text = (
         '<root BTCPP_format="4"><BehaviorTree ID="Main"><Sequence><GoalReached goal="1.0;2.0;0.0" '

@@ -333,3 +333,10 @@ def test_a_tree_gets_an_entry_that_its_model_lacks(entry: str, rules: list[str])
     )
     found = check(workspace_of({"main.xml": text}), "main.xml")
     assert [each.rule for each in found if each.rule == "unknown-port"] == rules
+
+
+def test_a_script_that_assigns_to_several_entries_as_to_ports() -> None:
+    text = tree('Script (tries = 0 place = "shelf" last = {best})')
+    (found,) = problems(text, "missing-port", "unknown-port")
+    assert found.message == "`Script` requires a value for its port `code`"
+    assert found.notes[-1] == "write `code=\"tries := 0; place := 'shelf'; last := best\"`"

@@ -232,6 +232,67 @@ SCRIPTS: Final[list[Case]] = [
     ),
 ]
 
+SIGNS: Final[list[Case]] = [
+    *(
+        (
+            tree(*lines),
+            f"{place} error syntax-error «{sign}» unexpected `{sign}` | a node is written `kind name`",
+            tree(*mended),
+        )
+        for place, sign, lines, mended in (
+            ("2:13", ":", ("Sequence: Rows", "    Go"), ("Sequence Rows", "    Go")),
+            ("2:14", ":", ("Fallback : Photo", "    Go"), ("Fallback Photo", "    Go")),
+            ("2:14", "=", ("Fallback = Photo", "    Go"), ("Fallback Photo", "    Go")),
+        )
+    ),
+    *(
+        (
+            f"Action Go\n    input at\n{tree('->', f'    {written}')}",
+            f"5:{9 + at} error syntax-error «{span}» {message}",
+            f"Action Go\n    input at\n{tree('->', '    Go Home (at = 3)')}",
+        )
+        for written, at, span, message in (
+            ("Go: Home (at = 3)", 2, ":", "unexpected `:` | a node is written `kind name`"),
+            ("Home: Go (at = 3)", 0, "Home: Go", "a node's name goes after its kind: `Go Home (…)`"),
+            ("Home = Go (at = 3)", 0, "Home = Go", "a node's name goes after its kind: `Go Home (…)`"),
+        )
+    ),
+    (
+        tree("->", "    Home: AlwaysSuccess  # later"),
+        "3:9 error syntax-error «Home: AlwaysSuccess» a node's name goes after its kind: `AlwaysSuccess Home`",
+        tree("->", "    AlwaysSuccess Home  # later"),
+    ),
+]
+
+OTHER_WORDS: Final[list[Case]] = [
+    (
+        tree('Go Home place="home" at = 3'),
+        '2:13 error syntax-error «place="home" at = 3» attributes go in brackets: `(key = value)`',
+        tree('Go Home (place="home" at = 3)'),
+    ),
+    *(
+        (
+            tree(f"{word} row : string", "Go (at = {row})"),
+            f"2:5 error syntax-error «{word}» a port of a tree is written `input row : type`",
+            tree("input row : string", "Go (at = {row})"),
+        )
+        for word in ("param", "parameter", "argument")
+    ),
+    (
+        'Action Go\n    input at : string default "home"\n' + tree("Go"),
+        '2:23 error syntax-error «default» a default is written `= "home"`',
+        'Action Go\n    input at : string = "home"\n' + tree("Go"),
+    ),
+    *(
+        (
+            requirement("takes at most 40 s", f"goal {bound} 30 s"),
+            f"5:10 error syntax-error «{bound}» a goal is a value: `goal 30 s`",
+            requirement("takes at most 40 s", "goal 30 s"),
+        )
+        for bound in ("at most", "<=")
+    ),
+]
+
 SIGNALS: Final[list[Case]] = [
     *(
         (
@@ -309,6 +370,10 @@ PROSE: Final[list[Case]] = [
             ("Main/Go shall not exceed 30 s", "shall not exceed", "Main/Go takes at most 30 s"),
             ("must not take longer than 30 s", "must not take longer than", "takes at most 30 s"),
             ("Go must not fail", "must not fail", "Go succeeds"),
+            ("mission must take at most 1 h", "must take", "mission takes at most 1 h"),
+            ("mission needs to take at most 1 h", "needs to take", "mission takes at most 1 h"),
+            ("every Go shall not exceed 30 s", "shall not exceed", "every Go takes at most 30 s"),
+            ("sum of Go, Go must take at most 3 s", "must take", "sum of Go, Go takes at most 3 s"),
         )
     ),
     *(
@@ -334,6 +399,26 @@ PROSE: Final[list[Case]] = [
             ("v shall not exceed 1 m/s", "v shall not exceed", "keeps v <= 1 m/s"),
             ("v is below 1 m/s", "v is below", "keeps v < 1 m/s"),
         )
+    ),
+    *(
+        (
+            OF_A_SIGNAL + f"{subject} {prose}\n",
+            f"5:{6 + len(subject)} error syntax-error «{prose.removesuffix(' 1 m/s')}» "
+            f"this clause is written `{subject} keeps v < 1 m/s`",
+            OF_A_SIGNAL + f"{subject} keeps v < 1 m/s\n",
+        )
+        for subject in ("Go", "Main/Go", "every Go", "mission")
+        for prose in ("v stays below 1 m/s", "v must be less than 1 m/s")
+    ),
+    *(
+        (
+            OF_A_SIGNAL + f"{subject}v < 1 m/s\n",
+            f"5:{5 + len(subject)} error syntax-error «v <» expected a verb before the condition: "
+            "`keeps`, `never`, `needs` or `leaves` | "
+            "`keeps` holds while the node runs, `needs` when it starts, `leaves` when it has succeeded",
+            OF_A_SIGNAL + f"{subject}keeps v < 1 m/s\n",
+        )
+        for subject in ("", "Go ", "every Go ", "mission ")
     ),
     (
         OF_A_SIGNAL + "takes at most 30 s\n    if v > 1 m/s\n",
@@ -387,6 +472,20 @@ CLAUSES: Final[list[tuple[str, tuple[str, ...], str]]] = [
         for clause in ("succeeds in 30 s", "succeeds by 30 s", "succeeds within at most 30 s", "done within 30 s")
     ),
     ("Go succeeds in under 30 s", ("Go succeeds within 30 s",), ""),
+    *(
+        (clause, ("mission succeeds within 1 h", "mission takes at most 1 h"), _FAILURE)
+        for clause in ("mission finishes within 1 h", "mission ends within 1 h", "mission is finished in less than 1 h")
+    ),
+    (
+        "every Go finishes within 40 s",
+        ("every Go succeeds within 40 s", "every Go takes at most 40 s"),
+        _FAILURE,
+    ),
+    ("is finished in 40 s", ("succeeds within 40 s", "takes at most 40 s"), _FAILURE),
+    ("mission duration <= 1 h", ("mission takes at most 1 h",), ""),
+    ("every Go runs at 10 Hz", ("every Go runs at least 10 per 1 s",), ""),
+    ("every Go ends before Turn", ("Turn follows <node> finishes",), _OTHER),
+    ("Go succeeds 95 % of runs", ("Go succeeds in at least 95 % of runs",), ""),
     *(
         (clause, ("succeeds within 30 s", "takes at most 30 s"), _FAILURE)
         for clause in ("finishes within 30 s", "completes within 30 s", "ends before 30 s", "must finish in 30 s")
@@ -519,7 +618,8 @@ def test_what_a_check_mends_by_itself(text: str, fixed: str | None) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "said", "mended"), [*ON_ONE_LINE, *VALUES, *SCRIPTS, *SIGNALS, *PROSE, *OF_OTHER_LIBRARIES]
+    ("text", "said", "mended"),
+    [*ON_ONE_LINE, *VALUES, *SCRIPTS, *SIGNS, *OTHER_WORDS, *SIGNALS, *PROSE, *OF_OTHER_LIBRARIES],
 )
 def test_a_slip_is_one_diagnostic(text: str, said: str, mended: str | None) -> None:
     found = mistakes(text)
@@ -1061,6 +1161,13 @@ def test_a_label_after_brackets_may_be_one(text: str) -> None:
     assert mistakes(text)[0].message == "a node's label goes before its brackets"
 
 
+def test_each_node_with_a_sign_is_reported() -> None:
+    text = tree("Sequence: Rows", "    Fallback: Photo", "        Go: Home (at = 3)", "        Turn: Back (at = 3)")
+    assert [text[found.span.start :].split(":")[0] for found in parse(text).diagnostics] == [
+        *("Sequence", "Fallback", "Go", "Turn")
+    ]
+
+
 def test_the_start_of_the_next_line_is_no_value() -> None:
     assert [found.notes for found in mistakes(tree("->", "    Go", "    3"))] == [()]
 
@@ -1068,10 +1175,7 @@ def test_the_start_of_the_next_line_is_no_value() -> None:
 def test_children_beside_the_first_node_of_a_tree() -> None:
     text = tree("Sequence", "Go", "Inverter  # or", "    Left")
     found = mistakes(text)
-    assert [(each.rule, each.notes) for each in found] == [
-        ("child-count", (CHILDREN,)),
-        ("tree-root-count", ("put them below one node, such as a Sequence `->`",)),
-    ]
+    assert [(each.rule, each.notes) for each in found] == [("tree-root-count", (CHILDREN,))]
     fixes = [(fix.title, after(text, fix)) for each in found for fix in each.fixes]
     assert fixes == [("Indent them below `Sequence`", tree("Sequence", "    Go", "    Inverter  # or", "        Left"))]
 
