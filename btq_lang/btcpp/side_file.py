@@ -327,6 +327,7 @@ _KINDS: Final[dict[type, str]] = {
     model.EveryNode: "every",
     model.ResolvedClaim: "claim",
     model.ResolvedScope: "scope",
+    model.ResolvedSpan: "from-until",
     model.ResolvedOdds: "odds",
     model.ResolvedWindow: "window",
     model.ResolvedWay: "way",

@@ -11,6 +11,7 @@ One invariant: what a log does not show is unknown, with the reason; nothing is 
     observed.py, conditions.py   what was observed during an activation or a run, whether conditions held, and measures
     guards.py      what the nodes that a build adds around others did
     verbs.py, run_verbs.py, use.py   a function a verb: the judgement of an activation or of a run; what is used up
+    kept_spans.py  keeps and never from an event until another one
     over_run.py    what a clause judged over a run reads: what its nodes did, and when events happened
     scopes.py      which activations count
     outline.py     the clauses of a mission and their places, which identify them in a later text

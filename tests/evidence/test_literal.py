@@ -11,7 +11,7 @@ from btq_lang.catalog.verbs import VERBS
 CASES = 150
 USUAL = 600
 # In these every verb comes to every verdict.
-RARE = (104, 122, 241, 255, 376, 513, 586, 767, 1072, 1145, 1290, 1329, 1389, 1761, 1804, 2001, 2032, 2179)
+RARE = (4, 26, 37, 104, 122, 241, 255, 376, 513, 586, 767, 1072, 1145, 1290, 1329, 1389, 1761, 1804, 2001, 2032, 2179)
 # In these the two judges once differed.
 DIFFERED = (
     *(165, 538, 957, 1318, 1344, 1712, 1734, 1769, 2044, 2245, 2894, 2912, 2986, 3175, 3342, 3619, 4198, 5138, 5291),
@@ -39,7 +39,7 @@ def test_both_say_the_same(hunt: Hunt) -> None:
     assert hunt.differences == []
 
 
-@pytest.mark.parametrize("verb", [*VERBS, "from … to", "sum of"])
+@pytest.mark.parametrize("verb", [*VERBS, "from … to", "sum of", "from … until"])
 def test_every_verdict_occurs(hunt: Hunt, verb: str) -> None:
     verdicts = ("never exercised", "satisfied", "undecided", "unknown", "violated")
     assert [each for each in verdicts if not hunt.compared[f"{verb}: {each}"]] == []
