@@ -36,6 +36,7 @@ from btq_lang.syntax.tree import (
     Entry,
     Event,
     Every,
+    FromUntil,
     Goal,
     Hazard,
     HazardClause,
@@ -490,6 +491,11 @@ def _(clause: Claim) -> str:
 @show_clause.register
 def _(clause: ScopeClause) -> str:
     return words(show(clause.word), show_condition(clause.condition))
+
+
+@show_clause.register
+def _(clause: FromUntil) -> str:
+    return words("from", show_event(clause.first), "until", show_event(clause.last))
 
 
 @show_clause.register

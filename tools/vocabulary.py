@@ -41,7 +41,8 @@ MODELS = "TreeNodesModel"
 PARTICLES = (
     "at", "most", "least", "less", "more", "than", "between", "and", "to", "of",
     "per", "every", "within", "after", "with", "probability", "last", "violation", "by", "if",
-    "assuming", "order", "else", "for", "sum", "under", "except", "node", "tagged", "from", "each", "is", "occurrences",
+    "assuming", "order", "else", "for", "sum", "under", "except", "node", "tagged", "from", "until", "each", "is",
+    "occurrences",
 )  # fmt: skip
 SIGNAL_WORDS = ("from", "level", "counter", "gauge", "fresh", "within", "initially")
 LOGIC = ("and", "or", "not")

@@ -39,6 +39,7 @@ from btq_lang.requirements.model import (
     ResolvedEvent,
     ResolvedRequirement,
     ResolvedSignal,
+    ResolvedSpan,
     ResolvedTable,
     signals_in,
 )
@@ -92,6 +93,8 @@ class ClauseGuard:
         self.name: Final = name
         self._shared: Final = shared
         self._values: Final[list[str]] = []
+        if requirement.span is not None and not VERBS[claim.verb].is_of_moments:
+            raise NotEnforced(f"`{requirement.span.text}` is about `keeps` and `never`")
         if claim.verb not in _BY_VERB:
             raise NotEnforced(VERBS[claim.verb].why_monitored)
         try:
@@ -253,10 +256,31 @@ def _keeps(guard: ClauseGuard) -> None:
     code = guard.script(_condition(guard))
     if guard.claim.verb == "never":
         code = f"(!{code})"
+    if guard.requirement.span is not None:
+        code = _in_span(guard, guard.requirement.span, code)
     for scope in reversed(guard.requirement.scopes):
         script = guard.script(scope.condition)
         code = f"((!{script if scope.word == 'while' else guard.at_start('when', script)}) || {code})"
     guard.wrap(GUARD, "ReactiveSequence", guard.claim.verb, before=(guard.condition("guard", code),))
+
+
+def _in_span(guard: ClauseGuard, span: ResolvedSpan, code: str) -> str:
+    """A script that need hold only from one event until another: these set and reset a flag."""
+    for scope in guard.requirement.scopes:
+        if scope.word == "when":
+            raise NotEnforced(f"whether `{scope.text}` holds at the start of that time is evaluated only in logs")
+    ends = tuple(atom for atom in span.last.atoms if not _ends_run(atom))
+    for atom in ends:
+        _is_recorded(atom)
+    flag = guard.entry("inside", "true" if _is_recorded(span.first) else "false")
+    _record(guard, span.first, "from", "begun", f"{flag} := true")
+    _record(guard, ResolvedAnyEvent(ends), "until", "over", f"{flag} := false")
+    return f"(({flag} == false) || {code})"
+
+
+def _ends_run(event: ResolvedEvent) -> bool:
+    """Whether it is the end of the mission, which needs no flag."""
+    return isinstance(event.subject, MissionRun) and event.happening != "starts"
 
 
 def _leaves(guard: ClauseGuard) -> None:

@@ -329,6 +329,7 @@ _KINDS: Final[dict[type, str]] = {
     model.Visit: "visit",
     model.ResolvedClaim: "claim",
     model.ResolvedScope: "scope",
+    model.ResolvedSpan: "from-until",
     model.ResolvedOdds: "odds",
     model.ResolvedWindow: "window",
     model.ResolvedWay: "way",

@@ -183,6 +183,8 @@ clause
     when | when fragile | only when a condition holds | counts only activations at whose start the condition holds
     assuming | assuming visibility >= 1 m | not applicable otherwise | \
         runs, or activations of a node, in which the condition does not hold all along are counted apart
+    until | from Pick starts until Place succeeds | only between two events | \
+        for `keeps` and `never`: only the time from an event until the next other one, or the end of the run
     in at least | in at least 98 % of activations | how often | \
         allows some violations; also `of runs`, of an event `of occurrences`, and `with probability >= 98 %`
     with probability | with probability >= 98 % of runs | how often | allows some violations

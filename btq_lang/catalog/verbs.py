@@ -55,6 +55,11 @@ class Verb(Record):
     is_final: bool = False
 
     @property
+    def is_of_moments(self) -> bool:
+        """Whether it demands a condition of each moment, so that it may be limited to a time."""
+        return self.operand == "condition" and self.judged == "while it runs"
+
+    @property
     def example(self) -> str:
         """A clause without a subject."""
         return self.phrases[0][1]

@@ -116,6 +116,7 @@ _OF_CLAUSES: tuple[Check, ...] = (
     approvals.approval_outdated,
     approvals.approval_missing,
     bounds.impossible_bound,
+    bounds.span_outside_run,
     bounds.uses_of_gauge,
 )
 # The checks of each type of item: most items are small, and most checks do not concern most of them.

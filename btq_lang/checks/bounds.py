@@ -48,6 +48,14 @@ def impossible_bound(view: View) -> Iterator[Diagnostic]:
                     yield Diagnostic("impossible-bound", amount.word.span, message)
 
 
+def span_outside_run(view: View) -> Iterator[Diagnostic]:
+    """`from … until …` that begins when the mission ends, or ends when it starts."""
+    for _, requirement in view.requirements:
+        for clause in requirement.clauses:
+            if isinstance(clause, syntax.FromUntil) and (problem := _outside_run(view, clause.first, clause.last)):
+                yield Diagnostic("impossible-bound", Span(clause.start, clause.end), problem[0], notes=problem[1:])
+
+
 def uses_of_gauge(view: View) -> Iterator[Diagnostic]:
     """`uses … of` a signal that is neither a counter nor a level, so that its use is undefined."""
     for _, claim in _claims(view):
@@ -181,6 +189,13 @@ def _of_span(view: View, claim: syntax.Claim) -> tuple[str, str] | None:
         first, last = subject.event, claim.event
     else:
         return None
+    return _outside_run(view, first, last)
+
+
+def _outside_run(
+    view: View, first: syntax.Event | syntax.AnyEvent | None, last: syntax.Event | syntax.AnyEvent | None
+) -> tuple[str, str] | None:
+    """The message and the note for a time that begins when the mission ends, or ends when it starts."""
     for event, side, is_outside in ((first, "after", False), (last, "before", True)):
         for atom in event.atoms if event is not None else ():
             if atom is not None and (atom.happening == "starts") is is_outside and _is_of_mission(view, atom):

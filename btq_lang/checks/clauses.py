@@ -14,6 +14,7 @@ from btq_lang.syntax.tokens import QUANTITY
 from btq_lang.util.text import Span
 
 _ONCE: dict[type, str] = {
+    syntax.FromUntil: "from when until when it must hold",
     syntax.Odds: "how often it must hold",
     syntax.Confidence: "a confidence",
     syntax.Window: "a window",

@@ -41,7 +41,8 @@ def not_enforced(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
             yield place, _diagnostic(applied, place, why, related)
             continue
         elsewhere = next(
-            (wrapped for wrapped in _nodes(claim, node) if not _is_built(demanded, applied, claim, wrapped)), None
+            (wrapped for wrapped in _nodes(applied, claim, node) if not _is_built(demanded, applied, claim, wrapped)),
+            None,
         )
         if elsewhere is not None:
             from btq_lang.btcpp.enforceability import where_else  # few missions demand anything of other files' nodes
@@ -95,10 +96,12 @@ def _is_reported_otherwise(
     return most is not None and (most[0] < 0.001 or not demanded.budgets.composed(node).waits)
 
 
-def _nodes(claim: ResolvedClaim, node: ResolvedNode) -> Iterator[ResolvedNode]:
+def _nodes(applied: Applied, claim: ResolvedClaim, node: ResolvedNode) -> Iterator[ResolvedNode]:
     """The nodes that get a wrapper."""
     yield node
     events = claim.event.atoms if claim.event is not None else ()
+    span = applied.requirement.span
+    events += (*span.first.atoms, *span.last.atoms) if span is not None else ()
     for other in (claim.per, *[atom.subject for atom in events]):
         if isinstance(other, NodeTarget):
             yield other.node

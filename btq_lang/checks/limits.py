@@ -154,7 +154,7 @@ def contradicting_bounds(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
     for applied, claim, node, place in demanded.claims:
         if applied.requirement.odds is not None:
             continue
-        scopes = tuple(scope.text for scope in applied.requirement.scopes)
+        scopes = *(scope.text for scope in applied.requirement.scopes), applied.requirement.span
         for what, low, high in _limits(claim):
             key = id(node), what, scopes
             earlier_most, earlier_least = most.get(key), least.get(key)

@@ -179,7 +179,7 @@ def number_for_text(view: View) -> Iterator[Diagnostic]:
 
 
 def _quantity(target: _Target, value: Word, version: str) -> Iterator[Diagnostic]:
-    """A quantity where the port's unit is unknown or of another dimension, or the number in that unit does not fit."""
+    """A quantity where the port's unit is unknown or of another dimension, or the in_unit in that unit does not fit."""
     quantity = parse_quantity(value.raw)
     if quantity is None:
         return  # an unknown unit, which is reported
@@ -187,13 +187,13 @@ def _quantity(target: _Target, value: Word, version: str) -> Iterator[Diagnostic
     if port_unit is None:
         stated = parse_unit(target.doc) if target.doc else None
         if stated is not None and stated.dimension == quantity[1].dimension:
-            number = f"{convert(quantity[0], quantity[1], stated):.10g}"
+            in_unit = f"{convert(quantity[0], quantity[1], stated):.10g}"
             yield Diagnostic(
                 "quantity-on-unitless-port",
                 value.span,
                 f"unknown unit of the port `{target.port}`",
                 notes=(f"its description is `{target.doc}`: write the number in that unit, `{number}`",),
-                fixes=(replace_fix(f"Write `{number}`", value.span, number),),
+                fixes=(replace_fix(f"Write `{in_unit}`", value.span, in_unit),),
             )
             return
         as_text = check_literal(target.type, value.raw, version) is None

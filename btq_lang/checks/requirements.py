@@ -252,6 +252,10 @@ def _without_subject(view: View, name: str) -> Iterator[Diagnostic]:
             message = f"`{claim.verb}` is about a node, not about {subject}, so nothing can check it"
             note = "write `takes` after it, or a node before the verb"
             yield _diagnostic(claim, message, note)
+        elif resolved is not None and resolved.span is not None and not VERBS[claim.verb].is_of_moments:
+            message = f"`{claim.verb}` is not about the time in `{resolved.span.text}`, so nothing can check it"
+            note = "`from … until` is for `keeps` and `never`; of other verbs, `while` and `when` limit what counts"
+            yield _diagnostic(claim, message, note)
         elif claim.subject is None and not is_about_nothing and not view.ask(_is_attached, name):
             message = f"missing subject of `{claim.text}`"
             note = "write a node before the verb, or attach the requirement to a node with `satisfies`"

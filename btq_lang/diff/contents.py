@@ -396,6 +396,7 @@ def _default(port: syntax.Port) -> str:
 _MISSION_WORDS: Final = {"main_tree_to_execute": MAIN}
 _ASPECTS: Final[dict[type, str]] = {
     syntax.ScopeClause: "scope",
+    syntax.FromUntil: "from … until",
     syntax.Assuming: "assumption",
     syntax.Odds: "odds",
     syntax.Confidence: "confidence",

@@ -12,6 +12,7 @@ One invariant: what a log does not show is unknown, with the reason; nothing is 
     guards.py      what the nodes that a build adds around others did
     verbs.py, run_verbs.py, visits.py, use.py   a function a verb: the judgement of an activation or of a run; what is
                    used up
+    kept_spans.py  keeps and never from an event until another one
     over_run.py    what a clause judged over a run reads: what its nodes did, and when events happened
     scopes.py      which activations count
     outline.py     the clauses of a mission and their places, which identify them in a later text

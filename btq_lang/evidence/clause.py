@@ -60,7 +60,13 @@ if TYPE_CHECKING:
     from btq_lang.evidence.model import Outcome
     from btq_lang.evidence.odds import Limits
     from btq_lang.evidence.outline import Demand
-    from btq_lang.requirements.model import ResolvedAnyEvent, ResolvedClaim, ResolvedEvent, Subject
+    from btq_lang.requirements.model import (
+        ResolvedAnyEvent,
+        ResolvedClaim,
+        ResolvedEvent,
+        ResolvedSpan,
+        Subject,
+    )
 
 
 class _Place(Record):
@@ -100,15 +106,17 @@ class JudgedClause:
         self._tally: Final = self.findings.tally
         self._margins: Final = self.findings.margins
         self._subject: Final = subject
-        self._judge: Final = JUDGES.get(claim.verb) if not isinstance(subject, Interval | DurationSum) else None
-        self._judge_run: Final = run_judge(claim, subject)
+        span = requirement.span
+        is_of_one = span is None and not isinstance(subject, Interval | DurationSum)
+        self._judge: Final = JUDGES.get(claim.verb) if is_of_one else None
+        self._judge_run: Final = run_judge(claim, subject, has_span=span is not None)
         # Whether a mission succeeds is what the log's root returns, whatever is around the written root.
         self._is_result: Final = isinstance(subject, MissionRun) and VERBS[claim.verb].limits == "success"
         self.judged: Final = replace(within(claim, requirement.scopes), subject=subject)
         self._edge: Final = edge_of(self.judged, subject, requirement) if with_measures else None
         self._extremes: Final = self._edge.extremes if self._edge is not None else ()
         self._with_measures: Final = with_measures
-        self._events: Final = _events(claim, subject)
+        self._events: Final = _events(claim, subject, span)
         subjects = (subject, *(event.subject for event in self._events))
         self._is_about_mission: Final = any(isinstance(each, MissionRun) for each in subjects)
         scopes = (*requirement.scopes, *requirement.assumptions)
@@ -201,7 +209,9 @@ class JudgedClause:
         self.broken.pop(activation.uid, None)
 
     def _judge_in(self, activation: Activation, guard: Guard | None, observed: Observed, path: str) -> None:
-        if guard is not None and self._judge is not None and self._is_own(guard):
+        if guard is not None and self._is_own(guard) and self._judge is None:
+            self._stopped.append(activation)
+        elif guard is not None and self._is_own(guard):
             self._margins.is_exact = False  # with another bound the guard would have done something else
             self._count(self._broken(activation, guard, observed), activation, path)
         elif self._judge is not None and self._running:
@@ -352,9 +362,8 @@ class JudgedClause:
         observed = Observed(self._signals, place.others, root.started, root.ended)
         own = self._history.activations_of(place.uids)
         refused = [refusal for refusal in self._refused if refusal.uid in place.uids]
-        return OverRun(
-            self.claim.verb, self.requirement.scopes, root, place.uids, own, observed, refused, self._stopped, []
-        )
+        stopped, scopes, span = self._stopped, self.requirement.scopes, self.requirement.span
+        return OverRun(self.claim.verb, scopes, root, place.uids, own, observed, refused, stopped, [], span)
 
     def _judged_over(self, claim: ResolvedClaim, overs: Sequence[OverRun]) -> Sequence[Judgement | None]:
         """The judgements of a run by a claim; `overs`: the run as it may have been."""
@@ -544,6 +553,8 @@ class JudgedClause:
             return "the mission has no known main tree"
         if self._judge is None and self._judge_run is None:
             measured = "the time from one event to another" if isinstance(subject, Interval) else "a sum of durations"
+            if self.requirement.span is not None:
+                measured = "the time from one event until another"
             return f"`{self.claim.verb}` cannot be judged of {measured}"
         return ""
 
@@ -629,9 +640,10 @@ def _kind(judgement: Judgement | None, activation: Activation) -> int:
     return margins.UNKNOWN if judgement.holds is None else margins.KEPT if judgement.holds else margins.VIOLATED
 
 
-def _events(claim: ResolvedClaim, subject: Subject | None) -> tuple[ResolvedEvent, ...]:
+def _events(claim: ResolvedClaim, subject: Subject | None, span: ResolvedSpan | None) -> tuple[ResolvedEvent, ...]:
     """The events that a clause names."""
     events = (*events_of(subject), *([claim.event] if claim.event is not None else ()))
+    events += (span.first, span.last) if span is not None else ()
     return tuple(atom for event in events for atom in event.atoms)
 
 

@@ -59,9 +59,10 @@ class Edge(Record):
 
 def edge_of(claim: ResolvedClaim, subject: Subject | None, requirement: ResolvedRequirement) -> Edge | None:
     """The bound of a claim at a subject; None if it has none that may be moved."""
-    if requirement.window is not None or isinstance(subject, DurationSum | ResolvedEachEvent):
-        # A window holds other judgements for another bound; parts of a sum, and earlier answers, may be unknown.
-        return None
+    if requirement.window is not None or requirement.span is not None:
+        return None  # a window holds other judgements for another bound, and the end of a span may be unknown
+    if isinstance(subject, DurationSum | ResolvedEachEvent):
+        return None  # parts of a sum, and earlier answers, may be unknown
     if claim.limit is not None:
         if VERBS[claim.verb].operand == "count" and requirement.scopes:
             return None  # starts may be unknown
@@ -75,6 +76,7 @@ def key_of(requirement: ResolvedRequirement, claim: ResolvedClaim, edge: Edge | 
     """What a clause demands apart from its bound and its odds: judgements of equal keys count the same."""
     text = claim.text.replace(edge.value.text, "…", 1) if edge is not None else claim.text
     parts = [text, *(scope.text for scope in (*requirement.scopes, *requirement.assumptions))]
+    parts += [requirement.span.text] if requirement.span is not None else []
     parts += [requirement.window.text] if requirement.window is not None else []
     of_runs = requirement.odds is not None and requirement.odds.experiments == "runs"
     return " ".join([*parts, "of runs"] if of_runs else parts)

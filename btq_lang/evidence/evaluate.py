@@ -322,5 +322,6 @@ class _OpenSession:
 def _reading(mission: Candidate, clauses: Sequence[JudgedClause]) -> Iterator[tuple[str, object]]:
     """The parts of the model that read signals, each with the name of its requirement or context."""
     for clause in clauses:
-        yield clause.requirement.name, (clause.claim, clause.requirement.scopes, clause.requirement.assumptions)
+        requirement = clause.requirement
+        yield requirement.name, (clause.claim, requirement.scopes, requirement.span, requirement.assumptions)
     yield from ((name, context) for name, context in mission.requirements.contexts.items() if context is not None)

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from operator import attrgetter, itemgetter
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.over_run import OverRun, target_of
 from btq_lang.evidence.verdicts import CauseLink
 from btq_lang.evidence.wording import duration, took
@@ -51,7 +52,7 @@ class RunExplainer:
         event = claim.subject.last if isinstance(claim.subject, Interval) else claim.event
         if judgement.measure is None and event is not None:
             return tuple(link for atom in event.atoms for link in self._last(atom, judgement.at, others))
-        if judgement.measure is None and claim.condition is not None:
+        if claim.condition is not None and (judgement.measure is None or VERBS[claim.verb].is_of_moments):
             return tuple(self._samples(claim.condition, judgement.at))
         if judgement.starts:
             return (_ends(self._path(judgement.starts[0]), judgement.starts), *self._inside(judgement.starts))

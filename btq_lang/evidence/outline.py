@@ -43,7 +43,8 @@ class Demand(Record):
     def text(self) -> str:
         """The clause as typed, with all that counts for its requirement."""
         requirement = self.requirement
-        of_all = (*requirement.scopes, *requirement.assumptions, requirement.odds, requirement.window)
+        qualifiers = (*requirement.scopes, requirement.span, *requirement.assumptions)
+        of_all = (*qualifiers, requirement.odds, requirement.window)
         parts = [self.claim.text, *(part.text for part in of_all if part is not None)]
         return " ".join([*parts, f"goal {requirement.goal.text}"] if requirement.goal is not None else parts)
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final
+from bisect import bisect_left
+from collections.abc import Callable, Sequence
+from itertools import accumulate
+from operator import attrgetter
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.evidence.conditions import truth
 from btq_lang.evidence.model import ROOT, UNKNOWN_END, Activation, Moment
@@ -17,12 +20,16 @@ from btq_lang.requirements.model import (
     ResolvedAnyEvent,
     ResolvedEvent,
     ResolvedScope,
+    ResolvedSpan,
 )
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from btq_lang.evidence.guards import RefusedStart
     from btq_lang.evidence.observed import Observed
+
+# Of an event: the next one of some others that has happened, and those that only may have happened before that.
+NextOf: TypeAlias = "Callable[[Happening], tuple[Happening | None, Sequence[Happening]]]"
 
 
 class Happening(Record):
@@ -83,8 +90,10 @@ class OverRun(Record):
         own: the activations of these, in the order of their starts.
         observed: of the whole run.
         refused: starts of the clause's nodes that its own guard refused.
-        stopped: activations of the nodes around a span that its own guard stopped.
+        stopped: activations that its own guard stopped: of the nodes around a time between events, or of its nodes
+            where its requirement has a span.
         missed: events that a judge found to concern no activation are appended.
+        span: of the requirement.
     """
 
     verb: str
@@ -96,6 +105,7 @@ class OverRun(Record):
     refused: Sequence[RefusedStart]
     stopped: Sequence[Activation]
     missed: list[Moment]
+    span: ResolvedSpan | None = None
 
     @property
     def is_cut_off(self) -> bool:
@@ -199,6 +209,36 @@ class OverRun(Record):
             elif activation.outcome in outcomes:
                 occurrences.append(Happening(activation.ended, activation.ended, uid=uid))
         return sorted(occurrences, key=lambda happening: happening.first)
+
+
+def next_finder(events: Sequence[Happening], run: OverRun, *, is_later: bool) -> NextOf:
+    """Finds what happens next; `is_later`: not at the same moment."""
+    certain = sorted([event for event in events if event.is_certain], key=attrgetter("first", "last"))
+    unclear = [event for event in events if event.why]
+    moments = [event.first for event in certain]
+    # The first one that has happened, of those from each index on.
+    nexts = [*accumulate(reversed(certain), _earlier)][::-1]
+
+    def next_of(event: Happening) -> tuple[Happening | None, Sequence[Happening]]:
+        index = bisect_left(moments, event.first)
+        while is_later and index < len(certain) and certain[index].last == event.first:
+            index += 1
+        last = nexts[index] if index < len(nexts) else None
+        until = last.last if last is not None else run.root.ended
+        return last, [other for other in unclear if other.until >= event.first and other.at <= until]
+
+    return next_of
+
+
+def _earlier(next_event: Happening, event: Happening) -> Happening:
+    """Which one has happened first; of those that happen at once, that which began first."""
+    return min(event, next_event, key=attrgetter("last"))
+
+
+def is_never_at_once(first: ResolvedEvent | ResolvedAnyEvent, last: ResolvedEvent | ResolvedAnyEvent) -> bool:
+    """Whether what happens at one moment is not first the one and then the other event: an event does not follow
+    itself, and a row of a node is one change."""
+    return first == last or (first.atoms[0].condition is None and last.atoms[0].condition is None)
 
 
 def target_of(event: ResolvedEvent) -> NodeTarget:

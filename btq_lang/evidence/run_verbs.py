@@ -9,15 +9,15 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator, Sequence
-from itertools import accumulate, pairwise
+from itertools import pairwise
 from math import ceil, floor
-from operator import attrgetter
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.conditions import Measure, compared, truth
+from btq_lang.evidence.kept_spans import kept_in_spans
 from btq_lang.evidence.model import UNKNOWN_BEGIN, UNKNOWN_END, Activation
-from btq_lang.evidence.over_run import Happening, OverRun, Stretch
+from btq_lang.evidence.over_run import Happening, NextOf, OverRun, Stretch, is_never_at_once, next_finder
 from btq_lang.evidence.signals import UnknownValue
 from btq_lang.evidence.verbs import OUT, Judgement, between, is_same
 from btq_lang.evidence.visits import visits
@@ -25,12 +25,11 @@ from btq_lang.requirements.model import (
     Condition,
     DurationSum,
     Interval,
+    MissionRun,
     NodeTarget,
     Quantity,
-    ResolvedAnyEvent,
     ResolvedClaim,
     ResolvedEachEvent,
-    ResolvedEvent,
     Subject,
 )
 from btq_lang.util.text import counted
@@ -40,13 +39,18 @@ if TYPE_CHECKING:
     from btq_lang.evidence.observed import Observed
 
 Judgements: TypeAlias = Iterator[Judgement | None]
-# Of an event: the next one of some others that has happened, and those that only may have happened before that.
-NextOf: TypeAlias = Callable[[Happening], "tuple[Happening | None, Sequence[Happening]]"]
 RunJudge: TypeAlias = Callable[[ResolvedClaim, OverRun], Judgements]
 
 
-def run_judge(claim: ResolvedClaim, subject: Subject | None) -> RunJudge | None:
-    """The function that judges a clause for a subject when a run has ended; None: none does."""
+def run_judge(claim: ResolvedClaim, subject: Subject | None, *, has_span: bool = False) -> RunJudge | None:
+    """The function that judges a clause for a subject when a run has ended; None: none does.
+
+    Args:
+        has_span: it holds only from an event until another one.
+    """
+    if has_span:
+        is_kept = VERBS[claim.verb].is_of_moments and isinstance(subject, NodeTarget | MissionRun)
+        return kept_in_spans if is_kept else None
     if isinstance(subject, Interval | DurationSum):
         of_several = _span if isinstance(subject, Interval) else _total
         return of_several if VERBS[claim.verb].limits == "completion" else None
@@ -158,15 +162,11 @@ def _followed(claim: ResolvedClaim, run: OverRun) -> Judgements:
         events = [Happening(event.read, event.read, event.why) for event in run.happenings(each.event, is_own=True)]
     else:
         is_by_row = each.event.condition is None and answer.condition is None
-        is_later = each.event == answer or (_names_nodes(each.event) and _names_nodes(answer))
-        next_of = _next_of(run.happenings(answer, is_by_row=is_by_row), run, is_later=is_later)
+        is_later = is_never_at_once(each.event, answer)
+        next_of = next_finder(run.happenings(answer, is_by_row=is_by_row), run, is_later=is_later)
         events = run.happenings(each.event, is_own=True, is_by_row=is_by_row)
     for event in events:
         yield from _followed_by(claim, run, event, *next_of(event))
-
-
-def _names_nodes(event: ResolvedEvent | ResolvedAnyEvent) -> bool:
-    return event.atoms[0].condition is None
 
 
 def _next_true(condition: Condition, run: OverRun) -> NextOf:
@@ -175,7 +175,7 @@ def _next_true(condition: Condition, run: OverRun) -> NextOf:
         Happening(part.begin, part.begin, part.why, not part.why)
         for part in run.with_all_along(condition, run.observed)
     ]
-    next_of = _next_of(stretches, run, is_later=True)
+    next_of = next_finder(stretches, run, is_later=True)
 
     def next_true(event: Happening) -> tuple[Happening | None, Sequence[Happening]]:
         now = truth(condition, run.observed, event.at)
@@ -414,7 +414,7 @@ def _span(claim: ResolvedClaim, run: OverRun) -> Judgements:
     first = span.first
     is_by_row = first.condition is None and span.last.condition is None
     # An event does not follow itself.
-    next_of = _next_of(run.happenings(span.last, is_by_row=is_by_row), run, is_later=first == span.last)
+    next_of = next_finder(run.happenings(span.last, is_by_row=is_by_row), run, is_later=first == span.last)
     for event in run.happenings(first, is_own=True, is_by_row=is_by_row):
         last, others = next_of(event)
         until = last.last if last is not None else run.root.ended
@@ -422,30 +422,6 @@ def _span(claim: ResolvedClaim, run: OverRun) -> Judgements:
             yield Judgement(False, until[0], "its guard stopped it before it came to an end", since=event.read[0])
             continue
         yield from _ended(claim, run, event, last, others[0].why if others else "")
-
-
-def _next_of(events: Sequence[Happening], run: OverRun, *, is_later: bool) -> NextOf:
-    """Finds what happens next; `is_later`: not at the same moment."""
-    certain = sorted([event for event in events if event.is_certain], key=attrgetter("first", "last"))
-    unclear = [event for event in events if event.why]
-    moments = [event.first for event in certain]
-    # The first one that has happened, of those from each index on.
-    nexts = [*accumulate(reversed(certain), _earlier)][::-1]
-
-    def next_of(event: Happening) -> tuple[Happening | None, Sequence[Happening]]:
-        index = bisect_left(moments, event.first)
-        while is_later and index < len(certain) and certain[index].last == event.first:
-            index += 1
-        last = nexts[index] if index < len(nexts) else None
-        until = last.last if last is not None else run.root.ended
-        return last, [other for other in unclear if other.until >= event.first and other.at <= until]
-
-    return next_of
-
-
-def _earlier(next_event: Happening, event: Happening) -> Happening:
-    """Which one has happened first; of those that happen at once, that which began first."""
-    return min(event, next_event, key=attrgetter("last"))
 
 
 def _ended(claim: ResolvedClaim, run: OverRun, first: Happening, last: Happening | None, unclear: str) -> Judgements:

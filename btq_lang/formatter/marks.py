@@ -162,6 +162,7 @@ class Marks:
 _ORDER: Final = (
     syntax.Claim,
     syntax.ScopeClause,
+    syntax.FromUntil,
     syntax.Assuming,
     syntax.Odds,
     syntax.Confidence,

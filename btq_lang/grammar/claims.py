@@ -655,7 +655,9 @@ MEANT: Final = {  # by the word that is read as a node before a verb
         ("title", "description", "text"), 'a requirement has one title, after its name: `QualityReq fast "in time"`'
     ),
 }
-_NO_NAMES: Final = HEADS | {"and", "or", "not", "if", "else", "is", "to", "of", "by", "per", "at", "within", "after"}
+_NO_NAMES: Final = HEADS.union(
+    ("and", "or", "not", "if", "else", "is", "to", "until", "of", "by", "per", "at", "within", "after")
+)
 _BEGINNINGS: Final = VERB_WORDS | HEADS | METADATA_HEADS
 _EACH: Final = frozenset(("each", "every", "all", "any"))
 _OPEN: Final = re.compile("<[a-z]+>")  # what is left to choose in a clause

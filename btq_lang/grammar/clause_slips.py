@@ -181,7 +181,7 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
     ("for (?:BOUND)?TIME", (), "only `never` says how long a condition may hold: `never low for more than 30 s`"),
     (f"{_IN_WORDS} CONDITION", ("while {condition}",), ""),
     (f"{_IF} CONDITION", ("while {condition}", "when {condition}"), _SITUATION),
-    ("until OTHER EVENT", (), "no clause ends at an event; limit it with a condition: `while not docked`"),
+    ("until OTHER EVENT", ("from mission starts until {other} {event}",), "`from` begins with an event, too"),
     (rf"{_NOT} (?!\d)CONDITION", ("while not {condition}",), ""),
     (
         rf"SUBJECT(?:{_MODAL} )?(?:end|finish(?:es)?|completes?|stops?) with (?!\d)CONDITION",

@@ -16,6 +16,7 @@ from btq_lang.grammar.claims import (
     is_verb_ahead,
     parse_bounded,
     parse_claim,
+    parse_event,
     report_slip,
 )
 from btq_lang.grammar.conditions import HEADS, METADATA_HEADS, SUBJECT_HEADS, bound_ahead, parse_cond
@@ -29,6 +30,7 @@ from btq_lang.syntax.tree import (
     Because,
     Clause,
     Confidence,
+    FromUntil,
     Goal,
     How,
     Odds,
@@ -70,10 +72,10 @@ def parse_clauses(cursor: Cursor, at_least_one: bool = False) -> tuple[Clause, .
 
 
 def parse_clause(cursor: Cursor) -> Clause | None:
-    """Clause = Claim | Scope | Assuming | Odds | Confidence | Window | OnViolation | Goal | Because | How | …"""
+    """Clause = Claim | Scope | FromUntil | Assuming | Odds | Confidence | Window | OnViolation | Goal | Because | …"""
     word = cursor.raw if cursor.kind == NAME else ""
     if word in VERB_WORDS or word in SUBJECT_HEADS:
-        return parse_claim(cursor)
+        return parse_from_until(cursor) if word == "from" and until_ahead(cursor) else parse_claim(cursor)
     if word == "while" or word == "when":
         return parse_scope(cursor)
     if word == "in" or word == "with":
@@ -122,6 +124,16 @@ def parse_assuming(cursor: Cursor) -> Assuming:
     cursor.skip_sign(":")
     condition = parse_cond(cursor)
     return Assuming(start, cursor.last_end(), condition)
+
+
+def parse_from_until(cursor: Cursor) -> FromUntil:
+    """FromUntil = "from" Event "until" Event"""
+    start = cursor.take().start
+    first = parse_event(cursor)
+    last = parse_event(cursor) if first is not None and cursor.expect_word("until") else None
+    if first is None:
+        cursor.recover()
+    return FromUntil(start, cursor.last_end(), first, last)
 
 
 def parse_odds(cursor: Cursor) -> Odds:
@@ -318,6 +330,17 @@ def skip_bound_of_goal(cursor: Cursor) -> None:
         cursor.go_to(value)
 
 
+def until_ahead(cursor: Cursor) -> bool:
+    """Whether the first event after `from` is followed by `until`, not by `to`."""
+    kinds, raws = cursor.kinds, cursor.raws
+    for index in range(cursor.index + 2, len(raws) - 1):
+        if kinds[index] == NAME and raws[index] in ("to", "until"):
+            before = index - 1
+            if kinds[before] != OPERATOR and raws[before] not in _BEFORE_OPERANDS:
+                return raws[index] == "until"
+    return False
+
+
 def is_other_clause(cursor: Cursor) -> bool:
     """Whether the current word, of other notations, begins a clause of them and is not the subject of one."""
     following = cursor.index + 1
@@ -390,6 +413,7 @@ def is_no_time(cursor: Cursor) -> bool:
 
 
 _STRING: Final = [STRING, NEWLINE]
+_BEFORE_OPERANDS: Final = ("when", "and", "or", "not", "node", "(")
 _ON_VIOLATION: Final = (
     "`on violation` is followed by fail, halt, warn or log; to try again, put a Retry around the node"
 )

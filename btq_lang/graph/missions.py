@@ -135,6 +135,7 @@ def clauses_in_words(applied: Applied) -> tuple[str, ...]:
     is_of_several = isinstance(applied.subject, Interval | DurationSum | ResolvedEachEvent)
     lines = [claim.text if is_of_several else _predicate(claim) for claim in requirement.claims]
     lines += [scope.text for scope in (*requirement.scopes, *requirement.assumptions)]
+    lines += [requirement.span.text] if requirement.span is not None else []
     if requirement.odds is not None:
         lines.append(requirement.odds.text)
     if requirement.action is not None and not requirement.classic:

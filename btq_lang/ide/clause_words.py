@@ -66,7 +66,7 @@ def expected(words: Sequence[Token]) -> Expected:
         return Expected(value=True)
     if text in HAPPENINGS and (head := _begins_last(_without_other_events(earlier[:-1]), _HEADS_OF_EVENTS)) in _EVENTS:
         if head in _AFTER_EVENT:
-            return Expected((_AFTER_EVENT[head], "or"))
+            return Expected((*_AFTER_EVENT[head], "or"))
         in_time = ("within",) if _is_answer(earlier) else ()
         return Expected(("or", *in_time), clause=True)
     if text == "with" and earlier[-1] == "ends with":
@@ -226,8 +226,8 @@ _CONDITIONS = (*words_of(operands=("condition",)), "while", "when", "assuming", 
 _BEFORE_CONDITIONS = frozenset((*_CONDITIONS, "if"))
 _AFTER_OPERAND = ("and", "or", "<=", ">=", "<", ">", "==", "!=")
 _BEFORE_VALUES = frozenset((*COMPARISONS, "+", "-", "*", "/"))
-_EVENTS = (*words_of(operands=("event",)), "after", "from", "to", "each", "followed")
-_AFTER_EVENT = {"from": "to", "each": "is followed by"}  # between two events
+_EVENTS = (*words_of(operands=("event",)), "after", "from", "to", "until", "each", "followed")
+_AFTER_EVENT = {"from": ("to", "until"), "each": ("is followed by",)}  # between two events
 _CLAUSES = (
     *VERBS,
     *(
@@ -293,7 +293,7 @@ _AFTER = {
     "probability": Expected((">=", ">")),
     "over": Expected(("last",)),
     "sum": Expected(("of",)),
-    **dict.fromkeys(("after", "from", "to", "each"), _EVENT),
+    **dict.fromkeys(("after", "from", "to", "until", "each"), _EVENT),
     "is": Expected(("followed by",)),
     "mission": Expected((*_OF_MISSIONS, *_HAPPENINGS)),
     "per": Expected(node=True),

@@ -56,6 +56,8 @@ def with_clauses(
             if condition is not None:
                 text = reader.text(clause.start, clause.end)
                 assumptions.append(model.ResolvedScope("assuming", condition, text))
+        elif isinstance(clause, syntax.FromUntil):
+            keep("span", _span(reader, clause))
         elif isinstance(clause, syntax.Odds):
             keep("odds", _odds(reader, clause))
         elif isinstance(clause, syntax.Confidence):
@@ -72,6 +74,9 @@ def with_clauses(
             keep("ways", tuple(_way(way) for way in clause.ways))
         elif type(clause) in syntax.METADATA:
             metadata.append(clause)
+    if any(isinstance(clause, syntax.FromUntil) for clause in clauses) and "span" not in once:
+        unread += [claim.text for claim in claims]  # at other times they may be violated
+        claims.clear()
     if goals:
         once["goal"] = reader.bounded(goals[0].value, _of_goal(claims, "odds" in once))
     if metadata:
@@ -231,6 +236,13 @@ def _subject(reader: Reader, written: syntax.Subject) -> model.Subject | None:
     targets = [reader.target(path) for path in written.paths]
     nodes_named = tuple(target for target in targets if target is not None)
     return model.DurationSum(nodes_named) if len(nodes_named) == len(targets) else None
+
+
+def _span(reader: Reader, written: syntax.FromUntil) -> model.ResolvedSpan | None:
+    first, last = _event(reader, written.first), _event(reader, written.last)
+    if first is None or last is None:
+        return None
+    return model.ResolvedSpan(first, last, reader.text(written.start, written.end))
 
 
 def _odds(reader: Reader, written: syntax.Odds) -> model.ResolvedOdds | None:

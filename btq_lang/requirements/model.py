@@ -388,6 +388,14 @@ class ResolvedScope(Record):
     text: str
 
 
+class ResolvedSpan(Record):
+    """`from e until f`: only the time from each `first` until the next `last`, or the end of the run."""
+
+    first: ResolvedEvent | ResolvedAnyEvent
+    last: ResolvedEvent | ResolvedAnyEvent
+    text: str
+
+
 class ResolvedOdds(Record):
     """`in at least 98 % of activations`.  relation: `>=` or `>`; probability: a fraction of one."""
 
@@ -434,7 +442,7 @@ class ResolvedApproval(Record):
 
 
 class ResolvedRequirement(Record):
-    """A requirement with its clauses resolved; scopes, odds, confidence, window, action and goal apply to all claims.
+    """A requirement with its clauses resolved; scopes, span, odds, confidence, window, action, goal are of all claims.
 
     Attributes:
         place: its name, where it is defined.
@@ -458,6 +466,7 @@ class ResolvedRequirement(Record):
     parameters: tuple[ResolvedParameter, ...]
     claims: tuple[ResolvedClaim, ...]
     scopes: tuple[ResolvedScope, ...] = ()
+    span: ResolvedSpan | None = None
     odds: ResolvedOdds | None = None
     confidence: float | None = None
     window: ResolvedWindow | None = None

@@ -185,6 +185,13 @@ class Assuming(Part):
     condition: Condition | None
 
 
+class FromUntil(Part):
+    """`from Pick starts until Place succeeds`: when something is kept."""
+
+    first: Event | AnyEvent | None
+    last: Event | AnyEvent | None
+
+
 class Odds(Part):
     """`in at least 98 % of runs`, `with probability >= 98 %`. experiments: None if omitted."""
 
@@ -278,6 +285,7 @@ class HazardSeverity(Part):
 Clause: TypeAlias = (
     Claim
     | ScopeClause
+    | FromUntil
     | Assuming
     | Odds
     | Confidence

@@ -34,6 +34,7 @@ from btq_lang.syntax.clauses import Confidence as Confidence
 from btq_lang.syntax.clauses import EachEvent as EachEvent
 from btq_lang.syntax.clauses import Event as Event
 from btq_lang.syntax.clauses import Every as Every
+from btq_lang.syntax.clauses import FromUntil as FromUntil
 from btq_lang.syntax.clauses import Goal as Goal
 from btq_lang.syntax.clauses import HazardClause as HazardClause
 from btq_lang.syntax.clauses import HazardSeverity as HazardSeverity

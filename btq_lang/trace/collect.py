@@ -397,6 +397,8 @@ def _note(key: str, applied: Applied, use: AppliedRequirement, measured: tuple[M
 def _stated(requirement: ResolvedRequirement) -> Iterator[str]:
     yield from (claim.text for claim in requirement.claims)
     yield from (scope.text for scope in (*requirement.scopes, *requirement.assumptions))
+    if requirement.span is not None:
+        yield requirement.span.text
     if requirement.odds is not None:
         yield requirement.odds.text
     if requirement.confidence is not None:

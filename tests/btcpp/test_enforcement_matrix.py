@@ -28,7 +28,12 @@ CLAUSES = {
     ),
     "succeeds": ("succeeds", "succeeds within 30 s"),
     "needs": ("needs battery > 15 %", "needs low"),
-    "keeps": ("keeps battery > 15 %", "keeps age(battery) <= 1 s"),
+    "keeps": (
+        "keeps battery > 15 %",
+        "keeps age(battery) <= 1 s",
+        "keeps battery > 15 %\n    from Other succeeds until Step fails or mission finishes",
+        "keeps battery > 15 %\n    from Other succeeds until Step halts",
+    ),
     "never": ("never low and door",),
     "never for": ("never low for more than 30 s",),
     "leaves": ("leaves battery > 3 %",),
@@ -59,6 +64,7 @@ QUALIFIERS = {
     "when": "when door",
     "context": "when night",
     "assuming": "assuming door",
+    "span": "from Other succeeds until Step fails or mission finishes",
     "review": "verified by review",
 }
 # What the clause is about, as it is named in it.
@@ -130,7 +136,7 @@ def matrix() -> Iterator[str]:
                 for action in ("fail", "halt") if not qualifier else ("fail",):
                     for kind, subject in {"event": ""}.items() if clause.startswith("each ") else SUBJECTS.items():
                         comes_of_it = outcome(f"{subject} {clause}".strip(), written, action)
-                        yield f"{kind} {clause}; {qualifier or 'always'}; {action}: {comes_of_it}"
+                        yield f"{kind} {' '.join(clause.split())}; {qualifier or 'always'}; {action}: {comes_of_it}"
 
 
 def outcome(clause: str, qualifier: str, action: str) -> str:

@@ -133,6 +133,21 @@ def test_what_one_run_may_show(clause: str, mission: str) -> None:
     assert problems(f'QualityReq r "t"\n    {clause.replace("{}", mission)}\n{MISSION}', "impossible-bound") == []
 
 
+@pytest.mark.parametrize("mission", ["mission", "Main"])
+@pytest.mark.parametrize(
+    ("span", "said"),
+    [
+        ("from {} fails until X starts", "nothing happens in a run after `{} fails`"),
+        ("from X fails until Y starts or {} starts", "nothing happens in a run before `{} starts`"),
+        ("from {} starts until {} finishes", None),
+    ],
+)
+def test_a_span_outside_of_a_run(span: str, said: str | None, mission: str) -> None:
+    text = f'QualityReq r "t"\n    X never node Y\n    {span.replace("{}", mission)}\n{MISSION}'
+    found = [(each.message, each.notes) for each in problems(text, "impossible-bound")]
+    assert found == ([(said.replace("{}", mission), (SINGLE_RUN,))] if said is not None else [])
+
+
 @pytest.mark.parametrize(
     "trees",
     [

@@ -432,6 +432,38 @@ BehaviorTree Main
     assert_unchanged(engine, text, {"Pick": ["FAILURE"], **kept}, ["Place"])
 
 
+@pytest.mark.parametrize("action", ["fail", "halt"])
+@pytest.mark.parametrize(
+    ("subject", "span", "broken", "kept"),
+    [
+        # The speed is too high while Carry runs, after Pick and before Place.
+        ("Work", "from Pick succeeds until Place starts", {}, {"Pick": ["FAILURE"]}),
+        ("Carry", "from Pick finishes until Place succeeds", {}, {"Carry": ["SUCCESS"]}),
+        ("Work", "from Place fails or Pick starts until Place succeeds", {}, {"Carry": ["SUCCESS"]}),
+        ("mission", "from mission starts until Pick fails", {}, {"Pick": ["FAILURE"]}),
+        ("mission", "from Carry starts until mission finishes", {}, {"Carry": ["SUCCESS"]}),
+        ("Work", "from Place starts until Pick starts", {"Place": [step("RUNNING", speed=2.0), "SUCCESS"]}, {}),
+    ],
+)
+def test_from_an_event_until_another(
+    engine: Engine, action: str, subject: str, span: str, broken: Parts, kept: Parts
+) -> None:
+    tree = """
+Root Main
+BehaviorTree Main
+    R->
+        -> Work
+            ForceSuccess
+                Pick
+            Carry
+            Place
+"""
+    text = f"{SPEED}QualityReq rq1\n    {subject} keeps speed <= 1 m/s\n    {span}\n    on violation {action}\n{tree}"
+    carries: Parts = {"Carry": [step("RUNNING", speed=2.0), "RUNNING", step("SUCCESS", speed=0.0)]}
+    assert_fails(engine, text, {**carries, **broken})
+    assert_unchanged(engine, text, {**carries, **kept}, ["Carry", "Place"])
+
+
 def test_each_start_needs_an_event_of_its_own(engine: Engine) -> None:
     tree = "Root Main\nBehaviorTree Main\n    ->\n        Look\n        Place\n        Place again\n"
     text = f"QualityReq rq1\n    again follows Look succeeds\n    on violation fail\n{tree}"

@@ -56,7 +56,9 @@ class World(OverRuns):
             if isinstance(applied.subject, MissionRun) and claim.verb == "succeeds":
                 found += self.mission_succeeds(uid, claim, requirement)  # of a run whose start was refused, too
                 continue
-            if claim.verb in ("tries", "runs", "follows", "visits"):
+            if requirement.span is not None:
+                found += self.kept_in_spans(uid, claim, requirement)
+            elif claim.verb in ("tries", "runs", "follows", "visits"):
                 found += self.over_runs(uid, claim, requirement)
             elif claim.verb not in ("starts", "ends"):
                 found += self.of_activations(uid, claim, requirement, part)
@@ -81,7 +83,8 @@ class Session:
     def judged(self, applied: Applied, claim: ResolvedClaim) -> list[Judged]:
         """What a claim comes to; of a run, if it is applicable."""
         found = self.anyhow(applied, claim)
-        if claim.verb not in OVER_RUNS and not isinstance(applied.subject, Interval | DurationSum):
+        is_of_run = claim.verb in OVER_RUNS or applied.requirement.span is not None
+        if not is_of_run and not isinstance(applied.subject, Interval | DurationSum):
             return found
         return [each for one in found if (each := self.in_run(one, applied.requirement)).verdict != OUT]
 
@@ -111,7 +114,11 @@ class Session:
         if claim.verb in ("starts", "ends"):
             for uid in self.late.uids(applied.subject):
                 found += self.spent(claim, [world.reactions(uid, claim, applied.requirement) for world in self.worlds])
-        return [each for each in found if each.verdict != OUT or claim.verb not in ("starts", "ends", "follows")]
+        return [
+            each
+            for each in found
+            if each.verdict != OUT or claim.verb not in ("starts", "ends", "follows", "keeps", "never")
+        ]
 
     def followed(self, each: ResolvedEachEvent, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Judged]:
         """each e is followed by f: what both ends of the begins say of each e."""

@@ -89,6 +89,7 @@ class Hunt:
         """Compare a clause; its literal verdict."""
         judged = literal.clause(applied, claim)
         what = {Interval: "from … to", DurationSum: "sum of"}.get(type(applied.subject), claim.verb)
+        what = "from … until" if applied.requirement.span is not None else what
         self.compared[f"{what}: {judged.verdict}"] += 1
         has_path = streamed.unit != "runs" and not isinstance(
             applied.subject, Interval | DurationSum | ResolvedEachEvent

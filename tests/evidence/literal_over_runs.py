@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from literal_log import both, just_after, micros
+from literal_log import both, either, just_after, micros, negated
 from literal_runs import Activation
 from literal_verbs import OPEN, OUT, Judged, OfActivations, counted
 
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
         ResolvedEachEvent,
         ResolvedEvent,
         ResolvedRequirement,
+        ResolvedSpan,
     )
 
     Decided = tuple[Verdict, int]  # and when that was
@@ -43,6 +44,7 @@ class Happening:
         moment: when that was.
         is_sure: it did, just then.
         of: what started.
+        is_of_node: it is no condition.
     """
 
     after: Moment
@@ -51,11 +53,29 @@ class Happening:
     is_sure: bool = True
     has_happened: bool = True
     of: Activation | None = None
+    is_of_node: bool = False
 
     @property
     def times(self) -> tuple[int, int]:
         """From when on and by when it happened."""
         return (self.of.earliest[0], self.of.latest[0]) if self.of is not None else (self.moment[0], self.moment[0])
+
+
+@dataclass(frozen=True)
+class KeptTime:
+    """A span.
+
+    Attributes:
+        begin: if it has begun at all.
+        maybe: when it may have begun.
+        end: the first moment after it.
+        unsure_from: the first moment at which it may have ended before.
+    """
+
+    begin: Moment | None
+    maybe: Moment
+    end: Moment | None
+    unsure_from: Moment | None
 
 
 @dataclass(frozen=True)
@@ -374,6 +394,113 @@ class OverRuns(OfActivations):
             return counted(counts, OUT if kept[1] else None), deadline[0]
         return counted(counts, False), deadline[0]
 
+    def kept_in_spans(self, uid: int, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Judged]:
+        """keeps, never … from e until f: each span in each activation of the node."""
+        found: list[Judged] = []
+        for run in self.runs:
+            spans = self.kept_times(requirement.span, replace(run, uid=uid))
+            for a in (each for each in self.of(uid) if each.run == run.run):
+                pieces = [self.kept_in_span(a, span, claim, requirement) for span in spans]
+                is_stopped = self.is_stopped(a, claim, requirement)
+                for verdict, decided, is_last in pieces:
+                    is_guarded, is_stopped = is_stopped and is_last, is_stopped and not is_last
+                    found.append(
+                        Judged(run.run, uid, *((False, run.end, a.end) if is_guarded else (verdict, run.end, decided)))
+                    )
+                if is_stopped:
+                    found.append(Judged(run.run, uid, False, run.end, a.end))
+        return found
+
+    def kept_times(self, span: ResolvedSpan | None, run: Activation) -> list[KeptTime]:
+        """From an e to the next f: what may have begun or ended is not sure.
+
+        What happens at an unknown time begins or ends a span for sure by its latest moment, if nothing of the other
+        kind may happen in that time.
+        """
+        assert span is not None
+        by_rows = span.first.condition is None and span.last.condition is None
+        begins, ends = (self.events(each, run, by_rows=by_rows) for each in (span.first, span.last))
+        is_later = span.first == span.last or (has_node(span.first) and has_node(span.last))
+        at_once = {each.after for each in ends if each.is_sure}
+        marks = [
+            (moment, kind, each, is_sure)
+            for kind, events, others in (("end", ends, begins), ("begin", begins, ends))
+            for each in events
+            for moment, is_sure in (
+                *([] if each.is_sure else [(each.after, False)]),
+                *(
+                    [(each.by, True)]
+                    if each.is_sure or (each.has_happened and not any(meets(each, one) for one in others))
+                    else []
+                ),
+            )
+        ]
+        found: list[KeptTime] = []
+        now: KeptTime | None = None
+        for moment, kind, each, is_sure in sorted(marks, key=lambda mark: (mark[0], mark[1] == "begin")):
+            if kind == "begin" and not is_later and moment in at_once:
+                continue
+            doubtful = [one for one in (ends if kind == "begin" else begins) if not one.is_sure]
+            is_doubtful = any(one.after <= moment < one.by for one in doubtful)
+            at = each.moment if is_sure else each.after
+            if kind == "begin" and is_sure and each.is_of_node:
+                at = just_after(at)
+            if kind == "begin" and is_sure and (now is None or now.begin is None or now.unsure_from is not None):
+                may_have = now.maybe if now is not None and now.begin is None else at
+                if now is not None and now.begin is not None:
+                    found.append(replace(now, end=at))
+                now = KeptTime(at, may_have, None, at if is_doubtful else None)
+            elif kind == "begin" and not is_sure and now is None:
+                now = KeptTime(None, at, None, None)
+            elif kind == "end" and is_sure and now is not None:
+                found.append(replace(now, end=at))
+                now = KeptTime(None, at, None, None) if is_doubtful else None
+            elif kind == "end" and not is_sure and now is not None and now.begin and now.unsure_from is None:
+                now = replace(now, unsure_from=at)
+        return [*found, *([now] if now is not None else [])]
+
+    def kept_in_span(
+        self, a: Activation, span: KeptTime, claim: ResolvedClaim, requirement: ResolvedRequirement
+    ) -> tuple[Verdict, int, bool]:
+        """What a span comes to in an activation, and whether it lasts until its end: all of it, and the sure part."""
+        is_last = span.end is None or span.end > a.stop
+        decided = a.stop[0] if span.end is None else min(span.end, a.stop)[0]
+        whole = self.moments_in(a, span.maybe, span.end)
+        if not whole:
+            return OUT, 0, False
+        ends = [each for each in (span.end, span.unsure_from) if each is not None]
+        sure = self.moments_in(a, span.begin, min(ends, default=None)) if span.begin is not None else []
+        if not sure or (not a.is_exact and sure[0] > just_after(a.start)):
+            return None, decided, is_last
+        counts, verdict = self.kept_at(a, sure, claim, requirement)
+        if counts is False:
+            return OUT, decided, is_last
+        verdict = verdict if verdict is self.kept_at(a, whole, claim, requirement)[1] else None
+        if verdict and a.outcome == "O" and is_last:
+            return OPEN, decided, is_last
+        return counted(counts, verdict), decided, is_last
+
+    def moments_in(self, a: Activation, begin: Moment, end: Moment | None) -> list[Moment]:
+        """The moments of an activation from a beginning on and before an end, at which something may change."""
+        first = max(begin, a.start)
+        moments = {first, *(each for each in self.moments(a) if each >= first)}
+        return sorted(each for each in moments if each <= a.stop and (end is None or each < end))
+
+    def kept_at(
+        self, a: Activation, moments: Sequence[Moment], claim: ResolvedClaim, requirement: ResolvedRequirement
+    ) -> tuple[Truth, Verdict]:
+        """Whether these moments count, and whether the condition is kept in them, where it has to be."""
+        time = replace(a, start=moments[0], stop=moments[-1])
+        counts = [self.holds_all("while", requirement, each, time) for each in moments]
+        holds = [negated(self.holds(claim.condition, each, time), claim.verb == "never") for each in moments]
+        is_known = [a.is_exact or index == 0 for index in range(len(moments))]  # it may have ended by then
+        kept = [
+            either(negated(count if is_known else count and None, True), hold)
+            for count, hold, is_known in zip(counts, holds, is_known, strict=True)
+        ]
+        counts[1:] = [each if a.is_exact else each and None for each in counts[1:]]
+        return both(self.holds_all("when", requirement, moments[0], time), either(*counts)), both(*kept)
+
     def written_above(self, uid: int) -> int:
         """The nearest node above another that is no guard: around it stands what enforces a span of its children."""
         while (uid := self.tree.parent[uid]) in self.guards:
@@ -439,10 +566,13 @@ class OverRuns(OfActivations):
         uids = [run.uid] if only else self.nearest(run.uid, self.uids(event.subject))
         of = [each for each in self.activations if each.uid in uids and each.run == run.run]
         if event.happening == "starts":
-            return [Happening(each.placed(by_rows), each.placed(by_rows), each.start, of=each) for each in of]
+            return [
+                Happening(each.placed(by_rows), each.placed(by_rows), each.start, of=each, is_of_node=True)
+                for each in of
+            ]
         outcomes = {"succeeds": "S", "fails": "F", "finishes": "SF", "halts": "H"}[event.happening]
         return [
-            Happening(each.stop if each.is_exact else each.shown, each.stop, each.stop, each.is_exact)
+            Happening(each.stop if each.is_exact else each.shown, each.stop, each.stop, each.is_exact, is_of_node=True)
             for each in of
             if each.outcome in outcomes
         ]
@@ -461,6 +591,11 @@ def spent(since: tuple[int, int], until: tuple[int, int]) -> tuple[int, int]:
 def has_node(event: ResolvedEvent | ResolvedAnyEvent) -> bool:
     """Whether something that a node does is among several events."""
     return any(each.condition is None for each in event.atoms)
+
+
+def meets(one: Happening, other: Happening) -> bool:
+    """Whether the order of two events is unknown."""
+    return one.after <= other.by and other.after <= one.by
 
 
 def all_of(verdicts: Sequence[Verdict]) -> Verdict:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import itertools
 import random
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -220,6 +221,8 @@ def requirement(chance: random.Random, name: str, labels: list[str]) -> str:
         apply = f"\napply {name}{given} to every {chance.choice(ACTIONS)}{other}"
     else:
         lines += [claim(chance, labels) for _ in range(chance.choice([1, 1, 1, 2]))]
+    if all(re.search(" (keeps|never) ", line) for line in lines) and chance.random() < 0.5:
+        lines.append(f"from {event(chance, labels)} until {event(chance, labels)}")
     for word in ("while", "when"):
         if chance.random() < 0.2:
             lines.append(f"{word} {condition(chance, labels)}")

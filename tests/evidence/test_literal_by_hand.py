@@ -270,6 +270,37 @@ def test_a_guard_around_a_span_violates_it() -> None:
     assert said(f"from a starts to b finishes takes at most 1 s{FAIL}", log, tree) == "violated 1/2"
 
 
+TWICE = "0 1R 2R 50 2F 60 2R 100 2S 150 3R 200 3S 1S"
+
+
+@pytest.mark.parametrize(
+    ("demand", "log", "expected"),
+    [
+        ("each a finishes is followed by b starts within 100 ms", TWICE, "satisfied 0/2"),
+        ("each a finishes is followed by b starts within 99 ms", TWICE, "unknown 0/1 ?1"),  # b began from 100 to 150
+        ("each a fails or b finishes is followed by a succeeds or mission finishes", TWICE, "satisfied 0/2"),
+        ("each b finishes is followed by a starts", TWICE, "violated 1/1"),
+        ("each a finishes is followed by slow within 10 ms", TWICE, "violated 1/2"),  # slow until 55, and from 170
+        ("each b starts is followed by slow within 19 ms", TWICE, "violated 1/1"),
+        ("each b starts is followed by slow within 20 ms", TWICE, "unknown 0/0 ?1"),
+        ("each b starts is followed by slow within 70 ms", TWICE, "satisfied 0/1"),
+        ("each b finishes is followed by not slow within 1 ms", TWICE, "never exercised 0/0"),
+        ("each when slow is followed by a fails or b finishes within 50 ms", TWICE, "satisfied 0/2"),
+        ("mission keeps slow\n    from a starts until a finishes", TWICE, "violated 1/2"),
+        ("mission keeps not slow\n    from a succeeds until b finishes", TWICE, "violated 1/1"),
+        ("mission never slow\n    from a succeeds until b starts", TWICE, "unknown 0/0 ?1"),  # perhaps at once
+        ("mission never slow\n    from a succeeds until b finishes", TWICE, "violated 1/1"),
+        ("mission never slow\n    from a fails until b starts", TWICE, "violated 1/1"),
+        ("b keeps slow\n    from mission starts until mission finishes", TWICE, "violated 1/1"),
+        ("a never slow\n    from when not slow until when slow", TWICE, "satisfied 0/1"),
+        ("mission never slow\n    from a halts until b starts", "0 1R 2R 100 3S 1S", "unknown 0/0 ?2"),  # or after it
+    ],
+)
+def test_what_follows_and_what_is_kept_between_events(demand: str, log: str, expected: str) -> None:
+    speed = [(-1.0, 0.5), (55.0, 2.0), (170.0, 0.5)]
+    assert said(demand, log, TWO, speed=speed) == expected
+
+
 @pytest.mark.parametrize(
     ("demand", "values", "expected"),
     [

@@ -304,6 +304,64 @@ def test_followed(demand: str, runs: str, expected: str, verify: Verify) -> None
     assert come_to(verify, demand, runs, samples("battery", {-1: 50, 5: 10, 25: 50})) == expected
 
 
+SPANS = samples("battery", {-1: 50, 5: 10, 25: 50})  # low from 5 to 25
+
+
+@pytest.mark.parametrize(
+    ("demand", "runs", "expected"),
+    [
+        ("mission never low\nfrom Move fails until Pick starts", TWICE, "violated 1/1"),
+        ("mission never low\nfrom Move succeeds until Pick succeeds", TWICE, "satisfied 0/1"),
+        ("mission never low\nfrom Move halts until Pick starts", TWICE, "never exercised 0/0"),
+        # Each first event begins one, and those in it are ignored.
+        ("mission never low\nfrom Move starts until Move finishes", TWICE, "violated 2/2"),
+        ("mission never low\nfrom Move starts until Pick starts", TWICE, "violated 1/1"),
+        ("mission keeps not low\nfrom Move finishes until Move starts", TWICE, "violated 1/2"),
+        # It has its beginning and not its end.
+        ("mission never node Move\nfrom Move fails until Move starts", TWICE, "satisfied 0/1"),
+        ("mission never node Pick\nfrom Move fails until Pick starts", TWICE, "satisfied 0/1"),
+        ("mission keeps low\nfrom when low until when not low", TWICE, "satisfied 0/1"),
+        ("mission keeps not low\nfrom when not low until when low", TWICE, "satisfied 0/2"),
+        ("mission keeps node Pick\nfrom Pick starts until Pick finishes", TWICE, "satisfied 0/1"),
+        # Without the last event it ends with the run; where the log ends, it is left out.
+        ("mission never low\nfrom Move succeeds until Alarm starts", TWICE, "satisfied 0/1"),
+        ("mission never low\nfrom Move succeeds until Alarm starts", CUT, "never exercised 0/0 |1"),
+        ("mission never low\nfrom Move fails until Alarm starts", CUT, "violated 1/1"),
+        ("mission never low\nfrom Move fails until Move starts", CUT, "violated 1/1"),
+        # A node: inside its activations.
+        ("Pick never low\nfrom Move fails until Pick finishes", TWICE, "satisfied 0/1"),
+        ("Move never low\nfrom Move fails until mission finishes", TWICE, "violated 1/1"),  # the second one
+        ("Move never low\nfrom mission starts until Move fails", TWICE, "violated 1/1"),
+        ("Alarm never low\nfrom mission starts until Move fails", TWICE, "never exercised 0/0"),
+        ("Move never low\nfrom mission starts until mission finishes", TWICE, "violated 2/2"),
+        ("Put never low\nfrom Grip starts until Put fails", "0 1R 8S 12S 10 9S 30 13S 1S", "violated 1/1 ?1"),
+        # It is not known when Move was halted, at 20 or later.
+        ("mission never low\nfrom Move starts until Move halts", UNWRITTEN, "violated 1/1 ?1"),
+        ("mission never low\nfrom Move halts until Pick starts", UNWRITTEN, "unknown 0/0 ?1"),
+        ("mission never low\nfrom Move starts until Pick starts", BACK, "unknown 0/0 ?1"),
+        (
+            "mission never low\nfrom Move fails until Pick starts or Move succeeds\nwhile node Move",
+            TWICE,
+            "violated 1/1",
+        ),
+        ("mission never low\nfrom Move finishes until Pick starts or Move starts\nwhen low", TWICE, "violated 1/1"),
+        ("mission never low\nfrom Move starts until Move finishes\nin at least 50 % of runs", TWICE, "violated 1/1"),
+        ("Task succeeds\nfrom Move starts until Move finishes", TWICE, "unknown 0/0"),
+    ],
+)
+def test_from_until(demand: str, runs: str, expected: str, verify: Verify) -> None:
+    assert come_to(verify, demand, runs, SPANS) == expected
+
+
+def test_a_violation_in_a_span(verify: Verify) -> None:
+    found = clause(verify, "Task never low\nfrom Move fails until Pick starts", TWICE, SPANS)
+    assert found["text"] == "Task never low from Move fails until Pick starts"
+    (violation,) = found["violations"]
+    assert (violation["why"], violation["at"], violation["path"]) == ("`battery` was 10 %", 0.01, "Task")
+    found = clause(verify, "Task takes at most 1 s\nfrom Move fails until Pick starts", TWICE, SPANS)
+    assert found["why"] == "`takes` cannot be judged of the time from one event until another"
+
+
 def test_what_is_counted_are_occurrences(verify: Verify) -> None:
     found = clause(verify, "each Move starts is followed by Pick starts within 20 ms", TWICE)
     assert (found["unit"], found["path"], found["counted"]) == ("occurrences", "Move::3, Pick::4", 2)

@@ -49,6 +49,18 @@ LINES: list[tuple[str, str, str, str]] = [  # verb, demand, runs, line
         "Move::3: `battery` was 50 %, bound 60 %; sampled 1 ms before",
     ),
     (
+        "keeps",
+        "Task keeps battery >= 60 % from Move fails until Pick starts",
+        TWICE,
+        "Task: `battery` was 50 %, bound 60 %; `battery` was sampled 11 ms before",
+    ),
+    (
+        "never",
+        "Task never low from Pick starts until Pick finishes",
+        TWICE,
+        "Task: `battery` was 10 %, bound 20 %; `battery` was sampled just before, while Pick::4 ran",
+    ),
+    (
         "never",
         "Pick never battery < 20 %",
         TWICE,

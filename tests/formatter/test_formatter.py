@@ -521,6 +521,25 @@ def test_two_claims_keep_the_order() -> None:
     )
 
 
+def test_when_something_is_kept_is_written_after_it() -> None:
+    assert_formats(
+        """
+        QualityReq a
+            on violation fail
+            from B starts or C starts until D fails
+            keeps c
+            while d
+        """,
+        """
+        QualityReq a
+            keeps c
+            while d
+            from B starts or C starts until D fails
+            on violation fail
+        """,
+    )
+
+
 def test_clauses_behind_the_head_stay_in_their_order_if_they_fit() -> None:
     assert_stays('QualityReq a : safety "t" on violation fail takes at most 20 s\n')
     assert_formats(

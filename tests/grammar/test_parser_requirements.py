@@ -254,7 +254,24 @@ def test_what_follows_an_event(clause: str, shown: str) -> None:
     assert_clause(clause, shown.replace("goal 1", "goal 1s"))
 
 
-@pytest.mark.parametrize("word", ["each", "is", "followed", "occurrences"])
+@pytest.mark.parametrize(
+    ("clause", "shown"),
+    [
+        ("keeps a from b starts until c succeeds", "keeps a\n  from b starts until c succeeds"),
+        ("from when a > 3 or b until mission finishes", "from when (or (a > 3) b) until (mission) finishes"),
+        ("from a starts or b/c fails until d fails or when e", "from a starts or b/c fails until d fails or when e"),
+        ("from until starts until until fails", "from until starts until until fails"),
+        ("from to starts until to fails", "from to starts until to fails"),
+        ("from when to until until starts", "from when to until until starts"),
+        ("from until starts to b succeeds takes at most 3 s", "<from until starts to b succeeds> takes <= 3s"),
+        ("from a starts until b fails in at least 3 % of runs", "from a starts until b fails\n  odds >= 3% of runs"),
+    ],
+)
+def test_from_an_event_until_another(clause: str, shown: str) -> None:
+    assert_clause(clause, shown)
+
+
+@pytest.mark.parametrize("word", ["each", "is", "followed", "occurrences", "until"])
 def test_words_of_later_versions_are_names(word: str) -> None:
     assert_clause(f"{word} takes at most 3 s", f"<{word}> takes <= 3s")
     assert_clause(f"follows {word} succeeds", f"follows {word} succeeds")
@@ -403,6 +420,16 @@ def test_a_verb_is_no_subject_without_quotes(verb: str) -> None:
             "",
             "1:1 syntax-error «after a succeeds then b starts within 3 s» this clause is written "
             "`each a succeeds is followed by b star…`",
+        ),
+        (
+            "from a starts until",
+            "from a starts until MISSING",
+            f"1:20 syntax-error «» expected an event: a node and what happens to it, {END}",
+        ),
+        (
+            "keeps a until b succeeds",
+            "keeps a",
+            "1:9 syntax-error «until b succeeds» this clause is written `from mission starts until b succeeds`",
         ),
         ("X", "", f"1:2 syntax-error «» expected a verb after `X` (takes, succeeds, needs, keeps, …), {END}"),
         ("X/", "", f"1:3 syntax-error «» expected a node, {END}"),

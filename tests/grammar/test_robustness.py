@@ -34,7 +34,7 @@ WORDS = (
     *("qualities", "xml", "Action", "Condition", "Control", "Decorator", "SubTree", "input", "output", "inout"),
     *("metadata", "satisfices", "satisfies", "tags", "parameters", "Quality", "ID", "description", "name"),
     *("takes", "succeeds", "needs", "keeps", "never", "leaves", "uses", "tries", "runs", "starts", "ends", "follows"),
-    *("each", "is", "followed", "occurrences"),
+    *("until", "each", "is", "followed", "occurrences"),
     *("at", "most", "least", "less", "than", "more", "between", "and", "or", "not", "if", "else", "of", "per", "every"),
     *("within", "after", "mission", "from", "to", "sum", "when", "while", "in", "with", "probability", "confidence"),
     *("for", "assuming", "visits", "order"),

@@ -973,8 +973,7 @@ def test_a_sign_after_a_clause_word(clause: str, mended: str) -> None:
 def test_a_clause_until_an_event() -> None:
     text = requirement("takes at most 3 s", "until Go succeeds")
     assert show(text, mistakes(text)) == [
-        "5:5 error syntax-error «until Go succeeds» "
-        "no clause ends at an event; limit it with a condition: `while not docked`"
+        "5:5 error syntax-error «until Go succeeds» this clause is written `from mission starts until Go succeeds`"
     ]
 
 

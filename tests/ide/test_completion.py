@@ -113,7 +113,11 @@ def typed(line: str) -> str:
             'QualityReq a "t"\n    starts within 1 s after Wait fails or Dock $0',
             ("fails", "finishes", "halts", "starts", "succeeds"),
         ),
-        ('QualityReq a "t"\n    from Wait fails or Dock starts $0', ("to", "or")),
+        ('QualityReq a "t"\n    from Wait fails or Dock starts $0', ("to", "until", "or")),
+        (
+            'QualityReq a "t"\n    keeps low\n    from Wait fails until Dock $0',
+            ("fails", "finishes", "halts", "starts", "succeeds"),
+        ),
         ('QualityReq a "t"\n    each Wait fails $0', ("is followed by", "or")),
         ('QualityReq a "t"\n    each Wait $0', ("fails", "finishes", "halts", "starts", "succeeds")),
         ('QualityReq a "t"\n    each Wait fails is $0', ("followed by",)),
@@ -237,6 +241,12 @@ def test_all_that_may_stand_here(line: str, labels: tuple[str, ...]) -> None:
         ),
         ('QualityReq a "t"\n    follows Wait fails $0', ("or", "while"), ("to", "battery")),
         ('QualityReq a "t"\n    from Wait fails to Dock starts $0', ("or", "takes at most"), ("to",)),
+        (
+            'QualityReq a "t"\n    from Wait fails until $0',
+            ("mission", "when", "Main", "MoveBase", "ToWard"),
+            ("battery",),
+        ),
+        ('QualityReq a "t"\n    from Wait fails until Dock starts $0', ("or", "takes at most"), ("to",)),
         ('QualityReq a "t"\n    each $0', ("mission", "when", "Main", "MoveBase", "ToWard"), ("battery",)),
         (
             'QualityReq a "t"\n    each Wait fails is followed by $0',
