@@ -14,9 +14,9 @@ from btq_lang.catalog.nodes import KNOWN_WORDS, spellings
 from btq_lang.catalog.qualities import EDITIONS, qualities
 from btq_lang.catalog.quality_words import ALIASES, AMBIGUOUS, PAPER_NAMES
 from btq_lang.catalog.units import SYMBOLS as UNITS
-from btq_lang.catalog.verbs import VERBS
 from btq_lang.grammar.claims import HAPPENINGS
-from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS
+from btq_lang.grammar.claims import VERB_WORDS as VERBS
+from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS, TIME
 from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS, HEADS
 from btq_lang.syntax.tokens import DIRECTIONS, NODE_CLAUSES, SYMBOLS
 
@@ -61,7 +61,7 @@ PORT_WORDS = longest_first(DIRECTIONS)
 CLAUSE_WORDS = tuple(sorted(NODE_CLAUSES))
 VERB_WORDS = longest_first(VERBS)
 HEAD_WORDS = longest_first(HEADS)
-REQUIREMENT_WORDS = longest_first((*VERBS, *HEADS, *HAPPENINGS, *EXPERIMENTS, *PARTICLES))
+REQUIREMENT_WORDS = longest_first((*VERBS, *HEADS, *HAPPENINGS, *EXPERIMENTS, TIME, *PARTICLES))
 OUTCOME_WORDS = longest_first((*ACTIONS, *METHODS))
 FUNCTION_WORDS = longest_first(FUNCTIONS)
 COMPARISON_SIGNS = longest_first(COMPARISONS)

@@ -172,6 +172,8 @@ clause
     when | when fragile | only when a condition holds | counts only activations at whose start the condition holds
     in at least | in at least 98 % of activations | how often | \
         allows some violations; also `of runs` and `with probability >= 98 %`
+    of time | in at least 95 % of time | a share of the time | \
+        of `keeps` and `never`: in each run the condition may be broken for the rest of the time that the node runs
     with probability | with probability >= 98 % of runs | how often | allows some violations
     activations | in at least 98 % of activations | from its start to its end | each time that the node runs
     runs | in at least 98 % of runs | whole missions | each time that the mission runs

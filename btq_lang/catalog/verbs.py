@@ -23,6 +23,7 @@ class Verb(Record):
     """A verb.
 
     Attributes:
+        word: one, or the first word of its clauses and what tells them from those of another verb: `keeps of time`.
         operand: what it is followed by: a bound of a duration, perhaps a deadline, a condition, a bound of the use of a
             signal, a bound of a count, a period or a rate, a deadline after an event, an event.
         measures: what is compared with the bound, or evaluated.
@@ -84,6 +85,7 @@ _START: Final = "at its start"
 _MEANWHILE: Final = "while it runs"
 _END: Final = "at its end"
 _RUN: Final = "over the run"
+_NO_FORM: Final = (("", None),)  # it begins as the clauses of another verb
 _NOTHING_STARTS_NODES: Final = "BehaviorTree.CPP has no node that makes another one start in time"
 
 VERBS: Final = {
@@ -168,6 +170,29 @@ VERBS: Final = {
             ),
             enforced="guard",
             is_final=True,
+        ),
+        *(
+            Verb(
+                word=f"{word} of time",
+                operand="condition",
+                measures="the share of the time that it runs",
+                judged=_RUN,
+                said=f"{how} in {{}} of the time",
+                phrases=(
+                    (
+                        f"{word} of time",
+                        f"{word} {condition} in at least 95 % of time",
+                        "a share of the time",
+                        f"in a run it is {truth} for a larger share of the time that the node runs",
+                    ),
+                ),
+                forms=_NO_FORM,
+                why_monitored="what share of its time that is, is known only when the run has ended",
+            )
+            for word, condition, how, truth in (
+                ("keeps", "battery >= 15 %", "held", "false"),
+                ("never", "humans_near", "did not hold", "true"),
+            )
         ),
         Verb(
             word="leaves",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import prod
+from typing import Final
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import Dimension
@@ -182,7 +183,9 @@ def _limits(claim: ResolvedClaim) -> Iterator[_Limit]:
         yield ("duration",), claim.lowest, claim.highest
     elif claim.signal is not None:
         yield (claim.verb, claim.signal.name), claim.lowest, claim.highest
-    elif claim.verb != "never" and isinstance(claim.condition, Compare):  # the condition is what must not hold
+    elif (
+        claim.limit is None and claim.verb != "never" and isinstance(claim.condition, Compare)
+    ):  # the condition is what must not hold
         yield from _compared(claim.verb, claim.condition)
 
 
@@ -240,3 +243,6 @@ def _dimension(claim: ResolvedClaim) -> Dimension | None:
     value = claim.limit.value if claim.limit is not None else None
     value = value.cases[0].value if isinstance(value, ResolvedTable) else value
     return value.unit.dimension if isinstance(value, Quantity) else None
+
+
+_WITHOUT_LIMITS: Final = ("never", "keeps of time", "never of time")  # what may, or need not, hold all the time

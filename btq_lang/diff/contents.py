@@ -276,6 +276,8 @@ class _Reader:
             values[f"parameter {parameter.name.text}"] = AspectValue(_meaning(parameter), text + default)
         for clause in requirement.clauses:
             aspect = clause.verb.text if isinstance(clause, syntax.Claim) else _ASPECTS[type(clause)]
+            if isinstance(clause, syntax.Odds) and clause.is_of_time:
+                aspect = "share of time"
             number = 2
             while aspect in values:
                 aspect = f"{aspect.split(' #')[0]} #{number}"

@@ -474,7 +474,7 @@ class JudgedClause:
             return "the mission has no known main tree"
         if self._judge is None and self._judge_run is None:
             measured = "the time from one event to another" if isinstance(subject, Interval) else "a sum of durations"
-            return f"`{self.claim.verb}` cannot be judged of {measured}"
+            return f"`{self.claim.word}` cannot be judged of {measured}"
         return ""
 
     def remarks(self, tree: LoggedTree, keeping: Collection[int]) -> Iterator[str]:
@@ -502,12 +502,14 @@ class JudgedClause:
         if verdict == NEVER and findings.missed and self.claim.event is not None:
             event = self.claim.text.partition(" after ")[2].removeprefix("when ")
             why = f"it was not running when {event} ({counted(findings.missed, 'time')})"
-        is_of_run = VERBS[self.claim.verb].operand == "count" and self.claim.per is None
+        verb = VERBS[self.claim.verb]
+        is_share = verb.operand == "condition" and verb.judged == "over the run"
+        is_of_run = is_share or (verb.operand == "count" and self.claim.per is None)
         is_once_a_run = isinstance(self._subject, DurationSum) or (is_of_run and len(findings.paths) == 1)
         return ClauseVerdict(
             text=self.text,
             path=", ".join(findings.paths),
-            of=self.claim.text.partition(f" {self.claim.verb} ")[0]
+            of=self.claim.text.partition(f" {self.claim.word} ")[0]
             if isinstance(self._subject, Interval | DurationSum)
             else "",
             verdict=verdict,

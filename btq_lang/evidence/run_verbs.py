@@ -19,6 +19,7 @@ from btq_lang.evidence.conditions import Measure, compared
 from btq_lang.evidence.model import UNKNOWN_BEGIN, UNKNOWN_END, Activation
 from btq_lang.evidence.over_run import Happening, OverRun, Stretch
 from btq_lang.evidence.signals import UnknownValue
+from btq_lang.evidence.time_shares import of_time
 from btq_lang.evidence.verbs import OUT, Judgement, between, is_same
 from btq_lang.requirements.model import DurationSum, Interval, NodeTarget, Quantity, ResolvedClaim, Subject
 from btq_lang.util.text import counted
@@ -404,4 +405,6 @@ JUDGES: Final[dict[str, RunJudge]] = {
     "follows": _follows,
     "tries": _tries,
     "runs": _runs,
+    "keeps of time": of_time,
+    "never of time": of_time,
 }

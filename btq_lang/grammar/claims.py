@@ -46,7 +46,7 @@ from btq_lang.syntax.tree import (
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 
-VERB_WORDS: Final = frozenset(VERBS)
+VERB_WORDS: Final = frozenset(verb.partition(" ")[0] for verb in VERBS)
 HAPPENINGS: Final = frozenset(("starts", "succeeds", "fails", "finishes", "halts"))
 MAX_CASES: Final = 100  # in one value: each case of a table may be another table
 
@@ -287,6 +287,8 @@ def no_verb(cursor: Cursor, subject: Subject) -> None:
     elif isinstance(subject, Path) and (cursor.at_word("and") or cursor.at(",")):
         note = "a clause applies to one node; write it for each, or `sum of A, B` for the time of both"
         cursor.expected(_A_VERB, (note,))
+    elif first is not None and first.raw == "at" and report_slip(cursor):
+        cursor.recover()
     elif first is not None and first.raw == "at" and (fixes := takes_before(cursor, first)):
         cursor.expected(f"a verb before `at {cursor.raw}`", (MEANT["at"],), fixes)
     elif first is not None and first.kind == NAME and (noted := MEANT.get(first.raw) or NO_VERBS.get(first.raw)):

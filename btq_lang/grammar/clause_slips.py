@@ -134,8 +134,14 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
     ("(?:the )?(?:period|cycle) *BOUNDTIME", ("runs every {time}",), ""),
     (r"(?:attempts|retries) *BOUND(?P<number>\d+)", ("tries {bound} {number}",), ""),
     # how probably
+    ("(?:for |during )?(?:at least )?SHARE of (?:the |its |that )?time", ("in at least {share} of time",), ""),
     (
-        "(?:the )?(?:success[ _-]?(?:rate|ratio|probability)|probability of success|reliability|availability) *"
+        "(?:the )?availability *(?:is |of )?(?:>=|at least|min|minimum|[:=]) *SHARE",
+        ("keeps <signal> in at least {share} of time", "succeeds in at least {share} of runs"),
+        "the first is a share of the time, of a signal that is true while it is available",
+    ),
+    (
+        "(?:the )?(?:success[ _-]?(?:rate|ratio|probability)|probability of success|reliability) *"
         "(?:is |of )?(?:>=|at least|min|minimum|[:=]) *SHARE",
         ("succeeds in at least {share} of activations", "succeeds in at least {share} of runs"),
         "",

@@ -40,6 +40,7 @@ from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 
 EXPERIMENTS: Final = frozenset(("activations", "runs"))
+TIME: Final = "time"  # a share of it, rather than of experiments
 ACTIONS: Final = ("fail", "halt", "warn", "log")
 METHODS: Final = ("monitor", "analysis", "test", "review")
 ENDS_CLAUSES: Final = frozenset(("satisfices", "satisfies", "tags", "parameters", "QualityReq", "Quality"))
@@ -110,13 +111,13 @@ def parse_scope(cursor: Cursor) -> ScopeClause:
 
 
 def parse_odds(cursor: Cursor) -> Odds:
-    """ "in" "at" "least" QUANTITY "of" Experiments | "with" "probability" ( ">=" | ">" ) QUANTITY [ "of" … ]"""
+    """ "in" "at" "least" QUANTITY "of" ( Experiments | "time" ) | "with" "probability" ( ">=" | ">" ) QUANTITY …"""
     start = cursor.start()
     return parse_share(cursor, start) if cursor.accept_word("in") else parse_probability(cursor, start)
 
 
 def parse_share(cursor: Cursor, start: int) -> Odds:
-    """ "at" "least" QUANTITY "of" Experiments"""
+    """ "at" "least" QUANTITY "of" ( Experiments | "time" )"""
     value: Word | None = None
     experiments = None
     if cursor.kind == QUANTITY:
@@ -129,12 +130,12 @@ def parse_share(cursor: Cursor, start: int) -> Odds:
     elif cursor.expect_word("at") and cursor.expect_word("least"):
         value = parse_percentage(cursor, "98 %")
     if value is not None and cursor.expect_word("of", forgotten=cursor.raw in EXPERIMENTS):
-        experiments = parse_experiments(cursor)
+        experiments = parse_counted(cursor)
     return Odds(start, cursor.last_end(), ">=", value, experiments)
 
 
 def parse_probability(cursor: Cursor, start: int) -> Odds:
-    """ "with" "probability" ( ">=" | ">" ) QUANTITY [ "of" Experiments ]"""
+    """ "with" "probability" ( ">=" | ">" ) QUANTITY [ "of" ( Experiments | "time" ) ]"""
     relation = ">="
     value: Word | None = None
     experiments = None
@@ -155,7 +156,7 @@ def parse_probability(cursor: Cursor, start: int) -> Odds:
                 fixes = (write_fix(written, cursor.here()),)
             cursor.expected("`>=` or `>` and a percentage", (), fixes)
     if value is not None and cursor.accept_word("of"):
-        experiments = parse_experiments(cursor)
+        experiments = parse_counted(cursor)
     return Odds(start, cursor.last_end(), relation, value, experiments)
 
 
@@ -225,9 +226,19 @@ def parse_how(cursor: Cursor) -> How:
     return How(start, cursor.last_end(), method)
 
 
+def parse_counted(cursor: Cursor) -> Word | None:
+    """ "activations" | "runs" | "time"; an article before it is reported"""
+    following = cursor.index + 1
+    if cursor.kind == NAME and cursor.raw in _ARTICLES and cursor.is_word(following, TIME):
+        span = Span(cursor.here().start, cursor.starts[following] + len(TIME))
+        cursor.complain(span, f"expected `{TIME}`, found `{cursor.raw} {TIME}`", write_fix(TIME, span, safe=True))
+        cursor.advance()
+    return parse_one_of(cursor, (*_EXPERIMENTS, TIME))
+
+
 def parse_experiments(cursor: Cursor) -> Word | None:
     """ "activations" | "runs" """
-    return parse_one_of(cursor, ("activations", "runs"))
+    return parse_one_of(cursor, _EXPERIMENTS)
 
 
 def parse_percentage(cursor: Cursor, example: str, before: str = "") -> Word | None:
@@ -335,6 +346,8 @@ def is_no_time(cursor: Cursor) -> bool:
     return ends and not is_misspelt and measured(cursor.raws[: cursor.index]) == "s"
 
 
+_EXPERIMENTS: Final = tuple(sorted(EXPERIMENTS))
+_ARTICLES: Final = ("the", "its", "that")
 _STRING: Final = [STRING, NEWLINE]
 _ON_VIOLATION: Final = (
     "`on violation` is followed by fail, halt, warn or log; to try again, put a Retry around the node"

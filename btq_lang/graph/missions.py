@@ -144,7 +144,7 @@ def clauses_in_words(applied: Applied) -> tuple[str, ...]:
 
 def _predicate(claim: ResolvedClaim) -> str:
     """`takes at most 30 s` of `BatteryCheck/MoveBase takes at most 30 s`."""
-    _, verb, after = f" {claim.text} ".partition(f" {claim.verb} ")
+    _, verb, after = f" {claim.text} ".partition(f" {claim.word} ")
     return (verb + after).strip() if claim.subject is not None and verb else claim.text
 
 

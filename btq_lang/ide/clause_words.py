@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.catalog.verbs import words as words_of
 from btq_lang.grammar.claims import HAPPENINGS
-from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS
+from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS, TIME
 from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS
 from btq_lang.syntax.tokens import BRACED, CLOSE, NAME, NUMBER, OPEN, QUANTITY, STRING, Token
 from btq_lang.util.record import Record, replace
@@ -49,7 +49,9 @@ def expected(words: Sequence[Token]) -> Expected:
     if text == "of" and _begins_last(earlier, (*_USES, "sum", "in", "with")) in _USES:
         return Expected(signal=True)
     if text == "of":
-        return Expected(node=True) if before == "sum" else Expected(_EXPERIMENTS)
+        if before == "sum":
+            return Expected(node=True)
+        return Expected((*_EXPERIMENTS, TIME) if _has_time(earlier) else _EXPERIMENTS)
     if text == "and" and _begins_last(earlier, ("between", *_CONDITIONS)) == "between":
         return Expected(value=True)
     if text in _AFTER:
@@ -132,7 +134,7 @@ def _after_value(words: Sequence[str]) -> tuple[str, ...]:
     if head in _REACTIONS and "after" not in words[last_index(words, head) :]:
         return ("after", "if")
     if head in ("in", "with"):
-        return ("of runs", "of activations")
+        return ("of runs", "of activations", *(("of time",) if _has_time(words) else ()))
     if head == "over":
         return _EXPERIMENTS
     if head in _CONDITIONS:
@@ -140,6 +142,11 @@ def _after_value(words: Sequence[str]) -> tuple[str, ...]:
     if "if" in words:
         return ("and", "or", "else")
     return ("if",) if head in _TIMED or head == "goal" else ()
+
+
+def _has_time(words: Sequence[str]) -> bool:
+    """Whether a share after these words may be one of the time: after `keeps` or `never`, perhaps a line above."""
+    return _begins_last(words, tuple(VERBS)) in ("", "keeps", "never")
 
 
 def last_index(words: Sequence[str], word: str) -> int:

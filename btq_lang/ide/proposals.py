@@ -409,7 +409,7 @@ _ITEMS = (
 )
 _ONCE = frozenset(("in", "with", "confidence", "over", "on", "goal", "because", "verified"))
 _CLAUSES = (
-    *(form for verb in VERBS.values() for form in verb.forms or ((verb.word, None),)),
+    *(form for verb in VERBS.values() for form in verb.forms or ((verb.word, None),) if form[0]),
     ("mission", None),
     ("every", None),
     ("from", "from ${1:A} starts to ${2:B} succeeds $0"),

@@ -14,6 +14,7 @@ from btq_lang.catalog.units import Dimension, a_dimension
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements import model, nodes
 from btq_lang.requirements.reader import Reader
+from btq_lang.requirements.shares import of_time
 from btq_lang.requirements.terms import COUNT, DURATION, PERCENT, SORTS, TIME, Wanted, sort_of
 from btq_lang.syntax import tree as syntax
 from btq_lang.util.record import replace
@@ -48,7 +49,7 @@ def with_clauses(
                 word = "while" if clause.word.raw == "while" else "when"
                 scopes.append(model.ResolvedScope(word, condition, reader.text(clause.start, clause.end)))  # type: ignore[arg-type]  # one of the two
         elif isinstance(clause, syntax.Odds):
-            keep("odds", _odds(reader, clause))
+            keep("share" if clause.is_of_time else "odds", _odds(reader, clause))
         elif isinstance(clause, syntax.Confidence):
             keep("confidence", _confidence(reader, clause))
         elif isinstance(clause, syntax.Window):
@@ -61,6 +62,9 @@ def with_clauses(
             reasons.append(clause.text.text)
         elif isinstance(clause, syntax.How) and clause.method is not None:
             keep("method", clause.method.raw)
+    if isinstance(share := once.pop("share", None), model.ResolvedOdds):
+        claims, not_of_time = of_time(reader, claims, share)
+        unread += not_of_time
     if goals:
         once["goal"] = reader.bounded(goals[0].value, _of_goal(claims, "odds" in once))
     return replace(
@@ -234,6 +238,8 @@ def _of_goal(claims: list[model.ResolvedClaim], has_odds: bool) -> Wanted | None
             return None
         if VERBS[claim.verb].operand in _TIMED or claim.every:
             dimensions[TIME] = "s"
+        elif claim.condition is not None:  # a share of time
+            dimensions[PERCENT] = "%"
         elif claim.signal is not None and claim.signal.unit is not None:
             dimensions[claim.signal.unit.dimension] = claim.signal.unit.symbol
         else:

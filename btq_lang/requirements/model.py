@@ -279,13 +279,15 @@ class ResolvedClaim(Record):
 
     Attributes:
         subject: the claim's own; None: what the requirement is attached to.
-        limit: of takes, uses, tries, runs; of `within d` and `runs every d` as `<= d`.
+        verb: the word of its row in `catalog.verbs`.
+        limit: of takes, uses, tries, runs; of `within d` and `runs every d` as `<= d`; of keeps and never the share
+            of time.
         condition: of needs, keeps, never, leaves.
         signal: of uses.
         per: of tries a node, of runs a duration.
         event: of starts, ends, follows.
         every: `runs every d`.
-        text: the clause as typed, blanks folded.
+        text: the clause as typed, blanks folded; with its share of time.
     """
 
     verb: str
@@ -298,6 +300,11 @@ class ResolvedClaim(Record):
     per: NodeTarget | Quantity | None = None
     event: ResolvedEvent | None = None
     every: bool = False
+
+    @property
+    def word(self) -> str:
+        """The verb as it is written."""
+        return self.verb.partition(" ")[0]
 
     @property
     def highest(self) -> tuple[float, str] | None:
@@ -454,7 +461,7 @@ class Applied(Record):
         if self.how != "subject" or isinstance(self.subject, MissionRun) or node is None or node.parent is not None:
             return None
         claim = self.requirement.claims[0]
-        last = claim.text.partition(f" {claim.verb} ")[0].rpartition("/")[2]
+        last = claim.text.partition(f" {claim.word} ")[0].rpartition("/")[2]
         return node.tree if last == node.tree else None
 
     @property

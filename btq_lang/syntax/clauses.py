@@ -145,6 +145,11 @@ class Odds(Part):
     value: Word | None
     experiments: Word | None
 
+    @property
+    def is_of_time(self) -> bool:
+        """`in at least 98 % of time`: a part of the demand rather than its odds."""
+        return self.experiments is not None and self.experiments.raw == "time"
+
 
 class Confidence(Part):
     """`confidence 95 %`."""

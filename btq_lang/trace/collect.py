@@ -332,7 +332,7 @@ def _subject(applied: Applied) -> str:
     if isinstance(subject, MissionRun):
         return "mission"
     claim = applied.requirement.claims[0]
-    return claim.text.partition(f" {claim.verb} ")[0]
+    return claim.text.partition(f" {claim.word} ")[0]
 
 
 def _node(key: str, source: ResolvedNode, location: At) -> NodeRow:

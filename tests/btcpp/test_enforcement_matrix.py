@@ -30,6 +30,8 @@ CLAUSES = {
     "needs": ("needs battery > 15 %", "needs low"),
     "keeps": ("keeps battery > 15 %",),
     "never": ("never low and door",),
+    "keeps of time": ("keeps battery > 15 % in at least 95 % of time",),
+    "never of time": ("never low in at least 95 % of time",),
     "leaves": ("leaves battery > 3 %",),
     "uses": ("uses at most 20 % of battery", "uses at least 1 % of battery", "uses at most 3 of load"),
     "tries": ("tries at most 3", "tries at most 3 per Top", "tries at least 2"),

@@ -9,7 +9,7 @@ import pytest
 
 from btq_lang.catalog.language import PHRASES, Phrase, beginning, phrase_at, phrases_of
 from btq_lang.grammar.claims import HAPPENINGS, VERB_WORDS
-from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS
+from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS, TIME
 from btq_lang.grammar.conditions import FUNCTIONS, HEADS
 from btq_lang.grammar.item_words import ITEM_WORDS
 from btq_lang.parser import parse
@@ -30,13 +30,13 @@ def words_of(*parts: str) -> set[str]:
 
 
 def test_no_word_of_the_grammar_is_left_out() -> None:
-    assert words_of("claim") - {"every"} == VERB_WORDS
+    assert words_of("claim") - {"every", "of", "time"} == VERB_WORDS
     assert words_of("event") - {"when"} == HAPPENINGS
     assert words_of("action") == set(ACTIONS)
     assert words_of("method") == set(METHODS)
     assert words_of("item") == set(ITEM_WORDS)
     assert words_of("clause of a node") - {"parameters"} == set(NODE_CLAUSES)
-    assert words_of() >= HEADS | FUNCTIONS | EXPERIMENTS
+    assert words_of() >= HEADS | FUNCTIONS | EXPERIMENTS | {TIME}
 
 
 @pytest.mark.parametrize("phrase", PHRASES, ids=lambda phrase: f"{phrase.words}, {phrase.part}")

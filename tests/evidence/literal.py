@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from literal_log import both, micros
-from literal_over_runs import OverRuns, all_of
+from literal_over_runs import OF_RUNS, OverRuns, all_of
 from literal_verbs import OPEN, OUT, Judged, counted
 
 from btq_lang.evidence.model import ROOT
@@ -56,7 +56,7 @@ class World(OverRuns):
             if isinstance(applied.subject, MissionRun) and claim.verb == "succeeds":
                 found += self.mission_succeeds(uid, claim, requirement)  # of a run whose start was refused, too
                 continue
-            if claim.verb in ("tries", "runs", "follows"):
+            if claim.verb in OF_RUNS:
                 found += self.over_runs(uid, claim, requirement)
             elif claim.verb not in ("starts", "ends"):
                 found += self.of_activations(uid, claim, requirement, part)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from literal_log import both, just_after, micros
+from literal_log import both, just_after, micros, negated
 from literal_runs import Activation
 from literal_verbs import OPEN, OUT, Judged, OfActivations, counted
 
@@ -86,8 +86,8 @@ class OverRuns(OfActivations):
     """A session, and what each run of it comes to."""
 
     def over_runs(self, uid: int, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Judged]:
-        """tries, runs, follows at one instance of a node."""
-        judge = {"tries": self.tries, "runs": self.rate, "follows": self.follows}[claim.verb]
+        """tries, runs, follows, keeps and never of time at one instance of a node."""
+        judge = getattr(self, OF_RUNS[claim.verb])
         found = []
         for run in self.runs:
             own = [each for each in self.of(uid) if each.run == run.run]
@@ -198,6 +198,40 @@ class OverRuns(OfActivations):
         is_above = self.within(max(numbers), claim.limit, stretch)[0] is False
         worst = numbers.index(max(numbers) if is_above else min(numbers))
         return [(False, inside[worst] + length)]
+
+    def share(
+        self,
+        uid: int,
+        own: Sequence[Activation],
+        run: Activation,
+        claim: ResolvedClaim,
+        requirement: ResolvedRequirement,
+    ) -> list[Decided]:
+        """keeps φ in at least p of time: each piece of the time counts, may count, or does not."""
+        pieces: list[tuple[int, Truth, Truth]] = []
+        for a in own:
+            early = replace(a, start=a.earliest)
+            when = self.holds_all("when", requirement, a.start, a)
+            for moment, following in pairwise(sorted({*self.moments(early), a.latest, a.stop})):
+                seen = a if moment >= a.start else early
+                now = self.holds_all("while", requirement, moment, seen)
+                counts = both(when, now, moment >= a.latest or None, a.is_exact or None)
+                holds = negated(self.holds(claim.condition, moment, seen), claim.verb == "never of time")
+                if counts is not False and following[0] > moment[0]:
+                    pieces.append((following[0] - moment[0], counts, holds))
+        if not pieces:
+            return [(OUT, run.end)]
+        if run.outcome == "O":
+            return [(OPEN, run.end)]
+        if not any(counts for _, counts, _ in pieces):
+            return [(None, run.end)]
+        shares = []
+        for doubt in (False, True):  # what is in doubt is against the clause, or for it
+            supposed = [(time, counts, doubt if holds is None else holds) for time, counts, holds in pieces]
+            counted_ones = [(time, holds) for time, counts, holds in supposed if counts or holds is doubt]
+            shares.append(sum(time for time, holds in counted_ones if holds) / sum(time for time, _ in counted_ones))
+        verdicts = {both(*self.within(share, claim.limit, run)) for share in shares}
+        return [(verdicts.pop() if len(verdicts) == 1 else None, run.end)]
 
     def reactions(self, uid: int, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Spent]:
         """starts within d after ev, ends within d after ev: the next start, or end, after each event."""
@@ -334,6 +368,14 @@ class OverRuns(OfActivations):
             for each in of
             if each.outcome in outcomes
         ]
+
+
+OF_RUNS = {
+    "tries": "tries",
+    "runs": "rate",
+    "follows": "follows",
+    **dict.fromkeys(("keeps of time", "never of time"), "share"),
+}
 
 
 def between(run: Activation, uid: int, start: Moment, stop: Moment) -> Activation:

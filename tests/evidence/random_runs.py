@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import itertools
 import random
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -228,7 +229,20 @@ def requirement(chance: random.Random, name: str, labels: list[str]) -> str:
             lines.append(f"over last {chance.choice(['5 activations', '2 runs', '4 s'])}")
     elif chance.random() < 0.4:
         lines.append(f"on violation {chance.choice(['fail', 'fail', 'halt'])}")
-    return "\n    ".join([head, *lines]) + apply
+    return "\n    ".join([head, *of_more(lines)]) + apply
+
+
+def of_more(lines: list[str]) -> list[str]:
+    """Some of the clauses demand a share of the time; drawn apart, so that the other cases stay the same."""
+    chance = random.Random("\n".join(lines))
+    claims = [line for line in lines if line.split()[0] not in _HEADS]
+    if all(re.search(" (keeps|never) ", line) for line in claims) and chance.random() < 0.4:
+        share = f"{chance.choice([20, 50, 75, 90])} % of time"
+        lines.insert(len(claims), chance.choice([f"in at least {share}", f"with probability > {share}"]))
+    return lines
+
+
+_HEADS = ("while", "when", "in", "with", "confidence", "over", "on")
 
 
 def claim(chance: random.Random, labels: list[str]) -> str:

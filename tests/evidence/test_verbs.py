@@ -591,9 +591,9 @@ def test_the_example_of_a_verb_is_a_clause_with_it(word: str) -> None:
     parsed = parse(f"QualityReq a\n    {VERBS[word].example}\n")
     assert [each.message for each in parsed.diagnostics] == []
     (requirement,) = (entry.item for entry in parsed.entries if isinstance(entry.item, RequirementItem))
-    (clause,) = requirement.clauses
+    clause, *_ = requirement.clauses
     assert isinstance(clause, Claim)
-    assert clause.verb.raw == word
+    assert clause.verb.raw == word.split()[0]
 
 
 TOO_SHORT = "the run ended before the time was over"
@@ -609,6 +609,7 @@ def test_every_verb_is_judged(word: str, verify: Verify) -> None:
     example = re.sub("Batch|PickTray|SlotFree", "Pick", VERBS[word].example)
     found = verify.clause(f"Move {example}", LONG, samples("battery", {-1: 50}), before=SIGNALS)
     lacks = {"needs": "no samples of `rear_is_clear`", "never": "no samples of `lamp_on`"}
+    lacks["never of time"] = "no samples of `humans_near`"
     lacks["uses"] = "no samples of `energy`"
     nothing = (
         "it was not running when Pick succeeds (1 time)"

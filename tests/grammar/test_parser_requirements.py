@@ -357,6 +357,8 @@ def test_a_misspelt_clause(clause: str, word: str, likely: str) -> None:
         ("in at least 98% of runs", "odds >= 98% of runs"),
         ("with probability >= 98 %", "odds >= 98%"),
         ("with probability > 98 % of runs", "odds > 98% of runs"),
+        ("in at least 98 % of time", "odds >= 98% of time"),
+        ("with probability > 98 % of time", "odds > 98% of time"),
         ("confidence 95 %", "confidence 95%"),
         ("over last 200 activations", "over last 200 activations"),
         ("over last 7 runs", "over last 7 runs"),
@@ -397,7 +399,7 @@ def test_clause(clause: str, shown: str) -> None:
         (
             "in at least 98 % of times",
             "odds >= 98%",
-            "1:21 syntax-error «times» expected activations or runs, found `times`",
+            "1:21 syntax-error «times» expected activations, runs or time, found `times`",
         ),
         (
             "with probability 98 %",

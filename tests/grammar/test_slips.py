@@ -414,6 +414,15 @@ CLAUSES: Final[list[tuple[str, tuple[str, ...], str]]] = [
         for clause in ("success rate >= 95 %", "succeeds 95 % of the time", "succeeds at least 95 %")
     ),
     *(
+        (clause, ("in at least 95 % of time",), "")
+        for clause in ("at least 95 % of the time", "for 95 % of its time", "during at least 95 % of time")
+    ),
+    (
+        "availability >= 98 %",
+        ("keeps <signal> in at least 98 % of time", "succeeds in at least 98 % of runs"),
+        "the first is a share of the time, of a signal that is true while it is available",
+    ),
+    *(
         (clause, ("over last 200 activations",), "")
         for clause in (
             *("window 200 activations", "window of 200 activations", "over 200 activations", "last 200 activations"),
