@@ -464,9 +464,9 @@ def _(clause: Claim) -> str:
         parts.append(show_condition(clause.condition))
     if clause.resource or verb == "uses":
         parts.append(f"of {show(clause.resource)}")
-    if clause.per or (verb == "runs" and not clause.every):
+    if clause.per or clause.counts or (verb == "runs" and not clause.every):
         parts.append(f"per {show_path(clause.per) if isinstance(clause.per, Path) else show(clause.per)}")
-    if clause.event or verb in ("starts", "ends", "follows"):
+    if clause.event or (verb in ("starts", "ends", "follows") and not clause.counts):
         parts += ["after" if verb != "follows" else "", show_event(clause.event)]
     return words(*parts)
 

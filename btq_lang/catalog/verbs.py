@@ -85,6 +85,11 @@ _START: Final = "at its start"
 _MEANWHILE: Final = "while it runs"
 _END: Final = "at its end"
 _RUN: Final = "over the run"
+_PERIOD: Final = "a run, or, with the name of another node after `per`, in one of its activations"
+_LEAST: Final = ("at least", 12, "less")
+_MOST: Final = ("at most", 3, "more")
+_CHECK: Final[Enforced] = "check"
+_REFUSAL: Final[Enforced] = "refusal"
 _NO_FORM: Final = (("", None),)  # it begins as the clauses of another verb
 _NOTHING_STARTS_NODES: Final = "BehaviorTree.CPP has no node that makes another one start in time"
 
@@ -237,6 +242,29 @@ VERBS: Final = {
             forms=(("tries at most", "tries at most ${0:3}"),),
             enforced="refusal",
         ),
+        *(
+            Verb(
+                word=f"{word} per",
+                operand="count",
+                measures=f"how often it {word}",
+                judged=_RUN,
+                said=f"{past} {{}}",
+                phrases=tuple(
+                    (f"{word} {bound}", f"{word} {bound} {number} per run", what, f"{event} {how} often in {_PERIOD}")
+                    for bound, number, how in bounds
+                ),
+                forms=tuple(
+                    (f"{word} {bound}", f"{word} {bound} ${{1:{number}}} per ${{0:run}}") for bound, number, _ in bounds
+                ),
+                enforced=enforced,
+            )
+            for word, past, what, event, enforced, bounds in (
+                ("succeeds", "succeeded", "successes", "the node succeeds", _CHECK, (_LEAST, _MOST)),
+                ("starts", "started", "starts", "the node starts", _REFUSAL, (_LEAST, _MOST)),
+                ("fails", "failed", "failures", "the node fails", _CHECK, (_MOST,)),
+                ("finishes", "finished", "results", "the node succeeds or fails", _CHECK, (_LEAST, _MOST)),
+            )
+        ),
         Verb(
             word="runs",
             operand="rate",
@@ -290,9 +318,11 @@ VERBS: Final = {
         ),
     )
 }
+COUNTING: Final = frozenset([verb.partition(" ")[0] for verb in words(operands=("count",)) if verb.endswith(" per")])
 _UNITS: Final[dict[str, str | None]] = {
     **dict.fromkeys((*words(operands=("duration",)), "within", "every", "per"), "s"),
     **dict.fromkeys(("in", "probability", "confidence"), "%"),
     **dict.fromkeys(words(operands=("condition", "use", "count", "rate"))),
+    **dict.fromkeys(COUNTING),
     **dict.fromkeys(("while", "when", "if", "context", "over", "goal", "initially")),
 }

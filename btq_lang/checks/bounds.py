@@ -28,7 +28,7 @@ from btq_lang.util.text import Span
 def impossible_bound(view: View) -> Iterator[Diagnostic]:
     """A fractional number of attempts, a negative time, and a claim that every run answers alike."""
     for requirement, claim in _claims(view):
-        bound, verb = claim.bound, claim.verb.raw
+        bound, verb = claim.bound, claim.row
         operand = VERBS[verb].operand
         is_count = operand in _COUNTED
         if (diagnostic := same_in_every_run(view, claim)) is not None:
@@ -95,12 +95,12 @@ def _value(amount: syntax.Amount) -> tuple[float, str]:
 def _count(
     requirement: syntax.Requirement, claim: syntax.Claim, amount: syntax.Amount, number: float, is_lower: bool
 ) -> Iterator[Diagnostic]:
-    what = "attempts" if VERBS[claim.verb.raw].operand == "count" else "starts"
+    what, is_rate = _NAMES.get(claim.row, "starts"), claim.row == "runs"
     has_scope = any(isinstance(clause, syntax.ScopeClause) for clause in requirement.clauses)
     notes: tuple[str, ...] = ()
     if number < 0 or number != int(number):
         message = f"expected a whole number of {what}, found `{_shown(amount)}`"
-        if isinstance(claim.per, syntax.Word) and number > 0:
+        if is_rate and number > 0:
             notes = ("write a whole number and a longer time: `runs at least 1 per 2 s`",)
     elif what == "attempts" and not is_lower and number < 1 and not has_scope:
         message = "a node that starts makes at least one attempt, so only a node that never starts keeps this bound"
@@ -109,7 +109,7 @@ def _count(
         return
     fixes: tuple[Fix, ...] = ()
     whole = max(1, ceil(number) if is_lower else floor(number))
-    if amount.word.kind == NUMBER and not amount.negative and not isinstance(claim.per, syntax.Word):
+    if amount.word.kind == NUMBER and not amount.negative and not is_rate:
         fixes = (write_fix(str(whole), amount.word.span),)
     yield Diagnostic("impossible-bound", amount.word.span, message, notes=notes, fixes=fixes)
 
@@ -144,7 +144,7 @@ def same_in_every_run(view: View, claim: syntax.Claim) -> Diagnostic | None:
 def _of_subject(view: View, claim: syntax.Claim) -> tuple[str, str] | None:
     """The message and the note for a claim about how often, or after what, a mission starts."""
     verb, event = claim.verb.raw, claim.event
-    if not (verb in _STARTS and _is_mission(view, claim.subject)):
+    if not (claim.row in _STARTS and _is_mission(view, claim.subject)):
         return None
     if event is None:
         message = f"a mission starts only once in a run, so `{verb}` does not apply to it"
@@ -213,6 +213,10 @@ def _path_text(path: syntax.Path) -> str:
 
 
 _COUNTED: Final = ("count", "rate")
+_NAMES: Final = {
+    **{"tries": "attempts", "starts per": "attempts"},
+    **{"succeeds per": "successes", "fails per": "failures", "finishes per": "results"},
+}
 _TIMED: Final = ("duration", "deadline", "rate", "reaction")
 # Verbs about when, and how often, a node starts.
 _STARTS: Final = words(operands=("count", "rate", "event")) | {"starts"}

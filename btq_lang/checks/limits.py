@@ -133,7 +133,7 @@ def goal_beyond_bound(view: View, requirement: ResolvedRequirement) -> Iterator[
 def attempts_mismatch(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
     """`tries at most` and the number of attempts of Retry and Repeat do not match."""
     for _, claim, node, place in demanded.claims:
-        most = claim.highest if VERBS[claim.verb].operand == "count" else None
+        most = claim.highest if claim.verb in ("tries", "starts per") else None
         loops = _loops(node, claim.per.node) if most is not None and isinstance(claim.per, NodeTarget) else []
         if most is None or not loops:
             continue

@@ -275,7 +275,7 @@ class _Reader:
             default = f" = {self._text(parameter.default)}" if parameter.default is not None else ""
             values[f"parameter {parameter.name.text}"] = AspectValue(_meaning(parameter), text + default)
         for clause in requirement.clauses:
-            aspect = clause.verb.text if isinstance(clause, syntax.Claim) else _ASPECTS[type(clause)]
+            aspect = clause.row if isinstance(clause, syntax.Claim) else _ASPECTS[type(clause)]
             if isinstance(clause, syntax.Odds) and clause.is_of_time:
                 aspect = "share of time"
             number = 2

@@ -9,10 +9,11 @@ import re
 from typing import Final
 
 from btq_lang.catalog.units import dimension_name, parse_unit
-from btq_lang.catalog.verbs import VERBS, words
+from btq_lang.catalog.verbs import COUNTING, VERBS, words
 from btq_lang.diagnostics.model import Fix, replace_fix, write_fix
 from btq_lang.grammar.clause_slips import clause_slip
 from btq_lang.grammar.conditions import (
+    BOUNDS,
     COMPARISONS,
     HEADS,
     RELATIONS,
@@ -46,7 +47,8 @@ from btq_lang.syntax.tree import (
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 
-VERB_WORDS: Final = frozenset(verb.partition(" ")[0] for verb in VERBS)
+_BEFORE_BOUNDS: Final = frozenset(("fails", "finishes"))  # verbs there alone: elsewhere events, or names
+VERB_WORDS: Final = frozenset(verb.partition(" ")[0] for verb in VERBS) - _BEFORE_BOUNDS
 HAPPENINGS: Final = frozenset(("starts", "succeeds", "fails", "finishes", "halts"))
 MAX_CASES: Final = 100  # in one value: each case of a table may be another table
 
@@ -55,9 +57,9 @@ def parse_claim(cursor: Cursor) -> Claim | None:
     """Claim = [ Subject ] Verb"""
     start = cursor.start()
     subject: Subject | None = None
-    if not (cursor.kind == NAME and cursor.raw in VERB_WORDS):
+    if not at_verb(cursor):
         subject = parse_subject(cursor)
-    if not (cursor.kind == NAME and cursor.raw in VERB_WORDS) and not blank_in_path(cursor, subject, VERB_WORDS):
+    if not at_verb(cursor) and not blank_in_path(cursor, subject, VERB_WORDS):
         if subject is not None:
             no_verb(cursor, subject)
         return None
@@ -76,7 +78,8 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
     per: Path | Word | None = None
     event: Event | None = None
     every = False
-    operand = VERBS[verb.raw].operand
+    counts = verb.raw in COUNTING and bound_follows(cursor, cursor.index)
+    operand = VERBS[verb.raw].operand if not counts else "count"
     if operand == "duration":
         bound = parse_bound(cursor)
     elif operand == "deadline":
@@ -96,7 +99,7 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
         resource = cursor.plain_name("a signal") if cursor.expect_word("of", forgotten=cursor.kind == NAME) else None
     elif operand == "count":
         bound = parse_bound(cursor)
-        per = parse_path(cursor, "a node") if cursor.accept_word("per") else None
+        per = parse_period(cursor, is_optional=not counts)
     elif operand == "rate":
         if cursor.accept_word("every"):
             every = True
@@ -114,7 +117,20 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
     else:
         bound = parse_within(cursor) if cursor.expect_word("within") else None
         event = parse_event(cursor) if cursor.expect_word("after", ("of", "from", "since")) else None
-    return Claim(start, cursor.last_end(), subject, verb, bound, condition, resource, per, event, every)
+    return Claim(start, cursor.last_end(), subject, verb, bound, condition, resource, per, event, every, counts)
+
+
+def parse_period(cursor: Cursor, is_optional: bool) -> Path | Word | None:
+    """ "per" ( "run" | Path ), of counts"""
+    if cursor.accept_word("per"):
+        return cursor.take() if cursor.at_word("run") else parse_path(cursor, "`run`, or a node")
+    if not is_optional and report_slip(cursor):
+        cursor.recover()
+    elif not is_optional:
+        note = "the number is that of each run, or of each activation of a node"
+        fix = write_fix(" per run", Span(cursor.last_end(), cursor.last_end()).shifted(cursor.base))
+        cursor.expected("`per`, and `run` or a node", (note,), (fix,) if cursor.kind == NEWLINE else ())
+    return None
 
 
 def parse_subject(cursor: Cursor) -> Subject | None:
@@ -234,6 +250,21 @@ def parse_simple(cursor: Cursor, strings: bool = False) -> Amount | None:
 
 
 # ---- what productions ask and report ----
+
+
+def at_verb(cursor: Cursor) -> bool:
+    """Whether the current word is a verb, as `fails` is before a bound alone."""
+    if cursor.kind != NAME:
+        return False
+    return cursor.raw in VERB_WORDS or (cursor.raw in _BEFORE_BOUNDS and bound_follows(cursor, cursor.index + 1))
+
+
+def bound_follows(cursor: Cursor, index: int) -> bool:
+    """Whether a bound begins at a token; `within` begins none of a count."""
+    first = cursor.raws[index]
+    if first == "between" or (first, *cursor.raws[index + 1 : index + 2]) in RELATIONS:
+        return True
+    return first != "within" and any(tuple(cursor.raws[index : index + length]) in BOUNDS for length in (1, 2, 3, 4, 5))
 
 
 def report_slip(cursor: Cursor) -> bool:
@@ -504,7 +535,7 @@ QUALITY_IN_HEAD: Final = "a requirement's quality goes after its name: `QualityR
 NO_VERBS: Final = {  # what else people write before or as a verb
     **dict.fromkeys(MODALS, "a clause begins with its verb, without such a word: `takes at most 30 s`"),
     **dict.fromkeys(("finishes", "ends", "completes"), "write `succeeds within 30 s`, or `takes at most 30 s`"),
-    "fails": "`tries at most 3` limits the attempts, `succeeds` demands that the node does not fail",
+    "fails": "`fails at most 3 per run` limits the failures, `succeeds` demands that the node does not fail",
     **dict.fromkeys(("stays", "remains", "is"), "what holds while a node runs is written `keeps battery >= 15 %`"),
 }
 MEANT: Final = {  # by the word that is read as a node before a verb

@@ -133,6 +133,8 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
     ("(?:the )?(?:update |tick |control )?(?:frequency|rate) *BOUNDNUMBER *Hz", ("runs {bound} {number} per 1 s",), ""),
     ("(?:the )?(?:period|cycle) *BOUNDTIME", ("runs every {time}",), ""),
     (r"(?:attempts|retries) *BOUND(?P<number>\d+)", ("tries {bound} {number}",), ""),
+    (r"(?:the )?(?:number of )?failures *BOUND(?P<number>\d+)", ("fails {bound} {number} per run",), ""),
+    (r"(?:the )?(?:number of )?successes *BOUND(?P<number>\d+)", ("succeeds {bound} {number} per run",), ""),
     # how probably
     ("(?:for |during )?(?:at least )?SHARE of (?:the |its |that )?time", ("in at least {share} of time",), ""),
     (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btq_lang.catalog.verbs import VERBS
+from btq_lang.catalog.verbs import COUNTING, VERBS
 from btq_lang.catalog.verbs import words as words_of
 from btq_lang.grammar.claims import HAPPENINGS
 from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS, TIME
@@ -83,10 +83,12 @@ def opens_condition(words: Sequence[Token]) -> bool:
 
 def is_count(words: Sequence[str]) -> bool:
     """Whether a number at the end of these words is a count: `tries at most 3`, `runs at least 9`."""
-    head = _begins_last(words, _CLAUSES)
-    if head not in _COUNTED:
+    head = _begins_last(words, (*_CLAUSES, *COUNTING))
+    if head not in _COUNTED | COUNTING:
         return False
     following = words[last_index(words, head) + 1 :]
+    if head in COUNTING and "within" in following:
+        return False
     return not {"per", "every"} & set(following) and _begins_last(following, ("if", "else", ",")) != "if"
 
 
@@ -175,7 +177,7 @@ _EVENT = Expected(("mission", "when"), node=True)
 _OPERANDS = {
     **dict.fromkeys(("duration", "use", "count"), Expected(_BOUNDS)),
     "rate": Expected(("every", *_BOUNDS)),
-    "deadline": Expected(("within",), clause=True),
+    "deadline": Expected(("within", *_BOUNDS), clause=True),
     "reaction": Expected(("within",)),
     "condition": _CONDITION,
     "event": _EVENT,
@@ -184,6 +186,7 @@ _OPERANDS = {
 _OF_MISSIONS = [verb.word for verb in VERBS.values() if verb.judged in ("at its end", "while it runs")]
 _AFTER = {
     **{verb.word: _OPERANDS[verb.operand] for verb in VERBS.values()},
+    "starts": Expected(("within", *_BOUNDS)),
     **dict.fromkeys(("within", "goal", "most", "least", "than", "between", "else"), _VALUE),
     "at": Expected(("most", "least")),
     "less": Expected(("than",)),
@@ -200,7 +203,7 @@ _AFTER = {
     "sum": Expected(("of",)),
     **dict.fromkeys(("after", "from", "to"), _EVENT),
     "mission": Expected((*_OF_MISSIONS, *_HAPPENINGS)),
-    "per": Expected(node=True),
+    "per": Expected(("run",), node=True),
     "every": Expected(value=True, node=True),
     "node": Expected(node=True),
     "confidence": Expected(("95 %", "99 %")),

@@ -92,7 +92,7 @@ def claim_of(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | Non
 
 def _verb(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | None:
     place = reader.place(Span(written.start, written.end))
-    claim = model.ResolvedClaim(written.verb.raw, reader.text(written.start, written.end), place)
+    claim = model.ResolvedClaim(written.row, reader.text(written.start, written.end), place)
     operand = VERBS[claim.verb].operand
     if operand == "condition":
         condition = reader.condition(written.condition)
@@ -113,8 +113,10 @@ def _verb(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | None:
     if operand == "reaction":
         event = _event(reader, written.event)
         return replace(claim, event=event) if event is not None else None
+    if operand == "count" and isinstance(written.per, syntax.Word):  # `run`
+        return claim
     per = _per(reader, written.per)
-    if per is None and (written.per is not None or (operand == "rate" and not written.every)):
+    if per is None and (written.per is not None or written.counts or (operand == "rate" and not written.every)):
         return None
     return claim if per is None else replace(claim, per=per)
 
@@ -152,7 +154,7 @@ def _limit(reader: Reader, written: syntax.Bound | None, wanted: Wanted) -> mode
 def _per(reader: Reader, written: syntax.Path | syntax.Word | None) -> model.NodeTarget | model.Quantity | None:
     if isinstance(written, syntax.Path):
         is_run = written.names[-1].text.lower() in _RUN
-        return reader.target(written, ("without `per` it counts per run",) if is_run else ())
+        return reader.target(written, ("write `per run`",) if is_run else ())
     return reader.quantity(written, DURATION) if written is not None else None
 
 

@@ -284,7 +284,7 @@ class ResolvedClaim(Record):
             of time.
         condition: of needs, keeps, never, leaves.
         signal: of uses.
-        per: of tries a node, of runs a duration.
+        per: of tries and counts a node (None: the run), of runs a duration.
         event: of starts, ends, follows.
         every: `runs every d`.
         text: the clause as typed, blanks folded; with its share of time.

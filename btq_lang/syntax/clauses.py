@@ -116,9 +116,10 @@ class Claim(Part):
         bound: of takes, uses, tries, runs; for `within d` and `runs every d`, `<= d`.
         condition: of needs, keeps, never, leaves.
         resource: of uses: the signal.
-        per: of tries: the path; of runs: the quantity.
+        per: of tries and counts: the path, or the word `run`; of runs: the quantity.
         event: of starts, ends, follows.
         every: `runs every d`.
+        counts: `succeeds at least 12 per run`.
     """
 
     subject: Subject | None
@@ -129,6 +130,12 @@ class Claim(Part):
     per: Path | Word | None = None
     event: Event | None = None
     every: bool = False
+    counts: bool = False
+
+    @property
+    def row(self) -> str:
+        """The verb's row in `catalog.verbs`: of `succeeds at least 12 per run` the one of `succeeds per`."""
+        return f"{self.verb.raw} per" if self.counts else self.verb.raw
 
 
 class ScopeClause(Part):

@@ -103,20 +103,31 @@ class OverRuns(OfActivations):
         claim: ResolvedClaim,
         requirement: ResolvedRequirement,
     ) -> list[Decided]:
-        """How many starts that count lie in each activation of the other node, or in the run."""
+        """How many starts, or results of a kind, lie in each activation of the other node, or in the run."""
         assert not isinstance(claim.per, Quantity)
         around = [ROOT] if claim.per is None else self.nearest(uid, self.uids(claim.per))
         refused = [
             check
             for verb, guard, check in self.refusals(uid)
-            if verb == "tries" and self.guards[guard.uid] == requirement.name and check.run == run.run
+            if verb == claim.verb and self.guards[guard.uid] == requirement.name and check.run == run.run
         ]
         found: list[Decided] = []
         for p in (each for other in around for each in self.of(other) if each.run == run.run):
-            inside = [(x, self.counts(x, requirement)) for x in own if p.shown <= x.shown <= p.stop]
+            counted_outcomes = COUNTED.get(claim.verb, "SFHO")
+            moments = {id(x): x.stop if claim.verb in COUNTED else x.shown for x in own}
+            of_kind = [x for x in own if x.outcome in counted_outcomes]
+            inside = [(x, self.counts(x, requirement)) for x in of_kind if p.shown <= moments[id(x)] <= p.stop]
+            meanwhile = [self.counts(x, requirement) for x in own if x.shown <= p.stop and p.shown <= x.stop]
             sure = [x for x, counts in inside if counts]
             numbers = {len(sure), sum(counts is not False for _, counts in inside)}
             verdicts = {self.tried(p, number, claim) for number in numbers}
+            if claim.verb in COUNTED and claim.limit is not None and claim.limit.relation in ("<", "<="):
+                # that it did not come to such a result counts where it was active
+                at_none = self.within(0, claim.limit, p)[0]
+                none: list[Verdict] = [OPEN if at_none and p.outcome == "O" else at_none]
+                verdicts = {each for number in numbers for each in ([self.tried(p, number, claim)] if number else none)}
+                if True not in meanwhile:
+                    verdicts = {OUT} if not any(each is None for each in meanwhile) else {*verdicts, OUT}
             verdict = verdicts.pop() if len(verdicts) == 1 else None
             one_more = [each for each in refused if p.first <= each.first <= p.last]
             if one_more:
@@ -370,7 +381,9 @@ class OverRuns(OfActivations):
         ]
 
 
+COUNTED = {"succeeds per": "S", "fails per": "F", "finishes per": "SF"}
 OF_RUNS = {
+    **dict.fromkeys((*COUNTED, "starts per"), "tries"),
     "tries": "tries",
     "runs": "rate",
     "follows": "follows",

@@ -91,7 +91,11 @@ class OfActivations(Log):
             Judged(check.run, uid, False, check.end, check.end, True)
             for verb, guard, check in self.refusals(uid)
             if claim.verb == "succeeds"
-            or (claim.verb == verb != "tries" and self.guards[guard.uid] == requirement.name)
+            or (
+                claim.verb == verb
+                and verb not in ("tries", "starts per")
+                and self.guards[guard.uid] == requirement.name
+            )
         ]
 
     def refusals(self, uid: int) -> list[tuple[str, Activation, Activation]]:
@@ -115,7 +119,7 @@ class OfActivations(Log):
                 if not guards or guards[-1].last < check.first:  # the log is cut off before the only row of the guard
                     guards.append(replace(check, uid=above, first=guards[-1].last + 1 if guards else 0))
                 word = self.tree.nodes[above].path.rpartition("_")[2]
-                found.append(("uses" if word == "used" else word, guards[-1], check))
+                found.append(({"used": "uses", "starts": "starts per"}.get(word, word), guards[-1], check))
         return found
 
     def held(self, uid: int, guard: Activation, check: Activation) -> list[Activation]:

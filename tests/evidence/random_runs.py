@@ -233,8 +233,14 @@ def requirement(chance: random.Random, name: str, labels: list[str]) -> str:
 
 
 def of_more(lines: list[str]) -> list[str]:
-    """Some of the clauses demand a share of the time; drawn apart, so that the other cases stay the same."""
+    """Some of the clauses demand a share of the time, or count results; drawn apart, so that the other cases stay the
+    same.
+    """
     chance = random.Random("\n".join(lines))
+    for index, line in enumerate(lines):
+        if " tries " in line and chance.random() < 0.6:
+            verb = chance.choice(["succeeds", "starts", "fails", "finishes"])
+            lines[index] = line.replace(" tries ", f" {verb} ") + ("" if " per " in line else " per run")
     claims = [line for line in lines if line.split()[0] not in _HEADS]
     if all(re.search(" (keeps|never) ", line) for line in claims) and chance.random() < 0.4:
         share = f"{chance.choice([20, 50, 75, 90])} % of time"

@@ -99,6 +99,20 @@ LINES: list[tuple[str, str, str, str]] = [  # verb, demand, runs, line
         "0 1R 2R 3R 10 3F 2F 20 2R 3R 30 3F 2F 1F",
         "Task: started 2 times, bound 1; 2 failed; Move::3 failed in 2 of its 2 starts",
     ),
+    ("succeeds per", "Move succeeds at least 2 per run", TWICE, "Move::3: succeeded 1 time, bound 2; 1 succeeded"),
+    (
+        "starts per",
+        "Move starts at most 1 per run",
+        TWICE,
+        "Move::3: started 2 times, bound 1; 1 failed, 1 succeeded",
+    ),
+    ("fails per", "Move fails at most 0 per run", TWICE, "Move::3: failed 1 time, bound 0; 1 failed"),
+    (
+        "finishes per",
+        "Move finishes at most 1 per Task",
+        TWICE,
+        "Move::3: finished 2 times, bound 1; 1 failed, 1 succeeded",
+    ),
     (
         "tries",
         "Move tries at most 1",

@@ -6,6 +6,7 @@ import importlib
 import pkgutil
 import random
 import re
+from itertools import pairwise
 from pathlib import Path
 from typing import TypeAlias
 
@@ -90,6 +91,8 @@ def sentence(chance: random.Random) -> str:
     """A random file."""
     words: list[str] = []
     _derive(("name", "File"), chance, words, 0)
+    for index in [at for at, pair in enumerate(pairwise(words)) if pair[0] in TOKENS["QUANTITY"] and pair[1] == "("]:
+        words[index] = TOKENS["NUMBER"][0]  # a word before a bracket is no unit
     lines, line, level = [], "", 0
     for word in words:
         if word in ("INDENT", "DEDENT"):

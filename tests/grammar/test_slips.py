@@ -409,6 +409,8 @@ CLAUSES: Final[list[tuple[str, tuple[str, ...], str]]] = [
     ("update rate > 10 Hz", ("runs more than 10 per 1 s",), ""),
     ("period <= 100 ms", ("runs every 100 ms",), ""),
     ("retries at most 3", ("tries at most 3",), ""),
+    ("failures <= 2", ("fails at most 2 per run",), ""),
+    ("number of successes at least 12", ("succeeds at least 12 per run",), ""),
     *(
         (clause, ("succeeds in at least 95 % of activations", "succeeds in at least 95 % of runs"), "")
         for clause in ("success rate >= 95 %", "succeeds 95 % of the time", "succeeds at least 95 %")

@@ -207,6 +207,9 @@ def test_all_that_may_stand_here(line: str, labels: tuple[str, ...]) -> None:
         (f"{TIMES}    takes at most 3 s if far > 3 $0", ("km", "m", "s", "%"), ()),
         (f"{TIMES}    takes at most 3 s if far > 3 m else 3 $0", ("s", "ms", "min"), ("km", "m", "%")),
         ('QualityReq a "t"\n    tries at most 3 $0', ("per", "if", "takes at most"), ("m", "s", "%")),
+        ('QualityReq a "t"\n    fails at most 3 $0', ("per", "if"), ("m", "s", "%")),
+        ('QualityReq a "t"\n    succeeds at least 12 per $0', ("run", "Main"), ("m", "s", "%")),
+        ('QualityReq a "t"\n    succeeds within 12 $0', ("s", "min"), ("per",)),
         ('QualityReq a "t"\n    runs between 3 and 9 $0', ("per", "if"), ("m", "s", "%")),
         ('QualityReq a "t"\n    tries at most 3 if low else 5 $0', ("per",), ("m", "s", "%")),
         ('QualityReq a "t"\n    tries at most 3 if battery < 5 $0', ("%", "m", "s"), ()),
@@ -428,7 +431,7 @@ def test_the_list_that_opens_by_itself(line: str, trigger: str, labels: tuple[st
         ("BehaviorTree X\n    Retr$0", ("Retry …", "Retry", "retry", "RetryUntilSuccessful")),
         ("BehaviorTree X\n    Retry$0", ("Retry", "retry", "RetryUntilSuccessful")),
         ("BehaviorTree X\n    Timeout$0", ("Timeout", "timeout")),
-        (f"{SOON}succeeds$0", ("succeeds", "succeeds within")),
+        (f"{SOON}succeeds$0", ("succeeds", "succeeds within", "succeeds at least", "succeeds at most")),
         ("BehaviorTree X\n    Pick satisfices perf$0", PERFORMANCE := (
             "performance", "performance-efficiency", "performance-efficiency.time-behaviour",
             "performance-efficiency.resource-utilization", "performance-efficiency.capacity",
