@@ -466,6 +466,8 @@ def _(clause: Claim) -> str:
         parts.append(f"of {show(clause.resource)}")
     if clause.per or clause.counts or (verb == "runs" and not clause.every):
         parts.append(f"per {show_path(clause.per) if isinstance(clause.per, Path) else show(clause.per)}")
+    if clause.of is not None:
+        parts.append(f"of {show_path(clause.of)}")
     if clause.event or (verb in ("starts", "ends", "follows") and not clause.counts):
         parts += ["after" if verb != "follows" else "", show_event(clause.event)]
     return words(*parts)

@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
-    Operand: TypeAlias = Literal["duration", "deadline", "condition", "use", "count", "rate", "reaction", "event"]
+    Operand: TypeAlias = Literal[
+        "duration", "deadline", "condition", "use", "count", "rate", "failures", "reaction", "event"
+    ]
     Judged: TypeAlias = Literal["at its start", "while it runs", "at its end", "over the run"]
     Limits: TypeAlias = Literal["", "completion", "success"]
     Enforced: TypeAlias = Literal["", "limit", "refusal", "guard", "check"]
@@ -25,7 +27,8 @@ class Verb(Record):
     Attributes:
         word: one, or the first word of its clauses and what tells them from those of another verb: `keeps of time`.
         operand: what it is followed by: a bound of a duration, perhaps a deadline, a condition, a bound of the use of a
-            signal, a bound of a count, a period or a rate, a deadline after an event, an event.
+            signal, a bound of a count, a period or a rate, a bound of a failure rate, a deadline after an event, an
+            event.
         measures: what is compared with the bound, or evaluated.
         judged: when it is known whether an activation, or a run, satisfies or violates it.
         phrases: for each continuation: its words, an example, what it is about, and when a clause is violated.
@@ -266,6 +269,22 @@ VERBS: Final = {
             )
         ),
         Verb(
+            word="fails per time",
+            operand="failures",
+            measures="its failures in the time of all runs",
+            judged=_RUN,
+            phrases=(
+                (
+                    "fails per",
+                    "fails at most 1 per 200 h of Dock",
+                    "a failure rate",
+                    "the node fails more often, over the time of all runs, or over that of the node after `of`",
+                ),
+            ),
+            forms=_NO_FORM,
+            why_monitored="a failure rate is evaluated in the logs of many runs",
+        ),
+        Verb(
             word="runs",
             operand="rate",
             measures="the time between two starts, or their number in a time",
@@ -318,6 +337,7 @@ VERBS: Final = {
         ),
     )
 }
+POOLED: Final = words(operands=("failures",))  # judged of all runs together
 COUNTING: Final = frozenset([verb.partition(" ")[0] for verb in words(operands=("count",)) if verb.endswith(" per")])
 _UNITS: Final[dict[str, str | None]] = {
     **dict.fromkeys((*words(operands=("duration",)), "within", "every", "per"), "s"),

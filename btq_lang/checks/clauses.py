@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from btq_lang.catalog.verbs import POOLED
 from btq_lang.checks import lookups
 from btq_lang.checks.view import View, quality_named
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, Tag, replace_fix
@@ -45,6 +46,8 @@ def clause_without_odds(view: View) -> Iterator[Diagnostic]:
     for _, requirement in view.requirements:
         if any(isinstance(clause, syntax.Odds) and not clause.is_of_time for clause in requirement.clauses):
             continue
+        if any(isinstance(clause, syntax.Claim) and clause.row in POOLED for clause in requirement.clauses):
+            continue  # all runs are judged together
         if view.is_torn(requirement.start, requirement.end):
             continue  # the odds may be on a line that could not be read
         for clause in requirement.clauses:

@@ -28,6 +28,7 @@ from btq_lang.evidence.model import (
 )
 from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.over_run import OverRun, target_of
+from btq_lang.evidence.pools import pool_of
 from btq_lang.evidence.run_verbs import run_judge
 from btq_lang.evidence.scopes import in_scope, within
 from btq_lang.evidence.signals import Signals, UnknownValue
@@ -93,7 +94,7 @@ class JudgedClause:
         self.demand: Final = demand
         self.requirement: Final = requirement
         self.claim: Final = claim
-        self.findings: Final = ClauseFindings(requirement, limits)
+        self.findings: Final = ClauseFindings(requirement, limits, pool_of(claim, requirement.confidence))
         self._tally: Final = self.findings.tally
         self._margins: Final = self.findings.margins
         self._subject: Final = subject
@@ -156,8 +157,7 @@ class JudgedClause:
         for uids in self._own(joined) if self._is_judged else ():
             others = nearby(uids[0])
             needed = [target_of(event) for event in self._events if event.condition is None]
-            if isinstance(self.claim.per, NodeTarget):
-                needed.append(self.claim.per)
+            needed += [each for each in (self.claim.per, self.claim.of) if isinstance(each, NodeTarget)]
             instances = [others.find(target) for target in needed]
             lost = [uids_of_target for uids_of_target in instances if isinstance(uids_of_target, UnknownValue)]
             for target in self._running:
@@ -445,7 +445,10 @@ class JudgedClause:
         if isinstance(subject, DurationSum):
             uids = [uid for target in subject.targets for uid in self._instances(joined, target)]
             return [tuple(uids)] if uids and not self.findings.missing else []
-        return [(uid,) for uid in self._instances(joined, _node_of(subject))]
+        own = self._instances(joined, _node_of(subject))
+        if VERBS[self.claim.verb].operand == "failures":  # together, for they share the exposure
+            return [tuple(own)] if own else []
+        return [(uid,) for uid in own]
 
     def _instances(self, joined: Joined, target: NodeTarget | None) -> list[int]:
         """The uids of a node's instances; notes those missing from the log."""
@@ -472,6 +475,8 @@ class JudgedClause:
         subjects = (subject, *(event.subject for event in self._events))
         if any(isinstance(each, MissionRun) and each.node is None for each in subjects):
             return "the mission has no known main tree"
+        if VERBS[self.claim.verb].operand == "failures" and self.findings.pool is None:
+            return "its bound depends on the situation, and all runs are judged together"
         if self._judge is None and self._judge_run is None:
             measured = "the time from one event to another" if isinstance(subject, Interval) else "a sum of durations"
             return f"`{self.claim.word}` cannot be judged of {measured}"
@@ -505,6 +510,7 @@ class JudgedClause:
         verb = VERBS[self.claim.verb]
         is_share = verb.operand == "condition" and verb.judged == "over the run"
         is_of_run = is_share or (verb.operand == "count" and self.claim.per is None)
+        is_pooled = tally.pool is not None
         is_once_a_run = isinstance(self._subject, DurationSum) or (is_of_run and len(findings.paths) == 1)
         return ClauseVerdict(
             text=self.text,
@@ -514,7 +520,7 @@ class JudgedClause:
             else "",
             verdict=verdict,
             why=why,
-            unit="runs" if tally.counts_runs or is_once_a_run else "activations",
+            unit="runs" if tally.counts_runs or is_once_a_run or is_pooled else "activations",
             confidence=self.requirement.confidence,
             histogram=tally.distribution.histogram(self.marks()),
             timeline=findings.timeline if verdict == VIOLATED else None,

@@ -61,6 +61,8 @@ def edge_of(claim: ResolvedClaim, subject: Subject | None, requirement: Resolved
     if requirement.window is not None or isinstance(subject, DurationSum):
         return None  # a window holds other judgements for another bound; of a sum parts may be unknown
     if claim.limit is not None:
+        if VERBS[claim.verb].operand == "failures":
+            return None  # all runs decide together
         if VERBS[claim.verb].operand == "count" and requirement.scopes:
             return None  # starts may be unknown
         if claim.signal is not None and claim.signal.behaviour == "level":

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.conditions import Measure, compared
+from btq_lang.evidence.exposure import rate
 from btq_lang.evidence.model import UNKNOWN_BEGIN, UNKNOWN_END, Activation
 from btq_lang.evidence.over_run import Happening, OverRun, Stretch
 from btq_lang.evidence.signals import UnknownValue
@@ -414,6 +415,7 @@ JUDGES: Final[dict[str, RunJudge]] = {
     "follows": _follows,
     **dict.fromkeys(("tries", "starts per", *_RESULTS), _tries),
     "runs": _runs,
+    "fails per time": rate,
     "keeps of time": of_time,
     "never of time": of_time,
 }

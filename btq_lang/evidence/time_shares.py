@@ -14,11 +14,14 @@ from btq_lang.evidence.conditions import compared, truth
 from btq_lang.evidence.model import UNKNOWN_BEGIN, UNKNOWN_END, Activation
 from btq_lang.evidence.signals import UnknownValue
 from btq_lang.evidence.verbs import OUT, Judgement, between
-from btq_lang.requirements.model import All, Negation, ResolvedClaim
+from btq_lang.requirements.model import All, Flag, Negation, ResolvedClaim
 
 if TYPE_CHECKING:
     from btq_lang.evidence.over_run import OverRun
     from btq_lang.requirements.model import Condition
+
+
+ALWAYS: Final = Flag(True)
 
 
 def of_time(claim: ResolvedClaim, run: OverRun) -> Iterator[Judgement | None]:
@@ -27,7 +30,8 @@ def of_time(claim: ResolvedClaim, run: OverRun) -> Iterator[Judgement | None]:
     times = _Times()
     condition = Negation(claim.condition) if claim.word == "never" else claim.condition
     for activation in run.own:
-        _add(times, condition, run, activation)
+        for piece in pieces(run, activation, condition):
+            times.add(*piece)
     if not times.all:
         yield OUT
     elif run.is_cut_off:
@@ -49,7 +53,7 @@ class _Times:
         self.why = ""
         self._by_kind: Final[dict[tuple[bool, bool | None], int]] = {}
 
-    def add(self, counts: bool | UnknownValue, holds: bool | UnknownValue, time: int) -> None:
+    def add(self, time: int, counts: bool | UnknownValue, holds: bool | UnknownValue) -> None:
         """Add time that counts, or may, and in which the condition holds, does not, or may."""
         unknown = next((each.why for each in (counts, holds) if isinstance(each, UnknownValue)), "")
         self.why = self.why or unknown
@@ -81,8 +85,12 @@ class _Times:
         return sum(self._by_kind.get(kind, 0) for kind in kinds)
 
 
-def _add(times: _Times, condition: Condition, run: OverRun, activation: Activation) -> None:
-    """Add the time of an activation, from as early as it may have begun to its end."""
+def pieces(
+    run: OverRun, activation: Activation, condition: Condition = ALWAYS
+) -> Iterator[tuple[int, bool | UnknownValue, bool | UnknownValue]]:
+    """The time of an activation that counts or may count, from as early as it may have begun to its end: pieces in µs,
+    whether each counts, and whether a condition holds in it.
+    """
     observed = run.observed.during(activation)
     starts, meanwhile = ([scope.condition for scope in run.scopes if scope.word == word] for word in ("when", "while"))
     is_about_it = truth(All(tuple(starts)), observed.in_scope, observed.begin)
@@ -102,7 +110,7 @@ def _add(times: _Times, condition: Condition, run: OverRun, activation: Activati
         elif counts is True and activation.timing == "latest":
             counts = UnknownValue(UNKNOWN_END)
         if counts is not False and following[0] > moment[0]:
-            times.add(counts, truth(condition, seen, moment), following[0] - moment[0])
+            yield following[0] - moment[0], counts, truth(condition, seen, moment)
 
 
 def _judged(claim: ResolvedClaim, run: OverRun, times: _Times) -> Judgement:

@@ -12,6 +12,7 @@ from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.conditions import Measure, bound_at, compared, measure_of, truth
 from btq_lang.evidence.model import CLOCK_SET_BACK, ENOUGH, UNKNOWN_BEGIN, UNKNOWN_END, Activation, Moment
 from btq_lang.evidence.observed import Observed
+from btq_lang.evidence.pools import Amounts
 from btq_lang.evidence.signals import UnknownValue
 from btq_lang.evidence.use import fallen, risen
 from btq_lang.evidence.wording import quantity
@@ -32,6 +33,7 @@ class Judgement(NamedTuple):  # not a Record for the same reason as Measure
         note: what is unusual about it; a log has each once.
         most: the upper limit of what is measured, if only its limits are known; `measure` is the lower one.
         passed: when a duration became longer than its bound.
+        amounts: what a run adds to a rate.
     """
 
     holds: bool | None
@@ -43,6 +45,7 @@ class Judgement(NamedTuple):  # not a Record for the same reason as Measure
     note: str = ""
     most: Measure | None = None
     passed: int | None = None
+    amounts: Amounts | None = None
 
 
 OUT: Final = Judgement(None, 0, "it does not count")
@@ -61,6 +64,8 @@ def agreed(late: Judgement | None, early: Judgement | None, activation: Activati
         return None
     if OUT in (late, early) or late is None or early is None or not is_same(late, early):
         return Judgement(None, activation.end, UNKNOWN_BEGIN)
+    if late.amounts is not None and early.amounts is not None:
+        return late._replace(amounts=late.amounts.joined(early.amounts))
     return between(late, late.measure, early.measure)
 
 

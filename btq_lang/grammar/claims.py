@@ -78,6 +78,7 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
     per: Path | Word | None = None
     event: Event | None = None
     every = False
+    of: Path | None = None
     counts = verb.raw in COUNTING and bound_follows(cursor, cursor.index)
     operand = VERBS[verb.raw].operand if not counts else "count"
     if operand == "duration":
@@ -99,7 +100,8 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
         resource = cursor.plain_name("a signal") if cursor.expect_word("of", forgotten=cursor.kind == NAME) else None
     elif operand == "count":
         bound = parse_bound(cursor)
-        per = parse_period(cursor, is_optional=not counts)
+        per = parse_period(cursor, verb.raw, is_optional=not counts)
+        of = parse_path(cursor, "a node") if is_time_of(cursor, per) and cursor.accept_word("of") else None
     elif operand == "rate":
         if cursor.accept_word("every"):
             every = True
@@ -117,12 +119,19 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
     else:
         bound = parse_within(cursor) if cursor.expect_word("within") else None
         event = parse_event(cursor) if cursor.expect_word("after", ("of", "from", "since")) else None
-    return Claim(start, cursor.last_end(), subject, verb, bound, condition, resource, per, event, every, counts)
+    return Claim(start, cursor.last_end(), subject, verb, bound, condition, resource, per, event, every, counts, of)
 
 
-def parse_period(cursor: Cursor, is_optional: bool) -> Path | Word | None:
-    """ "per" ( "run" | Path ), of counts"""
+def is_time_of(cursor: Cursor, per: Path | Word | None) -> bool:
+    """Whether what follows is the node whose time is meant."""
+    return isinstance(per, Word) and per.kind == QUANTITY
+
+
+def parse_period(cursor: Cursor, verb: str, is_optional: bool) -> Path | Word | None:
+    """ "per" ( "run" | Path ), of counts;  "per" QUANTITY, of failures"""
     if cursor.accept_word("per"):
+        if cursor.kind == QUANTITY and verb == "fails":
+            return cursor.take()
         return cursor.take() if cursor.at_word("run") else parse_path(cursor, "`run`, or a node")
     if not is_optional and report_slip(cursor):
         cursor.recover()

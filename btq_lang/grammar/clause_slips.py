@@ -134,6 +134,7 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
     ("(?:the )?(?:period|cycle) *BOUNDTIME", ("runs every {time}",), ""),
     (r"(?:attempts|retries) *BOUND(?P<number>\d+)", ("tries {bound} {number}",), ""),
     (r"(?:the )?(?:number of )?failures *BOUND(?P<number>\d+)", ("fails {bound} {number} per run",), ""),
+    ("(?:the )?(?:mtbf|MTBF|mean time between failures) *BOUNDTIME", ("fails at most 1 per {time}",), ""),
     (r"(?:the )?(?:number of )?successes *BOUND(?P<number>\d+)", ("succeeds {bound} {number} per run",), ""),
     # how probably
     ("(?:for |during )?(?:at least )?SHARE of (?:the |its |that )?time", ("in at least {share} of time",), ""),

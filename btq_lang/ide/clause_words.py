@@ -49,7 +49,7 @@ def expected(words: Sequence[Token]) -> Expected:
     if text == "of" and _begins_last(earlier, (*_USES, "sum", "in", "with")) in _USES:
         return Expected(signal=True)
     if text == "of":
-        if before == "sum":
+        if before == "sum" or _is_per(earlier[:-2]):
             return Expected(node=True)
         return Expected((*_EXPERIMENTS, TIME) if _has_time(earlier) else _EXPERIMENTS)
     if text == "and" and _begins_last(earlier, ("between", *_CONDITIONS)) == "between":
@@ -61,7 +61,8 @@ def expected(words: Sequence[Token]) -> Expected:
     if last.kind in (NUMBER, QUANTITY):
         if is_window(earlier):
             return Expected(_EXPERIMENTS) if last.kind == NUMBER else Expected(clause=True)
-        return Expected(_after_value(earlier), clause=True)
+        of = ("of",) if last.kind == QUANTITY and _is_per(earlier[:-1]) else ()
+        return Expected((*_after_value(earlier), *of), clause=True)
     if last.kind in (NAME, STRING, CLOSE) or text in HAPPENINGS:
         if _begins_last(earlier, (*_EVENTS, *_CLAUSES)) in _EVENTS and text not in HAPPENINGS:
             return Expected(_HAPPENINGS)
@@ -146,6 +147,11 @@ def _after_value(words: Sequence[str]) -> tuple[str, ...]:
     return ("if",) if head in _TIMED or head == "goal" else ()
 
 
+def _is_per(words: Sequence[str]) -> bool:
+    """Whether these words of a failure rate precede its time: `fails at most 1 per`."""
+    return words[-1:] == ["per"] and _begins_last(words, (*_CLAUSES, *COUNTING)) == "fails"
+
+
 def _has_time(words: Sequence[str]) -> bool:
     """Whether a share after these words may be one of the time: after `keeps` or `never`, perhaps a line above."""
     return _begins_last(words, tuple(VERBS)) in ("", "keeps", "never")
@@ -175,7 +181,7 @@ _CONDITION = Expected(condition=True)
 _VALUE = Expected(value=True)
 _EVENT = Expected(("mission", "when"), node=True)
 _OPERANDS = {
-    **dict.fromkeys(("duration", "use", "count"), Expected(_BOUNDS)),
+    **dict.fromkeys(("duration", "use", "count", "failures"), Expected(_BOUNDS)),
     "rate": Expected(("every", *_BOUNDS)),
     "deadline": Expected(("within", *_BOUNDS), clause=True),
     "reaction": Expected(("within",)),

@@ -13,6 +13,7 @@ from typing import Final
 from btq_lang.catalog.units import Dimension, a_dimension
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements import model, nodes
+from btq_lang.requirements.pooled import judged_together
 from btq_lang.requirements.reader import Reader
 from btq_lang.requirements.shares import of_time
 from btq_lang.requirements.terms import COUNT, DURATION, PERCENT, SORTS, TIME, Wanted, sort_of
@@ -65,6 +66,8 @@ def with_clauses(
     if isinstance(share := once.pop("share", None), model.ResolvedOdds):
         claims, not_of_time = of_time(reader, claims, share)
         unread += not_of_time
+    claims, not_together = judged_together(reader, claims, once.get("odds"))
+    unread += not_together
     if goals:
         once["goal"] = reader.bounded(goals[0].value, _of_goal(claims, "odds" in once))
     return replace(
@@ -115,6 +118,11 @@ def _verb(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | None:
         return replace(claim, event=event) if event is not None else None
     if operand == "count" and isinstance(written.per, syntax.Word):  # `run`
         return claim
+    if written.of is not None:
+        of = reader.target(written.of)
+        if of is None:
+            return None
+        claim = replace(claim, of=of)
     per = _per(reader, written.per)
     if per is None and (written.per is not None or written.counts or (operand == "rate" and not written.every)):
         return None

@@ -287,6 +287,7 @@ class ResolvedClaim(Record):
         per: of tries and counts a node (None: the run), of runs a duration.
         event: of starts, ends, follows.
         every: `runs every d`.
+        of: of a failure rate, the node whose time is its exposure; None: the time of the runs.
         text: the clause as typed, blanks folded; with its share of time.
     """
 
@@ -300,6 +301,7 @@ class ResolvedClaim(Record):
     per: NodeTarget | Quantity | None = None
     event: ResolvedEvent | None = None
     every: bool = False
+    of: NodeTarget | None = None
 
     @property
     def word(self) -> str:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import TypeAlias
 
+from btq_lang.syntax.tokens import QUANTITY
 from btq_lang.syntax.words import Word
 from btq_lang.util.record import Part, Record
 from btq_lang.util.text import Span
@@ -120,6 +121,7 @@ class Claim(Part):
         event: of starts, ends, follows.
         every: `runs every d`.
         counts: `succeeds at least 12 per run`.
+        of: of `fails at most 1 per 200 h of Dock`: the path.
     """
 
     subject: Subject | None
@@ -131,10 +133,13 @@ class Claim(Part):
     event: Event | None = None
     every: bool = False
     counts: bool = False
+    of: Path | None = None
 
     @property
     def row(self) -> str:
         """The verb's row in `catalog.verbs`: of `succeeds at least 12 per run` the one of `succeeds per`."""
+        if self.counts and isinstance(self.per, Word) and self.per.kind == QUANTITY:
+            return f"{self.verb.raw} per time"
         return f"{self.verb.raw} per" if self.counts else self.verb.raw
 
 

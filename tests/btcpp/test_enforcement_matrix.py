@@ -38,6 +38,7 @@ CLAUSES = {
     "succeeds per": ("succeeds at most 3 per run", "succeeds at most 3 per Top", "succeeds at least 12 per run"),
     "starts per": ("starts at most 3 per run", "starts at most 3 per Top"),
     "fails per": ("fails at most 3 per run", "fails at most 3 per Top"),
+    "fails per time": ("fails at most 1 per 200 h", "fails at most 1 per 200 h of Top"),
     "finishes per": ("finishes at most 3 per run", "finishes between 1 and 3 per Top"),
     "runs": ("runs every 500 ms", "runs at most 9 per 10 s"),
     "starts": ("starts within 2 s after Other succeeds",),

@@ -15,7 +15,8 @@ from literal_verbs import OPEN, OUT, Judged, counted
 
 from btq_lang.evidence.model import ROOT
 from btq_lang.evidence.odds import lower_limit, upper_limit
-from btq_lang.requirements.model import DurationSum, Interval, MissionRun, NodeTarget
+from btq_lang.evidence.poisson import lower_number, upper_number
+from btq_lang.requirements.model import DurationSum, Interval, MissionRun, NodeTarget, Quantity
 
 if TYPE_CHECKING:
     from literal_log import Truth
@@ -95,6 +96,20 @@ class Session:
             for uid in self.late.uids(applied.subject):
                 found += self.spent(claim, [world.reactions(uid, claim, applied.requirement) for world in self.worlds])
         return [each for each in found if each.verdict != OUT or claim.verb not in ("starts", "ends", "follows")]
+
+    def rated(self, applied: Applied, claim: ResolvedClaim) -> list[tuple[Judged, tuple[int, int, int, int]]]:
+        """fails at most m per d: what each run adds, if it has time for it."""
+        uids = self.late.uids(applied.subject) if isinstance(applied.subject, NodeTarget | MissionRun) else []
+        is_mission = isinstance(applied.subject, MissionRun)
+        early, late = (
+            world.rates(uids, is_mission, claim, applied.requirement) if uids else [] for world in self.worlds
+        )
+        found = []
+        for run, ones, others in zip(self.runs, early, late, strict=False):
+            (few, one_many, short, one_long), (other_few, many, other_short, long) = ones, others
+            added = min(few, other_few), max(one_many, many), min(short, other_short), max(one_long, long)
+            found.append((Judged(run.run, uids[0], True if added[3] else OUT, run.end), added))
+        return found
 
     def at_both_ends(self, applied: Applied, claim: ResolvedClaim, part: Part = None) -> list[Judged]:
         """What it comes to, for each instance of the node and run, if the ends of the begins agree."""
@@ -199,6 +214,8 @@ class Literal:
         requirement = applied.requirement
         judged: list[Judged] = []
         before = 0
+        if claim.verb == "fails per time":
+            return self.rate(applied, claim)
         for session in self.sessions:
             judged += [replace(each, run=each.run + before) for each in session.judged(applied, claim)]
             before += len(session.runs)
@@ -217,6 +234,58 @@ class Literal:
         if verdict == "satisfied" and not nodes & ran:
             verdict = "never exercised"  # where others ran that it might have run in, or after
         return ClauseResult(verdict, tuple(judged), tuple(experiments))
+
+    def rate(self, applied: Applied, claim: ResolvedClaim) -> ClauseResult:
+        """fails at most m per d: the failures and the time of all runs."""
+        requirement = applied.requirement
+        added: dict[int, tuple[int, int, int, int]] = {}
+        judged: list[Judged] = []
+        before = 0
+        for session in self.sessions:
+            for each, amounts in session.rated(applied, claim):
+                judged.append(replace(each, run=each.run + before))
+                added[each.run + before] = amounts
+            before += len(session.runs)
+        judged.sort(key=lambda each: (self.runs[each.run].begin, each.run, each.at))
+        judged = self.last(requirement, judged)
+        counted = [added[each.run] for each in judged if each.verdict is True]
+        few, many, short, long = (sum(column) for column in zip(*counted, strict=True)) if counted else (0, 0, 0, 0)
+        one, other = self.of_rate(requirement, claim, many, short), self.of_rate(requirement, claim, few, long)
+        verdict = "never exercised" if not counted else one if one == other else "unknown"
+        uids = {each.uid for each in judged}
+        if isinstance(applied.subject, NodeTarget):
+            uids = {*self.sessions[0].late.uids(applied.subject)}
+        if verdict == "satisfied" and not uids & {each.uid for each in self.activations}:
+            verdict = "never exercised"
+        return ClauseResult(verdict, tuple(judged), tuple(each.verdict for each in judged))
+
+    def of_rate(self, requirement: ResolvedRequirement, claim: ResolvedClaim, number: int, micros_: int) -> str:
+        """What a number of failures in a time comes to."""
+        assert claim.limit is not None
+        assert isinstance(claim.per, Quantity)
+        assert isinstance(claim.limit.value, Quantity)
+        low, high = float("-inf"), float("inf")
+        if claim.limit.relation in ("<=", "<"):
+            high = claim.limit.value.si
+        else:
+            low = claim.limit.value.si
+        if isinstance(claim.limit.upper, Quantity):
+            high = claim.limit.upper.si
+        is_strict = claim.limit.relation in ("<", ">")
+        times = micros_ / 1e6 / claim.per.si
+        confidence = requirement.confidence
+        if confidence is None and times < 1:
+            return "unknown"
+        fewest, most = (
+            (number, number)
+            if confidence is None
+            else (lower_number(number, confidence), upper_number(number, confidence))
+        )
+        at_least, at_most = low * times if low > 0 else low, high * times if high < float("inf") else high
+        is_kept = fewest > at_least and most < at_most if is_strict else fewest >= at_least and most <= at_most
+        if is_kept:
+            return "satisfied"
+        return "violated" if confidence is None or fewest > at_most or most < at_least else "undecided"
 
     def verdict(self, requirement: ResolvedRequirement, experiments: Sequence[Verdict]) -> str:
         """What experiments come to together."""

@@ -219,17 +219,11 @@ class OverRuns(OfActivations):
         requirement: ResolvedRequirement,
     ) -> list[Decided]:
         """keeps φ in at least p of time: each piece of the time counts, may count, or does not."""
-        pieces: list[tuple[int, Truth, Truth]] = []
-        for a in own:
-            early = replace(a, start=a.earliest)
-            when = self.holds_all("when", requirement, a.start, a)
-            for moment, following in pairwise(sorted({*self.moments(early), a.latest, a.stop})):
-                seen = a if moment >= a.start else early
-                now = self.holds_all("while", requirement, moment, seen)
-                counts = both(when, now, moment >= a.latest or None, a.is_exact or None)
-                holds = negated(self.holds(claim.condition, moment, seen), claim.verb == "never of time")
-                if counts is not False and following[0] > moment[0]:
-                    pieces.append((following[0] - moment[0], counts, holds))
+        pieces = [
+            (time, counts, negated(self.holds(claim.condition, moment, seen), claim.verb == "never of time"))
+            for a in own
+            for time, counts, moment, seen in self.pieces(a, requirement)
+        ]
         if not pieces:
             return [(OUT, run.end)]
         if run.outcome == "O":
@@ -243,6 +237,46 @@ class OverRuns(OfActivations):
             shares.append(sum(time for time, holds in counted_ones if holds) / sum(time for time, _ in counted_ones))
         verdicts = {both(*self.within(share, claim.limit, run)) for share in shares}
         return [(verdicts.pop() if len(verdicts) == 1 else None, run.end)]
+
+    def pieces(self, a: Activation, requirement: ResolvedRequirement) -> list[tuple[int, Truth, Moment, Activation]]:
+        """The time of an activation between two changes: how long, whether it counts, when, and as it is seen then."""
+        found: list[tuple[int, Truth, Moment, Activation]] = []
+        early = replace(a, start=a.earliest)
+        when = self.holds_all("when", requirement, a.start, a)
+        for moment, following in pairwise(sorted({*self.moments(early), a.latest, a.stop})):
+            seen = a if moment >= a.start else early
+            now = self.holds_all("while", requirement, moment, seen)
+            counts = both(when, now, moment >= a.latest or None, a.is_exact or None)
+            if counts is not False and following[0] > moment[0]:
+                found.append((following[0] - moment[0], counts, moment, seen))
+        return found
+
+    def rates(
+        self, uids: Sequence[int], is_mission: bool, claim: ResolvedClaim, requirement: ResolvedRequirement
+    ) -> list[tuple[int, int, int, int]]:
+        """fails at most m per d: of each run the failures, fewest and most, and the time for them, least and most."""
+        found = []
+        for run in self.runs:
+            around = self.nearest(uids[0], self.uids(claim.of)) if claim.of is not None else [ROOT]
+            exposed = [each for uid in around for each in self.of(uid) if each.run == run.run]
+            times = [piece for a in exposed for piece in self.pieces(a, requirement)]
+            own = (
+                [run] if is_mission else [each for each in self.activations if each.uid in uids and each.run == run.run]
+            )
+            failed = [
+                both(self.holds_all("when", requirement, x.start, x), self.holds_all("while", requirement, x.stop, x))
+                for x in own
+                if x.outcome == "F"
+            ]
+            found.append(
+                (
+                    sum(counts is True for counts in failed),
+                    sum(counts is not False for counts in failed),
+                    sum(time for time, counts, *_ in times if counts),
+                    sum(time for time, *_ in times),
+                )
+            )
+        return found
 
     def reactions(self, uid: int, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Spent]:
         """starts within d after ev, ends within d after ev: the next start, or end, after each event."""

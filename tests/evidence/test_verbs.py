@@ -606,7 +606,7 @@ SIGNALS = (
 
 @pytest.mark.parametrize("word", VERBS)
 def test_every_verb_is_judged(word: str, verify: Verify) -> None:
-    example = re.sub("Batch|PickTray|SlotFree", "Pick", VERBS[word].example)
+    example = re.sub("Batch|PickTray|SlotFree|Dock", "Pick", VERBS[word].example)
     found = verify.clause(f"Move {example}", LONG, samples("battery", {-1: 50}), before=SIGNALS)
     lacks = {"needs": "no samples of `rear_is_clear`", "never": "no samples of `lamp_on`"}
     lacks["never of time"] = "no samples of `humans_near`"

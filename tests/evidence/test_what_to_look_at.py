@@ -9,7 +9,7 @@ import pytest
 from evidence_logs import Verify, samples
 from test_run_verbs import LEVEL, STOPPED, TWICE, clause
 
-from btq_lang.catalog.verbs import VERBS
+from btq_lang.catalog.verbs import POOLED, VERBS
 
 LINES: list[tuple[str, str, str, str]] = [  # verb, demand, runs, line
     (
@@ -107,6 +107,7 @@ LINES: list[tuple[str, str, str, str]] = [  # verb, demand, runs, line
         "Move::3: started 2 times, bound 1; 1 failed, 1 succeeded",
     ),
     ("fails per", "Move fails at most 0 per run", TWICE, "Move::3: failed 1 time, bound 0; 1 failed"),
+    ("fails per time", "Move fails at most 0 per 50 ms", TWICE, "Move::3: 1 in 50 ms"),
     (
         "finishes per",
         "Move finishes at most 1 per Task",
@@ -233,6 +234,9 @@ def test_the_line_below_a_violated_clause(verb: str, demand: str, runs: str, lin
     assert clause(verify, demand, runs, given, f"{LEVEL} level\ncontext low : battery < 20 %")["verdict"] == "violated"
     output = verify.text("run.btlog", "--mission", "main.btq", "--signals", "samples.csv")
     below, *_ = output.partition("\n\n")[2].splitlines()[1:]
+    if verb in POOLED:  # of all runs together
+        assert below.strip() == line
+        return
     before, at, after = below.strip().partition(" (run 1 of run.btlog, ")
     assert (before, at != "", after.endswith(" after its start at 2026-11-20 21:22:20.000 UTC)")) == (line, True, True)
 

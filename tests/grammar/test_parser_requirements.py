@@ -177,6 +177,8 @@ def test_broken_requirement(text: str, tree: str, problem: str) -> None:
         ("tries at most 3 per run", "tries <= 3 per run"),
         ("succeeds at least 12 per run", "succeeds >= 12 per run"),
         ("starts between 1 and 3 per 'run'", "starts between 1 3 per 'run'"),
+        ("fails at most 1 per 200 h", "fails <= 1 per 200h"),
+        ("fails less than 0.5 per 1 d of a/b", "fails < 0.5 per 1d of a/b"),
         ("fails at most 3 if a else 1 per run", "fails <= [3 if a, 1 else] per run"),
         ("runs every 5 s", "runs every <= 5s"),
         ("runs at least 1 per 1 s", "runs >= 1 per 1s"),
@@ -272,6 +274,12 @@ def test_a_verb_is_no_subject_without_quotes(verb: str) -> None:
             "1:22 syntax-error «'a'» expected a signal, found `'a'`",
         ),
         ("tries at most 3 per", "tries <= 3", f"1:20 syntax-error «» expected `run`, or a node, {END}"),
+        (
+            "succeeds at least 3 per 200 s",
+            "succeeds >= 3 per MISSING",
+            "1:25 syntax-error «200 s» expected `run`, or a node, found `200 s`",
+        ),
+        ("fails at most 3 per 200 h of", "fails <= 3 per 200h", f"1:29 syntax-error «» expected a node, {END}"),
         (
             "fails at most 3",
             "fails <= 3 per MISSING",

@@ -409,6 +409,7 @@ CLAUSES: Final[list[tuple[str, tuple[str, ...], str]]] = [
     ("update rate > 10 Hz", ("runs more than 10 per 1 s",), ""),
     ("period <= 100 ms", ("runs every 100 ms",), ""),
     ("retries at most 3", ("tries at most 3",), ""),
+    ("MTBF >= 200 h", ("fails at most 1 per 200 h",), ""),
     ("failures <= 2", ("fails at most 2 per run",), ""),
     ("number of successes at least 12", ("succeeds at least 12 per run",), ""),
     *(

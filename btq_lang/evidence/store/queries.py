@@ -125,7 +125,9 @@ QUERIES: Final = {
             MIN(clause_index) AS clause_index, MAX(title) AS title, MAX(measures) AS measures, MAX(counts) AS counts,
             MAX(unit) AS unit, MAX(odds) AS odds, MAX(relation) AS relation, MAX(experiments) AS experiments,
             MAX(confidence) AS confidence, MAX(last_number) AS last_number, MAX(last_of) AS last_of,
-            MAX(last_seconds) AS last_seconds, MAX(CASE WHEN exercised THEN 1 ELSE 0 END) AS exercised,
+            MAX(last_seconds) AS last_seconds, MAX(rate_low) AS rate_low, MAX(rate_high) AS rate_high,
+            MAX(rate_strict) AS rate_strict, MAX(rate_seconds) AS rate_seconds,
+            MAX(CASE WHEN exercised THEN 1 ELSE 0 END) AS exercised,
             SUM(cut_off) AS cut_off, MIN(missing) AS missing
         FROM clauses
         GROUP BY {by}, requirement, clause, node
@@ -143,7 +145,9 @@ QUERIES: Final = {
             MIN(CASE WHEN verdict = 'satisfied' AND most_si IS NULL THEN measured_si END) AS lowest,
             MAX(CASE WHEN verdict = 'satisfied' AND most_si IS NULL THEN measured_si END) AS highest,
             SUM(CASE WHEN most_si IS NULL THEN 0 ELSE 1 END) AS bounded, MAX(most_si) AS bounded_si,
-            MAX(CASE WHEN most_si IS NOT NULL THEN bound_si END) AS bounded_bound_si
+            MAX(CASE WHEN most_si IS NOT NULL THEN bound_si END) AS bounded_bound_si,
+            SUM(number) AS number, SUM(number_most) AS number_most,
+            SUM(exposure_s) AS exposure_s, SUM(exposure_most_s) AS exposure_most_s
         FROM verdicts
         GROUP BY {by}, requirement, clause, node
     """,
@@ -169,7 +173,8 @@ QUERIES: Final = {
                 verdicts.node AS node, verdicts.log AS log, verdicts.run AS run, verdicts.path AS path,
                 verdicts.end_us AS end_us, verdicts.at_us AS at_us, verdicts.verdict AS verdict,
                 verdicts.measured_si AS measured_si, verdicts.bound_si AS bound_si, verdicts.why AS why,
-                verdicts.most_si AS most_si,
+                verdicts.most_si AS most_si, verdicts.number AS number, verdicts.number_most AS number_most,
+                verdicts.exposure_s AS exposure_s, verdicts.exposure_most_s AS exposure_most_s,
                 runs.source AS source, runs.start_us AS run_start_us, runs.end_us AS run_end_us,
                 windows.last_number AS last_number, windows.last_of AS last_of, windows.last_seconds AS last_seconds,
                 DENSE_RANK() OVER (
