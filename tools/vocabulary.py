@@ -16,7 +16,7 @@ from btq_lang.catalog.quality_words import ALIASES, AMBIGUOUS, PAPER_NAMES
 from btq_lang.catalog.units import SYMBOLS as UNITS
 from btq_lang.grammar.claims import HAPPENINGS
 from btq_lang.grammar.claims import VERB_WORDS as VERBS
-from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS, TIME
+from btq_lang.grammar.clauses import ACTIONS, AVERAGE, EXPERIMENTS, METHODS, TIME
 from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS, HEADS
 from btq_lang.syntax.tokens import DIRECTIONS, NODE_CLAUSES, SYMBOLS
 
@@ -61,7 +61,7 @@ PORT_WORDS = longest_first(DIRECTIONS)
 CLAUSE_WORDS = tuple(sorted(NODE_CLAUSES))
 VERB_WORDS = longest_first(VERBS)
 HEAD_WORDS = longest_first(HEADS)
-REQUIREMENT_WORDS = longest_first((*VERBS, *HEADS, *HAPPENINGS, *EXPERIMENTS, TIME, *PARTICLES))
+REQUIREMENT_WORDS = longest_first((*VERBS, *HEADS, *HAPPENINGS, *EXPERIMENTS, TIME, AVERAGE, *PARTICLES))
 OUTCOME_WORDS = longest_first((*ACTIONS, *METHODS))
 FUNCTION_WORDS = longest_first(FUNCTIONS)
 COMPARISON_SIGNS = longest_first(COMPARISONS)

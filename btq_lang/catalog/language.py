@@ -170,6 +170,8 @@ clause
     while | while humans_near | only while a condition holds | \
         counts only the time (or the activations) in which the condition holds
     when | when fragile | only when a condition holds | counts only activations at whose start the condition holds
+    on average | on average | the mean | \
+        of `takes` and `uses`: the mean of all activations that succeed or fail keeps the bound, and not each of them
     in at least | in at least 98 % of activations | how often | \
         allows some violations; also `of runs` and `with probability >= 98 %`
     of time | in at least 95 % of time | a share of the time | \

@@ -91,6 +91,8 @@ _RUN: Final = "over the run"
 _PERIOD: Final = "a run, or, with the name of another node after `per`, in one of its activations"
 _LEAST: Final = ("at least", 12, "less")
 _MOST: Final = ("at most", 3, "more")
+_DURATION: Final[Operand] = "duration"
+_USE: Final[Operand] = "use"
 _CHECK: Final[Enforced] = "check"
 _REFUSAL: Final[Enforced] = "refusal"
 _NO_FORM: Final = (("", None),)  # it begins as the clauses of another verb
@@ -228,6 +230,26 @@ VERBS: Final = {
             forms=(("uses at most", "uses at most ${1:1 Wh} of ${0:signal}"),),
             enforced="guard",
         ),
+        *(
+            Verb(
+                word=f"{word} on average",
+                operand=operand,
+                measures=f"the mean of {measures}",
+                judged=_RUN,
+                phrases=((f"{word} on average", example, "a mean", f"the mean of {measures} is higher"),),
+                forms=_NO_FORM,
+                why_monitored="a mean is evaluated in the logs of many runs",
+            )
+            for word, operand, measures, example in (
+                (
+                    "takes",
+                    _DURATION,
+                    "the times to its success or failure",
+                    "takes at most 30 s on average",
+                ),
+                ("uses", _USE, "the uses to its success or failure", "uses at most 20 Wh of energy on average"),
+            )
+        ),
         Verb(
             word="tries",
             operand="count",
@@ -337,7 +359,8 @@ VERBS: Final = {
         ),
     )
 }
-POOLED: Final = words(operands=("failures",))  # judged of all runs together
+_OF_MEANS: Final = [verb for verb in VERBS if verb.endswith(" on average")]
+POOLED: Final = words(operands=("failures",)).union(_OF_MEANS)  # judged of all runs together
 COUNTING: Final = frozenset([verb.partition(" ")[0] for verb in words(operands=("count",)) if verb.endswith(" per")])
 _UNITS: Final[dict[str, str | None]] = {
     **dict.fromkeys((*words(operands=("duration",)), "within", "every", "per"), "s"),

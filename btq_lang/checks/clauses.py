@@ -15,6 +15,7 @@ from btq_lang.syntax.tokens import QUANTITY
 from btq_lang.util.text import Span
 
 _ONCE: dict[type, str] = {
+    syntax.Average: "that the mean counts",
     syntax.Odds: "how often it must hold",
     syntax.Confidence: "a confidence",
     syntax.Window: "a window",
@@ -46,8 +47,8 @@ def clause_without_odds(view: View) -> Iterator[Diagnostic]:
     for _, requirement in view.requirements:
         if any(isinstance(clause, syntax.Odds) and not clause.is_of_time for clause in requirement.clauses):
             continue
-        if any(isinstance(clause, syntax.Claim) and clause.row in POOLED for clause in requirement.clauses):
-            continue  # all runs are judged together
+        if any(map(_is_of_all_runs, requirement.clauses)):
+            continue  # a confidence counts there, too
         if view.is_torn(requirement.start, requirement.end):
             continue  # the odds may be on a line that could not be read
         for clause in requirement.clauses:
@@ -71,6 +72,11 @@ def unused_parameter(view: View) -> Iterator[Diagnostic]:
             if parameter.name.text not in used:
                 message = f"no clause uses the parameter `{parameter.name.text}`, so its value has no effect"
                 yield Diagnostic("unused-parameter", parameter.name.span, message, tags=(Tag.UNNECESSARY,))
+
+
+def _is_of_all_runs(clause: syntax.Clause) -> bool:
+    """Whether all runs are judged together because of a clause."""
+    return isinstance(clause, syntax.Average) or (isinstance(clause, syntax.Claim) and clause.row in POOLED)
 
 
 def _kind(clause: syntax.Clause) -> object:

@@ -382,6 +382,7 @@ def _default(port: syntax.Port) -> str:
 _MISSION_WORDS: Final = {"main_tree_to_execute": MAIN}
 _ASPECTS: Final[dict[type, str]] = {
     syntax.ScopeClause: "scope",
+    syntax.Average: "on average",
     syntax.Odds: "odds",
     syntax.Confidence: "confidence",
     syntax.Window: "over last",

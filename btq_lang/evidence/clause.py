@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Sequence
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from btq_lang.catalog.verbs import VERBS
+from btq_lang.catalog.verbs import POOLED, VERBS
 from btq_lang.evidence import margins
 from btq_lang.evidence.clause_findings import ClauseFindings, verdict_of
 from btq_lang.evidence.conditions import Measure
@@ -475,7 +475,7 @@ class JudgedClause:
         subjects = (subject, *(event.subject for event in self._events))
         if any(isinstance(each, MissionRun) and each.node is None for each in subjects):
             return "the mission has no known main tree"
-        if VERBS[self.claim.verb].operand == "failures" and self.findings.pool is None:
+        if self.claim.verb in POOLED and self.findings.pool is None:
             return "its bound depends on the situation, and all runs are judged together"
         if self._judge is None and self._judge_run is None:
             measured = "the time from one event to another" if isinstance(subject, Interval) else "a sum of durations"
@@ -510,7 +510,7 @@ class JudgedClause:
         verb = VERBS[self.claim.verb]
         is_share = verb.operand == "condition" and verb.judged == "over the run"
         is_of_run = is_share or (verb.operand == "count" and self.claim.per is None)
-        is_pooled = tally.pool is not None
+        is_pooled = self.claim.verb in POOLED and self._judge_run is not None
         is_once_a_run = isinstance(self._subject, DurationSum) or (is_of_run and len(findings.paths) == 1)
         return ClauseVerdict(
             text=self.text,

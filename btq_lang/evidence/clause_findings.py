@@ -20,7 +20,7 @@ from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.odds import Limits
-    from btq_lang.evidence.pools import Rate
+    from btq_lang.evidence.pools import Pool
     from btq_lang.evidence.verbs import Judgement
     from btq_lang.evidence.verdicts import CauseLink, Timeline, Verdict
     from btq_lang.requirements.model import ResolvedOdds, ResolvedRequirement, ResolvedWindow
@@ -41,7 +41,7 @@ class ClauseFindings:
         left_out: as `failed`, `halted` and `idle` of `ClauseVerdict`.
     """
 
-    def __init__(self, requirement: ResolvedRequirement, limits: Limits, pool: Rate | None = None) -> None:
+    def __init__(self, requirement: ResolvedRequirement, limits: Limits, pool: Pool | None = None) -> None:
         """Count nothing yet; `pool`: as of `Tally`."""
         self.pool: Final = pool
         odds, confidence, window = requirement.odds, requirement.confidence, requirement.window
@@ -97,7 +97,7 @@ class Recent:
         window: ResolvedWindow,
         odds: ResolvedOdds | None,
         confidence: float | None,
-        pool: Rate | None = None,
+        pool: Pool | None = None,
     ) -> None:
         self.cut_off = 0
         self._pool: Final = pool

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from btq_lang.catalog.verbs import VERBS, words
+from btq_lang.catalog.verbs import POOLED, VERBS, words
 from btq_lang.evidence.conditions import MIRRORED, OPPOSITE
 from btq_lang.requirements.model import (
     Aggregate,
@@ -61,7 +61,7 @@ def edge_of(claim: ResolvedClaim, subject: Subject | None, requirement: Resolved
     if requirement.window is not None or isinstance(subject, DurationSum):
         return None  # a window holds other judgements for another bound; of a sum parts may be unknown
     if claim.limit is not None:
-        if VERBS[claim.verb].operand == "failures":
+        if claim.verb in POOLED:
             return None  # all runs decide together
         if VERBS[claim.verb].operand == "count" and requirement.scopes:
             return None  # starts may be unknown

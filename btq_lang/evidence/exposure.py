@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from btq_lang.evidence.amounts import Amounts
 from btq_lang.evidence.conditions import truth
-from btq_lang.evidence.pools import Amounts
 from btq_lang.evidence.time_shares import pieces
 from btq_lang.evidence.verbs import OUT, Judgement
 from btq_lang.requirements.model import All, MissionRun, ResolvedClaim

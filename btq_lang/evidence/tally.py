@@ -30,7 +30,7 @@ from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.conditions import Measure
-    from btq_lang.evidence.pools import Rate
+    from btq_lang.evidence.pools import Pool
     from btq_lang.evidence.verbs import Judgement
     from btq_lang.requirements.model import ResolvedOdds
 
@@ -60,7 +60,7 @@ class Tally:
         confidence: float | None,
         limits: Limits = "one look",
         most: int | None = None,
-        pool: Rate | None = None,
+        pool: Pool | None = None,
     ) -> None:
         """Count nothing yet.
 
@@ -100,8 +100,8 @@ class Tally:
             self._unclear += 1
             self.why = self.why or judgement.sentence
             return
-        if self.pool is not None and judgement.amounts is not None:
-            self.pool.add(judgement.amounts)
+        if self.pool is not None:
+            self.pool.see(judgement)
         if judgement.holds:
             self._kept += 1
         else:
@@ -174,8 +174,9 @@ class Tally:
         self.violated += other.violated
         self.unknown += other.unknown
         self.cut_off += other.cut_off
-        if self.pool is not None and other.pool is not None:
-            self.pool.add(other.pool.amounts)
+        theirs: Any = other.pool  # one clause has pools of one class
+        if self.pool is not None and theirs is not None:
+            self.pool.add_all(theirs)
         self.why = self.why or other.why
         room = max(_MOST_VIOLATIONS - len(self.violations), 0)
         self.violations.extend(replace(violation, run=violation.run + runs) for violation in other.violations[:room])

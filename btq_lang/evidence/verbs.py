@@ -9,10 +9,10 @@ from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
+from btq_lang.evidence.amounts import Amounts
 from btq_lang.evidence.conditions import Measure, bound_at, compared, measure_of, truth
 from btq_lang.evidence.model import CLOCK_SET_BACK, ENOUGH, UNKNOWN_BEGIN, UNKNOWN_END, Activation, Moment
 from btq_lang.evidence.observed import Observed
-from btq_lang.evidence.pools import Amounts
 from btq_lang.evidence.signals import UnknownValue
 from btq_lang.evidence.use import fallen, risen
 from btq_lang.evidence.wording import quantity
@@ -176,6 +176,23 @@ def _used(claim: ResolvedClaim, activation: Activation, observed: Observed) -> t
     return amount, f"`{signal.name}` was restarted meanwhile, and counts on from there" if number else ""
 
 
+def on_average(claim: ResolvedClaim, activation: Activation, observed: Observed) -> Judgement | None:
+    """`takes at most d on average`, `uses at most x of k on average`: what an activation that has ended by itself adds
+    to the mean, on which all of them decide.
+    """
+    if activation.outcome not in ("S", "F"):
+        return None
+    used = _used(claim, activation, observed) if claim.signal is not None else None
+    if isinstance(used, UnknownValue):
+        return Judgement(None, activation.end, used.why)
+    measure = duration(claim, activation, observed)
+    if used is not None:
+        measure = compared(claim, used[0], observed, activation.started)
+    if isinstance(measure, UnknownValue):
+        return Judgement(None, activation.end, measure.why)
+    return Judgement(True, activation.end, "", measure, note=used[1] if used is not None else "")
+
+
 # ---- conditions ----
 
 
@@ -269,4 +286,6 @@ JUDGES: Final[dict[str, Judge]] = {
     "leaves": leaves,
     "keeps": keeps,
     "never": keeps,
+    "takes on average": on_average,
+    "uses on average": on_average,
 }

@@ -119,7 +119,8 @@ class Pooled(Record):
     """What all runs come to together, in a clause that is not about each of them.
 
     Attributes:
-        low, high: limits of a rate, per second, with the confidence that the requirement names, if any; None: unknown.
+        low, high: limits of a rate, per second, or of a mean, in SI, with the confidence that the requirement names, if
+            any; None: unknown.
         more: how many more seconds decide it, if it does not happen again; None: no known time does.
     """
 

@@ -161,6 +161,7 @@ class Marks:
 _ORDER: Final = (
     syntax.Claim,
     syntax.ScopeClause,
+    syntax.Average,
     syntax.Odds,
     syntax.Confidence,
     syntax.Window,

@@ -119,7 +119,7 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
     else:
         bound = parse_within(cursor) if cursor.expect_word("within") else None
         event = parse_event(cursor) if cursor.expect_word("after", ("of", "from", "since")) else None
-    return Claim(start, cursor.last_end(), subject, verb, bound, condition, resource, per, event, every, counts, of)
+    return Claim(start, cursor.last_end(), subject, verb, bound, condition, resource, per, event, every, "per" if counts else "", of)
 
 
 def is_time_of(cursor: Cursor, per: Path | Word | None) -> bool:
@@ -491,6 +491,9 @@ def takes_before(cursor: Cursor, first: Word) -> tuple[Fix, ...]:
 
 def no_relation(cursor: Cursor) -> None:
     """Report a bound without its first words."""
+    if cursor.at_word("on") and report_slip(cursor):
+        cursor.recover()
+        return
     is_value = cursor.kind in (QUANTITY, NUMBER)
     note = f"write the kind of bound before the value: `at most {cursor.raw if is_value else '30 s'}`"
     fixes: tuple[Fix, ...] = ()

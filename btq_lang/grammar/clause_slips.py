@@ -135,6 +135,17 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
     (r"(?:attempts|retries) *BOUND(?P<number>\d+)", ("tries {bound} {number}",), ""),
     (r"(?:the )?(?:number of )?failures *BOUND(?P<number>\d+)", ("fails {bound} {number} per run",), ""),
     ("(?:the )?(?:mtbf|MTBF|mean time between failures) *BOUNDTIME", ("fails at most 1 per {time}",), ""),
+    (
+        rf"(?:the )?(?:average|mean) {_TIMES}(?: of SUBJECT|[^<>=:]*?) *BOUNDTIME",
+        ("{subject}takes {bound} {time} on average",),
+        "",
+    ),
+    ("SUBJECTtakes on average BOUNDTIME", ("{subject}takes {bound} {time} on average",), ""),
+    (
+        f"{_USES} on average BOUNDVALUE (?:(?:of|from) )?OTHER",
+        ("{subject}uses {bound} {value} of {other} on average",),
+        "",
+    ),
     (r"(?:the )?(?:number of )?successes *BOUND(?P<number>\d+)", ("succeeds {bound} {number} per run",), ""),
     # how probably
     ("(?:for |during )?(?:at least )?SHARE of (?:the |its |that )?time", ("in at least {share} of time",), ""),

@@ -24,6 +24,7 @@ from btq_lang.syntax.scan import line_end, line_start
 from btq_lang.syntax.suggestions import unknown_unit
 from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPERATOR, QUANTITY, STRING
 from btq_lang.syntax.tree import (
+    Average,
     Because,
     Clause,
     Confidence,
@@ -40,6 +41,7 @@ from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 
 EXPERIMENTS: Final = frozenset(("activations", "runs"))
+AVERAGE: Final = "average"
 TIME: Final = "time"  # a share of it, rather than of experiments
 ACTIONS: Final = ("fail", "halt", "warn", "log")
 METHODS: Final = ("monitor", "analysis", "test", "review")
@@ -68,7 +70,7 @@ def parse_clauses(cursor: Cursor, at_least_one: bool = False) -> tuple[Clause, .
 
 
 def parse_clause(cursor: Cursor) -> Clause | None:
-    """Clause = Claim | Scope | Odds | Confidence | Window | OnViolation | Goal | Because | How"""
+    """Clause = Claim | Scope | Average | Odds | Confidence | Window | OnViolation | Goal | Because | How"""
     word = cursor.raw if cursor.kind == NAME else ""
     if word in VERB_WORDS or word in SUBJECT_HEADS:
         return parse_claim(cursor)
@@ -80,6 +82,8 @@ def parse_clause(cursor: Cursor) -> Clause | None:
         return parse_confidence(cursor)
     if word == "over":
         return parse_window(cursor)
+    if word == "on" and cursor.is_word(cursor.index + 1, AVERAGE):
+        return parse_average(cursor)
     if word == "on" or word == "on_violation":
         return parse_on_violation(cursor)
     if word == "goal":
@@ -108,6 +112,13 @@ def parse_scope(cursor: Cursor) -> ScopeClause:
     cursor.skip_sign(":")
     condition = parse_cond(cursor)
     return ScopeClause(word.start, cursor.last_end(), word, condition)
+
+
+def parse_average(cursor: Cursor) -> Average:
+    """ "on" "average" """
+    start = cursor.take().start
+    cursor.advance()
+    return Average(start, cursor.last_end())
 
 
 def parse_odds(cursor: Cursor) -> Odds:

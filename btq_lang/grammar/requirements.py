@@ -370,5 +370,12 @@ _TITLES: Final = ("description", "title", "text")
 _A_TITLE: Final = "a title goes in quotes"
 _A_QUALITY: Final = "a quality goes after `:`"
 _BEGIN_CLAUSES: Final = frozenset(
-    (("in", "at"), ("with", "probability"), ("on", "violation"), ("over", "last"), ("verified", "by"))
+    (
+        ("in", "at"),
+        ("with", "probability"),
+        ("on", "violation"),
+        ("on", "average"),
+        ("over", "last"),
+        ("verified", "by"),
+    )
 )

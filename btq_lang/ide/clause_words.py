@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from btq_lang.catalog.verbs import COUNTING, VERBS
 from btq_lang.catalog.verbs import words as words_of
 from btq_lang.grammar.claims import HAPPENINGS
-from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS, TIME
+from btq_lang.grammar.clauses import ACTIONS, AVERAGE, EXPERIMENTS, METHODS, TIME
 from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS
 from btq_lang.syntax.tokens import BRACED, CLOSE, NAME, NUMBER, OPEN, QUANTITY, STRING, Token
 from btq_lang.util.record import Record, replace
@@ -198,7 +198,7 @@ _AFTER = {
     "less": Expected(("than",)),
     "more": Expected(("than",)),
     **dict.fromkeys(("while", "when", "if", "and", "or", "not"), _CONDITION),
-    "on": Expected(("violation",)),
+    "on": Expected(("violation", AVERAGE)),
     "violation": Expected(ACTIONS),
     "verified": Expected(("by",)),
     "by": Expected(METHODS),

@@ -113,8 +113,8 @@ def clauses(present: tuple[str, ...]) -> Iterator[Proposal]:
     """Verbs and heads of clauses, in the order in which a requirement is written; those that may occur once and do are
     left out."""
     for word, snippet in _CLAUSES:
-        head = word.split()[0]
-        if head not in _ONCE or head not in present:
+        head, *following = word.split()[:2]
+        if head not in _ONCE or not {head, *following}.issubset(present):
             yield keyword(word, snippet)
 
 
@@ -416,6 +416,7 @@ _CLAUSES = (
     ("sum of", None),
     ("while", None),
     ("when", None),
+    ("on average", None),
     ("in at least", "in at least ${1:95 %} of ${0:runs}"),
     ("with probability", "with probability >= ${1:95 %} of ${0:runs}"),
     ("confidence", "confidence ${0:95 %}"),

@@ -10,6 +10,7 @@ identified by its facts.  What they read is in workspace/inputs.py.
     model.py     a requirement with its words resolved
     paths.py, terms.py, reader.py   reading paths, values and conditions
     clauses.py   what each verb demands
+    shares.py, pooled.py   claims of a share of time, and those that are judged of all runs together
     classic.py, constraints.py   the same in SuccessIf and FailureIf of descriptions
     definitions.py   the requirement of a name
     attach.py    which requirement holds for which node

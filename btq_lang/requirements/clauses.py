@@ -12,8 +12,9 @@ from typing import Final
 
 from btq_lang.catalog.units import Dimension, a_dimension
 from btq_lang.catalog.verbs import VERBS
+from btq_lang.diagnostics.model import Place
 from btq_lang.requirements import model, nodes
-from btq_lang.requirements.pooled import judged_together
+from btq_lang.requirements.pooled import judged_together, on_average
 from btq_lang.requirements.reader import Reader
 from btq_lang.requirements.shares import of_time
 from btq_lang.requirements.terms import COUNT, DURATION, PERCENT, SORTS, TIME, Wanted, sort_of
@@ -49,6 +50,8 @@ def with_clauses(
             if condition is not None:
                 word = "while" if clause.word.raw == "while" else "when"
                 scopes.append(model.ResolvedScope(word, condition, reader.text(clause.start, clause.end)))  # type: ignore[arg-type]  # one of the two
+        elif isinstance(clause, syntax.Average):
+            keep("average", reader.place(Span(clause.start, clause.end)))
         elif isinstance(clause, syntax.Odds):
             keep("share" if clause.is_of_time else "odds", _odds(reader, clause))
         elif isinstance(clause, syntax.Confidence):
@@ -66,6 +69,9 @@ def with_clauses(
     if isinstance(share := once.pop("share", None), model.ResolvedOdds):
         claims, not_of_time = of_time(reader, claims, share)
         unread += not_of_time
+    if isinstance(average := once.pop("average", None), Place):
+        claims, without_mean = on_average(reader, claims, average.span)
+        unread += without_mean
     claims, not_together = judged_together(reader, claims, once.get("odds"))
     unread += not_together
     if goals:
@@ -124,7 +130,7 @@ def _verb(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | None:
             return None
         claim = replace(claim, of=of)
     per = _per(reader, written.per)
-    if per is None and (written.per is not None or written.counts or (operand == "rate" and not written.every)):
+    if per is None and (written.per is not None or written.form or (operand == "rate" and not written.every)):
         return None
     return claim if per is None else replace(claim, per=per)
 

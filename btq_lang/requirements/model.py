@@ -288,7 +288,7 @@ class ResolvedClaim(Record):
         event: of starts, ends, follows.
         every: `runs every d`.
         of: of a failure rate, the node whose time is its exposure; None: the time of the runs.
-        text: the clause as typed, blanks folded; with its share of time.
+        text: the clause as typed, blanks folded; with its share of time, or `on average`.
     """
 
     verb: str

@@ -1,4 +1,4 @@
-"""Claims that are judged of all runs together, as `fails at most 1 per 200 h`: what such a claim cannot have.
+"""Claims that are judged of all runs together, `fails at most 1 per 200 h` and `on average`: what they cannot have.
 
 One invariant: a claim that goes on has one bound, whatever the situation, and no odds.
 """
@@ -10,6 +10,29 @@ from collections.abc import Sequence
 from btq_lang.catalog.verbs import POOLED
 from btq_lang.requirements import model
 from btq_lang.requirements.reader import Reader
+from btq_lang.util.record import replace
+from btq_lang.util.text import Span
+
+
+def on_average(
+    reader: Reader, claims: Sequence[model.ResolvedClaim], span: Span
+) -> tuple[list[model.ResolvedClaim], list[str]]:
+    """The claims with `on average`, and the texts of those that measure nothing, which is reported.
+
+    Args:
+        span: of `on average`.
+    """
+    demanded: list[model.ResolvedClaim] = []
+    others: list[str] = []
+    for claim in claims:
+        if f"{claim.verb} on average" in POOLED:
+            demanded.append(replace(claim, verb=f"{claim.verb} on average", text=f"{claim.text} on average"))
+            continue
+        message = f"`on average` is for `takes` and `uses`, and `{claim.word}` has no mean"
+        notes = ("write it in a requirement with `takes` or `uses`; `mean(force)` is the mean of a signal",)
+        reader.complain("impossible-odds", span, message, notes=notes)
+        others.append(claim.text)
+    return demanded, others
 
 
 def judged_together(

@@ -120,7 +120,7 @@ class Claim(Part):
         per: of tries and counts: the path, or the word `run`; of runs: the quantity.
         event: of starts, ends, follows.
         every: `runs every d`.
-        counts: `succeeds at least 12 per run`.
+        form: `per` of `succeeds at least 12 per run`, which counts; else empty.
         of: of `fails at most 1 per 200 h of Dock`: the path.
     """
 
@@ -132,15 +132,15 @@ class Claim(Part):
     per: Path | Word | None = None
     event: Event | None = None
     every: bool = False
-    counts: bool = False
+    form: str = ""
     of: Path | None = None
 
     @property
     def row(self) -> str:
         """The verb's row in `catalog.verbs`: of `succeeds at least 12 per run` the one of `succeeds per`."""
-        if self.counts and isinstance(self.per, Word) and self.per.kind == QUANTITY:
+        if self.form and isinstance(self.per, Word) and self.per.kind == QUANTITY:
             return f"{self.verb.raw} per time"
-        return f"{self.verb.raw} per" if self.counts else self.verb.raw
+        return f"{self.verb.raw} {self.form}".rstrip()
 
 
 class ScopeClause(Part):
@@ -148,6 +148,10 @@ class ScopeClause(Part):
 
     word: Word
     condition: Condition | None
+
+
+class Average(Part):
+    """`on average`: of takes and uses, the mean of all activations is demanded."""
 
 
 class Odds(Part):
@@ -200,7 +204,7 @@ class How(Part):
     method: Word | None
 
 
-Clause: TypeAlias = Claim | ScopeClause | Odds | Confidence | Window | OnViolation | Goal | Because | How
+Clause: TypeAlias = Claim | ScopeClause | Average | Odds | Confidence | Window | OnViolation | Goal | Because | How
 
 
 # ---- Conditions -----------------------------------------------------------------------------------------------------

@@ -14,6 +14,7 @@ from typing import TypeAlias
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.syntax.clauses import Amount as Amount
 from btq_lang.syntax.clauses import Argument as Argument
+from btq_lang.syntax.clauses import Average as Average
 from btq_lang.syntax.clauses import Because as Because
 from btq_lang.syntax.clauses import Between as Between
 from btq_lang.syntax.clauses import Binary as Binary

@@ -34,6 +34,8 @@ CLAUSES = {
     "never of time": ("never low in at least 95 % of time",),
     "leaves": ("leaves battery > 3 %",),
     "uses": ("uses at most 20 % of battery", "uses at least 1 % of battery", "uses at most 3 of load"),
+    "takes on average": ("takes at most 30 s on average",),
+    "uses on average": ("uses at most 20 % of battery on average",),
     "tries": ("tries at most 3", "tries at most 3 per Top", "tries at least 2"),
     "succeeds per": ("succeeds at most 3 per run", "succeeds at most 3 per Top", "succeeds at least 12 per run"),
     "starts per": ("starts at most 3 per run", "starts at most 3 per Top"),

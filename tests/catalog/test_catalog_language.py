@@ -10,7 +10,7 @@ import pytest
 from btq_lang.catalog.language import PHRASES, Phrase, beginning, phrase_at, phrases_of
 from btq_lang.catalog.verbs import COUNTING
 from btq_lang.grammar.claims import HAPPENINGS, VERB_WORDS
-from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS, TIME
+from btq_lang.grammar.clauses import ACTIONS, AVERAGE, EXPERIMENTS, METHODS, TIME
 from btq_lang.grammar.conditions import FUNCTIONS, HEADS
 from btq_lang.grammar.item_words import ITEM_WORDS
 from btq_lang.parser import parse
@@ -31,7 +31,7 @@ def words_of(*parts: str) -> set[str]:
 
 
 def test_no_word_of_the_grammar_is_left_out() -> None:
-    others = {"every", "of", "time", "at", "least", "most", "per"}
+    others = {"every", "of", "time", "at", "least", "most", "per", "on", AVERAGE}
     assert words_of("claim") - others == VERB_WORDS | COUNTING
     assert words_of("event") - {"when"} == HAPPENINGS
     assert words_of("action") == set(ACTIONS)

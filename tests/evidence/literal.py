@@ -7,15 +7,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import isclose, sqrt
+from statistics import fmean, stdev
 from typing import TYPE_CHECKING, Any
 
 from literal_log import both, micros
 from literal_over_runs import OF_RUNS, OverRuns, all_of
 from literal_verbs import OPEN, OUT, Judged, counted
 
-from btq_lang.evidence.model import ROOT
+from btq_lang.evidence.model import ENOUGH, ROOT
 from btq_lang.evidence.odds import lower_limit, upper_limit
 from btq_lang.evidence.poisson import lower_number, upper_number
+from btq_lang.evidence.student import quantile
 from btq_lang.requirements.model import DurationSum, Interval, MissionRun, NodeTarget, Quantity
 
 if TYPE_CHECKING:
@@ -119,7 +122,7 @@ class Session:
             ones, others = ([each for each in judged if (each.run, each.uid) == (run, uid)] for judged in (early, late))
             if len(ones) == len(others):
                 found += [
-                    replace(other, verdict=alike(one.verdict, other.verdict))
+                    replace(other, verdict=alike(one.verdict, other.verdict), measures=ends(one, other))
                     for one, other in zip(ones, others, strict=True)
                 ]
             elif any(each.verdict != OUT for each in (*ones, *others)):
@@ -194,6 +197,12 @@ def alike(one: Verdict, other: Verdict) -> Verdict:
     return one if one == other else OPEN if {one, other} == {OPEN, OUT} else None
 
 
+def ends(one: Judged, other: Judged) -> tuple[float, float]:
+    """Between which a measure is; the lower one if they are nearly the same."""
+    low, high = sorted((*one.measures, *other.measures))[:: len(one.measures) * 2 - 1]
+    return (low, low) if high - low <= abs(low) * ENOUGH else (low, high)
+
+
 def both_parts(upper: Judged, lower: Judged) -> Judged:
     """`between` by what its ends come to: what is cut off, or not counted, is so by the upper one."""
     if isinstance(upper.verdict, str) or isinstance(lower.verdict, str):
@@ -221,6 +230,8 @@ class Literal:
             before += len(session.runs)
         judged.sort(key=lambda each: (self.runs[each.run].begin, each.run, each.at, each.decided))
         judged = self.last(requirement, judged)
+        if claim.verb.endswith(" on average"):
+            return ClauseResult(self.mean(requirement, claim, judged), tuple(judged), tuple(x.verdict for x in judged))
         experiments = [each.verdict for each in judged]
         if requirement.odds is not None and requirement.odds.experiments == "runs":
             of_runs = [[each.verdict for each in judged if each.run == run] for run in range(len(self.runs))]
@@ -234,6 +245,38 @@ class Literal:
         if verdict == "satisfied" and not nodes & ran:
             verdict = "never exercised"  # where others ran that it might have run in, or after
         return ClauseResult(verdict, tuple(judged), tuple(experiments))
+
+    def mean(self, requirement: ResolvedRequirement, claim: ResolvedClaim, judged: Sequence[Judged]) -> str:
+        """takes, uses … on average: the least and the most that the mean of what counts may be."""
+        assert claim.limit is not None
+        assert isinstance(claim.limit.value, Quantity)
+        verdicts = [each.verdict for each in judged]
+        if None in verdicts:
+            return "unknown"
+        limits = [each.measures for each in judged if each.verdict is True]
+        if not limits:
+            return "never exercised"
+        middles = [(low + high) / 2 for low, high in limits]
+        halves = [(high - low) / 2 for low, high in limits]
+        width = fmean(halves)
+        if requirement.confidence is not None:
+            if len(limits) < 2:
+                return "undecided"
+            deviation = stdev(middles) + sqrt(sum(half * half for half in halves) / (len(halves) - 1))
+            width += quantile(requirement.confidence, len(limits) - 1) * deviation / sqrt(len(limits))
+        low, high = fmean(middles) - width, fmean(middles) + width
+        least = claim.limit.value.si if claim.limit.relation not in ("<=", "<") else float("-inf")
+        most = claim.limit.value.si if claim.limit.relation in ("<=", "<") else float("inf")
+        if isinstance(claim.limit.upper, Quantity):
+            most = claim.limit.upper.si
+        for bound in (least, most):
+            low, high = (bound if isclose(end, bound, rel_tol=1e-12) else end for end in (low, high))
+        is_strict = claim.limit.relation in ("<", ">")
+        if (least < low and high < most) or (not is_strict and least <= low and high <= most):
+            return "satisfied"
+        if low > most or high < least or (is_strict and (low >= most or high <= least)):
+            return "violated"
+        return "undecided" if requirement.confidence is not None else "unknown"
 
     def rate(self, applied: Applied, claim: ResolvedClaim) -> ClauseResult:
         """fails at most m per d: the failures and the time of all runs."""

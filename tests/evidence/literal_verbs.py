@@ -29,6 +29,7 @@ class Judged:
     Attributes:
         at: its end, or that of the run.
         is_refused: it did not start.
+        measures: between which what goes into a mean is.
         decided: when that was decided, of several in a run that are judged when the run has ended.
     """
 
@@ -38,6 +39,7 @@ class Judged:
     at: int
     decided: int = 0
     is_refused: bool = False
+    measures: tuple[float, float] = (0.0, 0.0)
 
 
 class OfActivations(Log):
@@ -56,7 +58,10 @@ class OfActivations(Log):
             if self.is_stopped(each, claim, requirement) or self.is_refuted(each, claim, requirement)
             else judged(each, self.keeps(each, claim, requirement))
             if claim.verb in ("keeps", "never")
-            else judged(each, self.scoped(each, self.whole(each, claim, part), requirement))
+            else replace(
+                judged(each, self.scoped(each, self.whole(each, claim, part), requirement)),
+                measures=(self.measured(claim, each) or 0.0,) * 2 if claim.verb.endswith(" on average") else (0.0, 0.0),
+            )
             for each in self.of(uid)
         ]
 
@@ -154,6 +159,9 @@ class OfActivations(Log):
             if claim.limit is None:
                 return True if a.outcome == "S" else OPEN if a.outcome == "O" else OUT
             return self.bounded(a, (a.end - a.begin) / 1e6, claim.limit)
+        if claim.verb.endswith(" on average"):  # whatever it is
+            known: Truth = None if self.measured(claim, a) is None else True
+            return known if a.outcome in ("S", "F") else OPEN if a.outcome == "O" else OUT
         if claim.verb == "needs":
             holds = self.holds(claim.condition, a.start, a)
             return OPEN if holds and a.outcome == "O" else holds
@@ -162,6 +170,14 @@ class OfActivations(Log):
             return holds if a.outcome == "S" else OPEN if a.outcome == "O" else OUT
         assert claim.verb == "uses"
         return self.bounded(a, self.used(claim, a), claim.limit, part)
+
+    def measured(self, claim: ResolvedClaim, a: Activation) -> float | None:
+        """How long an activation lasts, or how much it uses."""
+        assert claim.limit is not None
+        is_bound_known = self.amount(claim.limit.value, a.start, a) is not None
+        if claim.signal is None:
+            return (a.end - a.begin) / 1e6 if is_bound_known else None
+        return self.used(claim, a) if is_bound_known else None
 
     def used(self, claim: ResolvedClaim, a: Activation) -> float | None:
         """How much of its signal an activation used, in SI, by the samples from the last one before it to its end.

@@ -247,6 +247,14 @@ def of_more(lines: list[str]) -> list[str]:
         relation = chance.choice(["at most", "at most", "less than", "at least"])
         lines[0] = f"{subject} fails {relation} {chance.choice([0, 0.5, 1, 2])} per {chance.randint(1, 20)} s{of}"
         lines.extend([f"confidence {chance.choice([60, 90])} %"] if chance.random() < 0.5 else [])
+    if (
+        len(lines) == 1
+        and re.search("^(?!from|sum).* (takes|uses) ", lines[0])
+        and not re.search(" if |limit", lines[0])
+        and chance.random() < 0.4
+    ):
+        lines.append("on average")
+        lines.extend([f"confidence {chance.choice([60, 90])} %"] if chance.random() < 0.5 else [])
     claims = [line for line in lines if line.split()[0] not in _HEADS]
     if all(re.search(" (keeps|never) ", line) for line in claims) and chance.random() < 0.4:
         share = f"{chance.choice([20, 50, 75, 90])} % of time"

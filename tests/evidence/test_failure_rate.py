@@ -10,8 +10,9 @@ from in_process import run_btq
 from test_run_verbs import BACK, CUT, FRESH, IDLE_RUN, TWICE, clause
 
 from btq_lang.catalog.units import parse_unit
+from btq_lang.evidence.amounts import Amounts
 from btq_lang.evidence.poisson import lower_number, upper_number
-from btq_lang.evidence.pools import Amounts, Demanded, Rate
+from btq_lang.evidence.rates import Demanded, Rate
 from btq_lang.evidence.verdicts import Verdict
 
 LONG = "0 1R 2R 3R 100 3S 2S 1S"  # 100 ms without a failure

@@ -107,6 +107,8 @@ LINES: list[tuple[str, str, str, str]] = [  # verb, demand, runs, line
         "Move::3: started 2 times, bound 1; 1 failed, 1 succeeded",
     ),
     ("fails per", "Move fails at most 0 per run", TWICE, "Move::3: failed 1 time, bound 0; 1 failed"),
+    ("takes on average", "Move takes at most 9 ms on average", TWICE, "Move::3: mean 10 ms of 2"),
+    ("uses on average", "Pick uses at most 3 % of battery on average", TWICE, "Pick::4: mean 40 % of 1"),
     ("fails per time", "Move fails at most 0 per 50 ms", TWICE, "Move::3: 1 in 50 ms"),
     (
         "finishes per",

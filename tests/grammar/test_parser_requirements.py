@@ -391,6 +391,7 @@ def test_words_that_are_verbs_before_a_bound_alone(clause: str, shown: str) -> N
         ("in at least 98% of runs", "odds >= 98% of runs"),
         ("with probability >= 98 %", "odds >= 98%"),
         ("with probability > 98 % of runs", "odds > 98% of runs"),
+        ("on average", "on average"),
         ("in at least 98 % of time", "odds >= 98% of time"),
         ("with probability > 98 % of time", "odds > 98% of time"),
         ("confidence 95 %", "confidence 95%"),

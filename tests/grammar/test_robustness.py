@@ -49,6 +49,7 @@ WORDS = (
         "probability",
         "confidence",
         "time",
+        "average",
     ),
     *("over", "last", "activations", "on", "violation", "fail", "goal", "because", "verified", "by", "review", "node"),
     *(

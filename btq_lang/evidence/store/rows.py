@@ -27,7 +27,7 @@ from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.clause import JudgedClause
-    from btq_lang.evidence.pools import Rate
+    from btq_lang.evidence.pools import Pool
     from btq_lang.evidence.verbs import Judgement
     from btq_lang.evidence.verdicts import ClauseVerdict
     from btq_lang.requirements.model import Quantity, ResolvedRequirement
@@ -144,7 +144,7 @@ class MissionRows:
         has_run: bool,
         missing: str,
         marks: Mapping[str, Quantity],
-        pool: Rate | None = None,
+        pool: Pool | None = None,
     ) -> None:
         """Write a clause.
 
@@ -161,7 +161,10 @@ class MissionRows:
         means = (verdict.of, counts, clause.unit, *of_odds, requirement.confidence, *of_window)
         marked = (marks[kind].si if kind in marks else None for kind in ("lower bound", "upper bound", "goal"))
         state = has_run, verdict.cut_off, missing
-        rate = pool.demanded.columns if pool is not None else (None,) * 4
+        rate: tuple[float | None, ...] = (None,) * 7
+        if pool is not None:
+            *bounds, seconds = pool.demanded.columns
+            rate = (*bounds, seconds, None, None, None) if seconds else (None, None, None, None, *bounds)
         self._rows.write["clauses"]((*self._whose, clause.index, *named, *means, *state, *marked, *rate))
 
     def _judged(self, clause: _Clause, of_runs: bool, judgement: Judgement, begin: int, end: int, path: str) -> None:

@@ -13,10 +13,12 @@ from typing import Final
 
 from btq_lang.catalog.units import Unit, parse_unit
 from btq_lang.diagnostics.model import Place
+from btq_lang.evidence.amounts import Amounts
 from btq_lang.evidence.clause_findings import verdict_of
 from btq_lang.evidence.conditions import Measure
+from btq_lang.evidence.means import Mean
 from btq_lang.evidence.odds import Limits
-from btq_lang.evidence.pools import Amounts, Demanded, Rate
+from btq_lang.evidence.rates import Demanded, Rate
 from btq_lang.evidence.store.queries import BY_RUN, QUERIES, Ask, Row
 from btq_lang.evidence.tally import MOST_RUNS, Run, Tally
 from btq_lang.evidence.verbs import Judgement
@@ -184,8 +186,13 @@ def _counted(row: Row, counts: Row | None, broken: Sequence[Row], unit: Unit) ->
     tally.violated, tally.unknown = int(counts["violated"]), int(counts["unclear"])
     tally.counted = int(counts["kept"]) + tally.violated
     tally.why = counts["why"] or ""
-    if tally.pool is not None and (amounts := _amounts(counts)) is not None:
+    if isinstance(tally.pool, Rate) and (amounts := _amounts(counts)) is not None:
         tally.pool.add(amounts)
+    elif isinstance(tally.pool, Mean) and counts["measured"]:
+        number, total, squares = counts["measured"], counts["total"], counts["squares"]
+        bound = tally.pool.demanded.value
+        beyond = total - number * bound, squares - 2 * bound * total + number * bound * bound
+        tally.pool.add((number, *beyond, counts["halves"], counts["squared_halves"]))
     tally.violations.extend(_violation(violation, unit) for violation in broken)
     if counts["bounded"]:
         si, bound = counts["bounded_si"], counts["bounded_bound_si"]
@@ -232,7 +239,10 @@ def _tally(row: Row) -> Tally:
     is_of_odds = odds is None or odds.experiments == row["last_of"]
     is_windowed = row["last_number"] is not None or row["last_seconds"] is not None
     limits: Limits = "window" if is_windowed else "every look"  # a store is looked at again when it has grown
-    pool = None
+    pool: Rate | Mean | None = None
+    if row["mean_strict"] is not None:
+        bounds = row["mean_low"], row["mean_high"], row["mean_strict"]
+        pool = Mean(Demanded.of_columns(*bounds, 0.0, _unit(row)), row["confidence"])
     if row["rate_seconds"] is not None:
         bounds = row["rate_low"], row["rate_high"], row["rate_strict"]
         pool = Rate(Demanded.of_columns(*bounds, row["rate_seconds"], _unit(row)), row["confidence"])

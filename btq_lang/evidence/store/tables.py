@@ -70,7 +70,8 @@ ROWS: Final = {
     # whether its node ran; `cut_off`: activations that the end of the log left undecided; `missing`: why it cannot be
     # judged, or not at all its nodes; `lower_si`, `upper_si`: of a clause with two bounds, unless they vary; `goal_si`:
     # what its requirement aims at; `rate_low` to `rate_high` in `rate_seconds`: the failure rate that it
-    # demands, of whose time `unit` is the unit; `rate_strict`: whether the bound itself violates it.
+    # demands, of whose time `unit` is the unit; `rate_strict`: whether the bound itself violates it; `mean_low`,
+    # `mean_high` and `mean_strict`: the same of a mean.
     "clauses": {
         **_WHOSE,
         "clause_index": "INTEGER",
@@ -98,6 +99,9 @@ ROWS: Final = {
         "rate_high": "DOUBLE",
         "rate_strict": "DOUBLE",
         "rate_seconds": "DOUBLE",
+        "mean_low": "DOUBLE",
+        "mean_high": "DOUBLE",
+        "mean_strict": "DOUBLE",
     },
     # What was judged: an activation, or a run for clauses about runs.  `verdict`: `satisfied`, `violated` or `unknown`;
     # `counted`: whether it counts: where runs are counted, one judgement of each run does; `at_us`: when it was
@@ -125,7 +129,18 @@ ROWS: Final = {
 }
 # Columns that the sets of earlier versions may lack; they are then NULL.
 OPTIONAL: Final = {
-    "clauses": ("lower_si", "upper_si", "goal_si", "rate_low", "rate_high", "rate_strict", "rate_seconds"),
+    "clauses": (
+        "lower_si",
+        "upper_si",
+        "goal_si",
+        "rate_low",
+        "rate_high",
+        "rate_strict",
+        "rate_seconds",
+        "mean_low",
+        "mean_high",
+        "mean_strict",
+    ),
     "verdicts": ("number", "number_most", "exposure_s", "exposure_most_s"),
 }
 # The columns that a verdict takes from its clause.

@@ -138,6 +138,7 @@ def test_sets_without_the_columns_of_this_version_are_read(store: Path) -> None:
     before = run_btq("report", "kept", cwd=store.parent)
     for path in store.glob("*/clauses.parquet"):
         columns = "lower_si, upper_si, goal_si, rate_low, rate_high, rate_strict, rate_seconds"
+        columns += ", mean_low, mean_high, mean_strict"
         duckdb.sql(f"COPY (SELECT * EXCLUDE ({columns}) FROM '{path}') TO '{path}.new' (FORMAT parquet)")
         Path(f"{path}.new").replace(path)
     for path in store.glob("*/verdicts.parquet"):
