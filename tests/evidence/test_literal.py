@@ -33,6 +33,7 @@ RARE: tuple[int, ...] = (
 )
 RARE += (185, 306, 466, 762)  # shares of time
 RARE += (1, 10, 13, 19, 58, 82, 112, 130, 143, 159, 299, 310, 670, 1336)  # counts
+RARE += (15, 68, 93, 107, 176, 234, 630, 868, 1584, 2729)  # means
 RARE += (49, 116, 314, 315, 574)  # failure rates
 # In these the two judges once differed.
 DIFFERED = (
