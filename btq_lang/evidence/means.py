@@ -15,7 +15,7 @@ from btq_lang.evidence.verdicts import SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, 
 from btq_lang.evidence.wording import measured, share
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.rates import Demanded
+    from btq_lang.evidence.rates import PoolBound
     from btq_lang.evidence.verbs import Judgement
 
 
@@ -23,12 +23,12 @@ class Mean:
     """The sums so far.
 
     Attributes:
-        demanded: of the mean; its time is none.
-        sums: how many values, the sums of their differences from the bound and of the squares of these, and the same of
-            half the distances between limits.
+        demanded: of the mean, without a time.
+        sums: how many values, the sum of the values less the bound, that of the squares of these, and both sums of half
+            the distances between limits.
     """
 
-    def __init__(self, demanded: Demanded, confidence: float | None) -> None:
+    def __init__(self, demanded: PoolBound, confidence: float | None) -> None:
         self.demanded: Final = demanded
         self.sums = (0.0, 0.0, 0.0, 0.0, 0.0)
         self._confidence: Final = confidence

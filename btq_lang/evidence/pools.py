@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TypeAlias
 
 from btq_lang.evidence.means import Mean
-from btq_lang.evidence.rates import Demanded, Rate
+from btq_lang.evidence.rates import PoolBound, Rate
 from btq_lang.requirements.model import Quantity, ResolvedClaim
 
 Pool: TypeAlias = Rate | Mean
@@ -21,7 +21,7 @@ def pool_of(claim: ResolvedClaim, confidence: float | None) -> Pool | None:
         return None
     upper = limit.upper.si if limit.upper is not None else None
     if claim.verb == "fails per time" and isinstance(claim.per, Quantity):
-        return Rate(Demanded(limit.relation, limit.value.si, upper, claim.per.si, claim.per.unit), confidence)
+        return Rate(PoolBound(limit.relation, limit.value.si, upper, claim.per.si, claim.per.unit), confidence)
     if claim.verb.endswith(" on average"):
-        return Mean(Demanded(limit.relation, limit.value.si, upper, 0.0, limit.value.unit), confidence)
+        return Mean(PoolBound(limit.relation, limit.value.si, upper, 0.0, limit.value.unit), confidence)
     return None

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.verbs import Judgement
 
 
-class Demanded(NamedTuple):
+class PoolBound(NamedTuple):
     """A rate that is demanded: so many in a time.
 
     Attributes:
@@ -36,7 +36,7 @@ class Demanded(NamedTuple):
         return low, high, float(self.relation in ("<", ">")), self.seconds
 
     @classmethod
-    def of_columns(cls, low: float | None, high: float | None, strict: float, seconds: float, unit: Unit) -> Demanded:
+    def of_columns(cls, low: float | None, high: float | None, strict: float, seconds: float, unit: Unit) -> PoolBound:
         """What has these columns."""
         if low is not None and high is not None:
             return cls("between", low, high, seconds, unit)
@@ -54,7 +54,7 @@ class Rate:
         amounts: of all runs.
     """
 
-    def __init__(self, demanded: Demanded, confidence: float | None) -> None:
+    def __init__(self, demanded: PoolBound, confidence: float | None) -> None:
         self.amounts = Amounts(0, 0, 0, 0)
         self.demanded: Final = demanded
         self._confidence: Final = confidence

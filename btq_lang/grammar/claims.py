@@ -80,6 +80,7 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
     every = False
     of: Path | None = None
     counts = verb.raw in COUNTING and bound_follows(cursor, cursor.index)
+    form = "per" if counts else ""
     operand = VERBS[verb.raw].operand if not counts else "count"
     if operand == "duration":
         bound = parse_bound(cursor)
@@ -119,7 +120,7 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
     else:
         bound = parse_within(cursor) if cursor.expect_word("within") else None
         event = parse_event(cursor) if cursor.expect_word("after", ("of", "from", "since")) else None
-    return Claim(start, cursor.last_end(), subject, verb, bound, condition, resource, per, event, every, "per" if counts else "", of)
+    return Claim(start, cursor.last_end(), subject, verb, bound, condition, resource, per, event, every, form, of)
 
 
 def is_time_of(cursor: Cursor, per: Path | Word | None) -> bool:

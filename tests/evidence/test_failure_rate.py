@@ -12,7 +12,7 @@ from test_run_verbs import BACK, CUT, FRESH, IDLE_RUN, TWICE, clause
 from btq_lang.catalog.units import parse_unit
 from btq_lang.evidence.amounts import Amounts
 from btq_lang.evidence.poisson import lower_number, upper_number
-from btq_lang.evidence.rates import Demanded, Rate
+from btq_lang.evidence.rates import PoolBound, Rate
 from btq_lang.evidence.verdicts import Verdict
 
 LONG = "0 1R 2R 3R 100 3S 2S 1S"  # 100 ms without a failure
@@ -103,7 +103,7 @@ def test_the_time_that_is_missing_decides() -> None:
     assert second is not None
 
     def verdict(seconds: float) -> tuple[Verdict, float | None]:
-        rate = Rate(Demanded("<=", 1.0, None, 200.0, second), 0.95)
+        rate = Rate(PoolBound("<=", 1.0, None, 200.0, second), 0.95)
         rate.add(Amounts(2, 2, round(seconds * 1e6), round(seconds * 1e6)))
         return rate.verdict(), rate.shown().more
 

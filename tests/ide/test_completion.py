@@ -103,7 +103,7 @@ def typed(line: str) -> str:
         # The grammar of clauses.
         ('QualityReq a "t" takes $0', ("at most", "at least", "less than", "more than", "between")),
         ('QualityReq a "t" takes at $0', ("most", "least")),
-        ('QualityReq a "t"\n    on $0', ("violation",)),
+        ('QualityReq a "t"\n    on $0', ("violation", "average")),
         ('QualityReq a "t"\n    on violation $0', ("fail", "halt", "warn", "log")),
         ('QualityReq a "t"\n    verified by $0', ("monitor", "analysis", "test", "review")),
         ('QualityReq a "t"\n    uses at most 3 Wh of $0', ("battery",)),
@@ -208,7 +208,7 @@ def test_all_that_may_stand_here(line: str, labels: tuple[str, ...]) -> None:
         (f"{TIMES}    takes at most 3 s if far > 3 m else 3 $0", ("s", "ms", "min"), ("km", "m", "%")),
         ('QualityReq a "t"\n    tries at most 3 $0', ("per", "if", "takes at most"), ("m", "s", "%")),
         ('QualityReq a "t"\n    fails at most 3 $0', ("per", "if"), ("m", "s", "%")),
-        ('QualityReq a "t"\n    takes at most 3 s\n    on $0', ("average", "violation"), ("s",)),
+        ('QualityReq a "t"\n    takes at most 3 s\n    on $0', ("violation", "average"), ("s",)),
         ('QualityReq a "t"\n    fails at most 1 per 200 $0', ("s", "h"), ("m", "%")),
         ('QualityReq a "t"\n    fails at most 1 per 200 h $0', ("of", "takes at most"), ("s",)),
         ('QualityReq a "t"\n    fails at most 1 per 200 h of $0', ("Main",), ("runs", "battery")),

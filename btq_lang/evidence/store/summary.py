@@ -18,7 +18,7 @@ from btq_lang.evidence.clause_findings import verdict_of
 from btq_lang.evidence.conditions import Measure
 from btq_lang.evidence.means import Mean
 from btq_lang.evidence.odds import Limits
-from btq_lang.evidence.rates import Demanded, Rate
+from btq_lang.evidence.rates import PoolBound, Rate
 from btq_lang.evidence.store.queries import BY_RUN, QUERIES, Ask, Row
 from btq_lang.evidence.tally import MOST_RUNS, Run, Tally
 from btq_lang.evidence.verbs import Judgement
@@ -242,10 +242,10 @@ def _tally(row: Row) -> Tally:
     pool: Rate | Mean | None = None
     if row["mean_strict"] is not None:
         bounds = row["mean_low"], row["mean_high"], row["mean_strict"]
-        pool = Mean(Demanded.of_columns(*bounds, 0.0, _unit(row)), row["confidence"])
+        pool = Mean(PoolBound.of_columns(*bounds, 0.0, _unit(row)), row["confidence"])
     if row["rate_seconds"] is not None:
         bounds = row["rate_low"], row["rate_high"], row["rate_strict"]
-        pool = Rate(Demanded.of_columns(*bounds, row["rate_seconds"], _unit(row)), row["confidence"])
+        pool = Rate(PoolBound.of_columns(*bounds, row["rate_seconds"], _unit(row)), row["confidence"])
     tally = Tally(odds, row["confidence"], limits, row["last_number"] if is_of_odds else None, pool)
     tally.cut_off = int(row["cut_off"])
     return tally
