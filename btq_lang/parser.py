@@ -14,8 +14,9 @@ from typing import Final, TypeAlias
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix, shifted
 from btq_lang.grammar.attributes import parse_pairs
 from btq_lang.grammar.claims import VERB_WORDS, report_slip
-from btq_lang.grammar.conditions import HEADS
+from btq_lang.grammar.conditions import HEADS, METADATA_HEADS
 from btq_lang.grammar.cursor import Cursor
+from btq_lang.grammar.hazards import parse_hazard
 from btq_lang.grammar.item_words import ITEM_WORDS, item_word_meant, read_as
 from btq_lang.grammar.items import (
     parse_apply,
@@ -201,6 +202,8 @@ def parse_item(parser: Parser, level: int, in_root: bool) -> None:
         item = parse_quality_decl(cursor)
     elif word == "qualities":
         item = parse_qualities(cursor)
+    elif word == "hazard":
+        item = parse_hazard(cursor, own_level)
     elif word == "xml":
         item = parse_verbatim(cursor)
     else:
@@ -294,7 +297,7 @@ def skipped(cursor: Cursor, level: int) -> SkippedLines:
         notes = ('another file is read with `include "stations.btq"`',)
     elif cursor.kind == NAME and cursor.raw in NODE_CLAUSES:
         notes = ("write it after a node, or indented in the block of a node or BehaviorTree",)
-    elif cursor.kind == NAME and (cursor.raw in VERB_WORDS or cursor.raw in HEADS):
+    elif cursor.kind == NAME and (cursor.raw in VERB_WORDS or cursor.raw in HEADS or cursor.raw in METADATA_HEADS):
         notes = ("a clause goes in the block of a QualityReq, indented",)
     elif cursor.kind == NAME and cursor.raw in DIRECTIONS:
         notes = ("a port goes in the block of a model or BehaviorTree, indented",)
@@ -403,6 +406,7 @@ _OTHER_ITEMS: Final = {  # words of other languages, in lower case
     **dict.fromkeys(("mission", "tree", "behaviourtree", "bt", "def", "class"), "BehaviorTree"),
     **dict.fromkeys(("sensor", "variable", "var", "measure", "metric"), "signal"),
     **dict.fromkeys(("mode", "situation"), "context"),
+    **dict.fromkeys(("risk", "danger", "threat", "harm"), "hazard"),
 }
 _PYTHON_HEAD: Final = re.compile(r"([^\W\d]\w*)[ \t]*(?:\([^()\r\n]*\))?[ \t]*:(?=[ \t]*[\r\n])")
 

@@ -21,6 +21,7 @@ from btq_lang.projects.cpp_files import CppFiles
 from btq_lang.util.record import replace
 from btq_lang.util.text import Edit, LineIndex, apply_edits
 from btq_lang.workspace.config import Project
+from btq_lang.workspace.external_requirements import RequirementSettings
 from btq_lang.workspace.file import CPP_SUFFIXES
 from btq_lang.workspace.workspace import Workspace
 
@@ -74,6 +75,9 @@ def assert_marked(text: str, name: str = "main.btq") -> None:
         project = replace(workspace.project, node_files=nodes, engines=engines)
         target = given["target"] or given["nodes"] or given["engine"]
         workspace = with_target(workspace.with_project(project), target)
+    if text.startswith('# approval = "required" in btq.toml'):
+        settings = RequirementSettings(requires_approval=True)
+        workspace = workspace.with_project(replace(workspace.project, requirements=settings))
     expected: Announced = Counter()
     found: Announced = Counter()
     for path, content in files.items():

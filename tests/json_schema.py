@@ -21,7 +21,7 @@ def violations(
     types = schema.get("type", [])
     if types and not any(is_of(value, each) for each in ([types] if isinstance(types, str) else types)):
         yield f"{at}: {value!r} is no {types}"
-    if "pattern" in schema and not re.search(schema["pattern"], value):
+    if "pattern" in schema and isinstance(value, str) and not re.search(schema["pattern"], value):
         yield f"{at}: {value!r}"
     if isinstance(value, dict):
         yield from (f"{at}: no {key}" for key in schema.get("required", ()) if key not in value)

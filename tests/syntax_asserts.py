@@ -17,7 +17,9 @@ from btq_lang.parser import Parsed, parse
 from btq_lang.syntax.tokens import DEDENT, INDENT, QUANTITY, STRING, Token
 from btq_lang.syntax.tree import (
     Amount,
+    AnyEvent,
     Apply,
+    Approval,
     Average,
     Because,
     Between,
@@ -31,15 +33,20 @@ from btq_lang.syntax.tree import (
     Condition,
     Confidence,
     Context,
+    EachEvent,
     Entry,
     Event,
     Every,
     Goal,
+    Hazard,
+    HazardClause,
+    HazardSeverity,
     How,
     Include,
     Item,
     Meta,
     Mission,
+    Mitigates,
     Model,
     Models,
     Negative,
@@ -53,9 +60,11 @@ from btq_lang.syntax.tree import (
     Pair,
     Path,
     Port,
+    Priority,
     Qualities,
     QualityDecl,
     QualityPath,
+    Refines,
     ReqRef,
     Requirement,
     Root,
@@ -65,6 +74,7 @@ from btq_lang.syntax.tree import (
     Selector,
     Signal,
     SkippedLines,
+    Source,
     Subject,
     Sum,
     Table,
@@ -303,6 +313,12 @@ def _(item: QualityDecl) -> str:
 
 
 @show_item.register
+def _(item: Hazard) -> str:
+    head = words("hazard", show(item.name), show_optional(item.text))
+    return block(head, *map(show_clause, item.clauses))
+
+
+@show_item.register
 def _(item: Models) -> str:
     return block("models", *(show_item(model) for model in item.models))
 
@@ -445,13 +461,13 @@ def show_requirement_head(requirement: Requirement) -> str:
     return words(
         "classic" if requirement.classic else "",
         show(requirement.name) + (f"({parameters})" if parameters else ""),
-        f": {show_quality(requirement.quality)}" if requirement.quality else "",
+        f": {' and '.join(map(show_quality, requirement.qualities))}" if requirement.quality else "",
         show_optional(requirement.text),
     )
 
 
 @singledispatch
-def show_clause(clause: Clause) -> str:
+def show_clause(clause: Clause | HazardClause) -> str:
     raise TypeError(f"{type(clause).__name__} has no outline")
 
 
@@ -459,7 +475,7 @@ def show_clause(clause: Clause) -> str:
 def _(clause: Claim) -> str:
     verb = clause.verb.raw
     parts = [show_subject(clause.subject) if clause.subject else "", verb, "every" if clause.every else ""]
-    if clause.bound or verb not in ("needs", "keeps", "never", "leaves", "succeeds", "follows"):
+    if clause.bound or verb not in ("needs", "keeps", "never", "leaves", "succeeds", "follows", "followed"):
         parts.append(show_bound(clause.bound))
     if clause.condition or verb in ("needs", "keeps", "never", "leaves"):
         parts.append(show_condition(clause.condition))
@@ -470,7 +486,7 @@ def _(clause: Claim) -> str:
     if clause.of is not None:
         parts.append(f"of {show_path(clause.of)}")
     if clause.event or (verb in ("starts", "ends", "follows") and not clause.form):
-        parts += ["after" if verb != "follows" else "", show_event(clause.event)]
+        parts += ["after" if verb in ("starts", "ends") else "", show_event(clause.event)]
     return words(*parts)
 
 
@@ -516,7 +532,39 @@ def _(clause: Because) -> str:
 
 @show_clause.register
 def _(clause: How) -> str:
-    return words("verified by", show(clause.method))
+    return words(
+        "verified by", ", ".join(words(show(way.method), show_optional(way.id)) for way in clause.ways) or MISSING
+    )
+
+
+@show_clause.register
+def _(clause: Source) -> str:
+    return words("source", show(clause.text))
+
+
+@show_clause.register
+def _(clause: Refines) -> str:
+    return words("refines", ", ".join(map(show, clause.names)) or MISSING)
+
+
+@show_clause.register
+def _(clause: Mitigates) -> str:
+    return words("mitigates", ", ".join(map(show, clause.names)) or MISSING)
+
+
+@show_clause.register
+def _(clause: Priority) -> str:
+    return words("priority", show(clause.tag))
+
+
+@show_clause.register
+def _(clause: HazardSeverity) -> str:
+    return words("severity", show(clause.tag))
+
+
+@show_clause.register
+def _(clause: Approval) -> str:
+    return words("approved by", show(clause.by), "on", show(clause.on), show_optional(clause.of, "of "))
 
 
 def show_subject(subject: Subject) -> str:
@@ -529,6 +577,8 @@ def show_subject(subject: Subject) -> str:
         inner = f"sum of {', '.join(map(show_path, subject.paths)) or MISSING}"
     elif isinstance(subject, Between):
         inner = f"from {show_event(subject.first)} to {show_event(subject.last)}"
+    elif isinstance(subject, EachEvent):
+        inner = f"each {show_event(subject.event)}"
     else:
         inner = show_path(subject)
     return f"<{inner}>"
@@ -538,9 +588,11 @@ def show_path(path: Path | None) -> str:
     return "/".join(map(show, path.names)) if path else MISSING
 
 
-def show_event(event: Event | None) -> str:
+def show_event(event: Event | AnyEvent | None) -> str:
     if event is None:
         return MISSING
+    if isinstance(event, AnyEvent):
+        return " or ".join(map(show_event, event.atoms))
     if event.happening == "when":
         return words("when", show_condition(event.condition))
     return words(show_path(event.path) if event.path else "(mission)", event.happening)

@@ -27,7 +27,9 @@ def grammar() -> str:
             "fileTypes": ["btq", "qualitybtcpp"],
             "patterns": [
                 _include("comment"),
-                *map(_include, ("file", "quality", "models", "port", "signal", "context", "apply", "verbatim")),
+                *map(
+                    _include, ("file", "quality", "hazard", "models", "port", "signal", "context", "apply", "verbatim")
+                ),
                 *map(_include, ("requirement", "tree", "node-clause", "clause-line", "node", "group")),
             ],
             "repository": _REPOSITORY,
@@ -142,6 +144,7 @@ _REPOSITORY: dict[str, Rule] = {
         "comment",
         "string",
     ),
+    "hazard": _region(rf"^\s*(hazard)(?=\s+[\w\"'])\s*({_NAME})?", _LINE, (_ITEM, _REQUIREMENT), "comment", "string"),
     "models": _match(rf"^\s*({words.MODELS})(?=\s*(?:[(#/]|$))", _ITEM),
     "port": _region(
         rf"^\s*({_any(words.PORT_WORDS)})(?!\s*[=(\w-]*=|[\w-])\s*({_NAME})?(?:\s*(:)\s*((?:{_NAME}|::)+))?",
@@ -207,6 +210,7 @@ _REPOSITORY: dict[str, Rule] = {
     # A clause's line begins with its head or verb, or with the subject whose verb follows at once.
     "clause-line": _region(
         rf"^\s*(?=(?:{_any((*words.HEAD_WORDS, *words.VERB_WORDS))})\s+[\w\"'(-]+(?!\s*=(?!=))"
+        r"|each\s.*\sis\s+followed\s"
         rf"|{_NAME_OR_STRING}(?:/{_NAME_OR_STRING})*\s+(?:{_any(words.VERB_WORDS)})\s+\w+(?!\s*=))",
         _LINE,
         (),

@@ -69,6 +69,7 @@ syntax keyword btqBoolean {" ".join(words.TRUTH)}
 " Clauses: the words of a line that begins with one, or of what stands behind QualityReq.
 syntax match btqClauseLine /^\\s*\\zs\\%({heads}\\)\\>\\s\\+\\%(=\\)\\@!.*$/ contains=@btqClause
 syntax match btqClauseLine /^\\s*\\zs\\%(\\k\\|[\\/"' ]\\)\\+\\s\\%({_any(words.VERB_WORDS)}\\)\\s\\+\\%(at\\|within\\|every\\|after\\|less\\|more\\|between\\)\\>.*$/ contains=@btqClause
+syntax match btqClauseLine /^\\s*\\zseach\\s.*\\sis\\s\\+followed\\s.*$/ contains=@btqClause
 syntax region btqRequirementLine matchgroup=btqItem start=/\\%(\\k\\)\\@<!QualityReq\\>\\%(\\s*=\\)\\@!/ end=/$/ end=/)\\@=/ keepend contains=@btqClause,btqQualityType,btqKey,btqParameters,btqRequirementName
 syntax match btqRequirementName /\\%(QualityReq\\s\\+\\%(ID\\s*=\\s*\\)\\?\\)\\@<=\\%(ID\\s*=\\)\\@!{name}/ contained
 syntax region btqSignalLine matchgroup=btqItem start=/^\\s*\\zs\\%(signal\\|context\\|apply\\)\\>\\%(\\s*=\\)\\@!/ end=/$/ keepend contains=@btqClause,btqUnitType

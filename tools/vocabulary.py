@@ -14,21 +14,34 @@ from btq_lang.catalog.nodes import KNOWN_WORDS, spellings
 from btq_lang.catalog.qualities import EDITIONS, qualities
 from btq_lang.catalog.quality_words import ALIASES, AMBIGUOUS, PAPER_NAMES
 from btq_lang.catalog.units import SYMBOLS as UNITS
+from btq_lang.catalog.verbs import words
 from btq_lang.grammar.claims import HAPPENINGS
-from btq_lang.grammar.claims import VERB_WORDS as VERBS
+from btq_lang.grammar.claims import VERB_WORDS as VERBS_OF_SUBJECTS
 from btq_lang.grammar.clauses import ACTIONS, AVERAGE, EXPERIMENTS, METHODS, TIME
-from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS, HEADS
+from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS, HEADS, METADATA_HEADS
+from btq_lang.grammar.hazards import HAZARD_HEADS
 from btq_lang.syntax.tokens import DIRECTIONS, NODE_CLAUSES, SYMBOLS
 
 # Words that open an item of a file; what stands behind them differs, so each grammar treats them one by one.
-ITEMS = ("BehaviorTree", "Root", "include", "signal", "context", "apply", "quality", "qualities", "QualityReq")
+ITEMS = (
+    "BehaviorTree",
+    "Root",
+    "include",
+    "signal",
+    "context",
+    "apply",
+    "quality",
+    "qualities",
+    "QualityReq",
+    "hazard",
+)
 MODELS = "TreeNodesModel"
 
 # The words inside clauses that no table of the parser lists, because a function of it reads each where it stands.
 PARTICLES = (
     "at", "most", "least", "less", "more", "than", "between", "and", "to", "of",
     "per", "every", "within", "after", "with", "probability", "last", "violation", "by", "if",
-    "else", "sum", "under", "except", "node", "tagged", "from",
+    "assuming", "else", "for", "sum", "under", "except", "node", "tagged", "from", "each", "is", "occurrences",
 )  # fmt: skip
 SIGNAL_WORDS = ("from", "level", "counter", "gauge", "fresh", "within", "initially")
 LOGIC = ("and", "or", "not")
@@ -59,9 +72,12 @@ NODE_SYMBOLS = longest_first(SYMBOLS)
 CATEGORY_WORDS = CATEGORIES
 PORT_WORDS = longest_first(DIRECTIONS)
 CLAUSE_WORDS = tuple(sorted(NODE_CLAUSES))
-VERB_WORDS = longest_first(VERBS)
-HEAD_WORDS = longest_first(HEADS)
-REQUIREMENT_WORDS = longest_first((*VERBS, *HEADS, *HAPPENINGS, *EXPERIMENTS, TIME, AVERAGE, *PARTICLES))
+VERB_WORDS = longest_first(VERBS_OF_SUBJECTS)
+ANSWERS = sorted(words(operands=("answer",)))
+HEAD_WORDS = longest_first((*HEADS, *METADATA_HEADS, *HAZARD_HEADS))
+REQUIREMENT_WORDS = longest_first(
+    (*VERB_WORDS, *ANSWERS, *HEAD_WORDS, *HAPPENINGS, *EXPERIMENTS, TIME, AVERAGE, *PARTICLES)
+)
 OUTCOME_WORDS = longest_first((*ACTIONS, *METHODS))
 FUNCTION_WORDS = longest_first(FUNCTIONS)
 COMPARISON_SIGNS = longest_first(COMPARISONS)

@@ -16,6 +16,7 @@ from typing import Final, TypeAlias
 
 from btq_lang.catalog.units import Unit, from_si
 from btq_lang.requirements.model import (
+    Age,
     Aggregate,
     All,
     Any,
@@ -87,6 +88,15 @@ def table_script(table: ResolvedTable, spelt: Callable[[Bounded], str], stored: 
         value = spelt(case.value)
         script = f"({condition_script(case.condition, stored)} ? {value} : {script})" if case.condition else value
     return script
+
+
+def table_in_condition(table: ResolvedTable, unit: Unit | None) -> str:
+    """The script of a table as a part of a condition, in a unit (None: SI).
+
+    Raises:
+        NoScript: with the reason.
+    """
+    return table_script(table, lambda value: number_script(value, unit, table_in_condition), table_in_condition)
 
 
 def all_of(scripts: Iterable[str]) -> str:
@@ -176,6 +186,8 @@ def number_script(number: Number, unit: Unit | None, stored: Stored) -> str:
         return f"({left} {number.operator} {right})"
     if isinstance(number, ResolvedTable):
         return stored(number, unit)
+    if isinstance(number, Age):
+        raise NoScript(f"a script cannot tell how old `{number.signal.name}` is")
     if isinstance(number, Aggregate):
         raise NoScript(f"a script cannot read the samples of `{number.function}({number.signal.name})`")
     raise NoScript(f"`{number.name}` has no value")

@@ -17,6 +17,7 @@ from btq_lang.lexer import tokens
 from btq_lang.syntax.tokens import COMMENT
 from btq_lang.syntax.tree import (
     Apply,
+    Approval,
     Entry,
     NodeClause,
     QualityPath,
@@ -71,13 +72,15 @@ def requirement_line(
         quality: the enclosing one, if it does not name one itself.
         arguments: the arguments of its use, with the brackets.
     """
-    path = requirement.quality or quality
+    paths = requirement.qualities or (() if quality is None else (quality,))
     name = requirement.name.text if requirement.name is not None else ""
     name += arguments
-    head = f"{name} ({path.names[-1].text})" if path is not None else name
+    head = f"{name} ({', '.join(path.names[-1].text for path in paths)})" if paths else name
     parts = [requirement.text.text] if requirement.text is not None else []
     parts += [
-        _source_text(file, entry.start + clause.start, entry.start + clause.end) for clause in requirement.clauses
+        _source_text(file, entry.start + clause.start, entry.start + clause.end)
+        for clause in requirement.clauses
+        if not isinstance(clause, Approval)  # which would change what is built
     ]
     return _on_one_line(f"{head}: {'; '.join(parts)}" if parts else head)
 

@@ -20,6 +20,7 @@ from btq_lang.requirements.model import (
     MissionRun,
     NodeTarget,
     ResolvedClaim,
+    ResolvedEachEvent,
     ResolvedRequirement,
     ResolvedSignal,
 )
@@ -36,7 +37,7 @@ def way_instead(requirement: ResolvedRequirement) -> tuple[Way, str] | None:
     """The way in which the clauses of a requirement are checked instead of enforced, and why; None if the engine is to
     enforce them."""
     if requirement.is_verified_by_people:
-        return "reviewed", f"verified by {requirement.method}"
+        return "reviewed", requirement.verification
     return None if requirement.demands_enforcement else ("monitored", "")
 
 
@@ -102,6 +103,10 @@ class Enforceability:
             raise NotEnforced("a probability is evaluated in the logs of many runs")
         if requirement.window is not None:
             raise NotEnforced("a window is evaluated in the logs of many runs")
+        if isinstance(subject, ResolvedEachEvent):
+            raise NotEnforced(VERBS[claim.verb].why_monitored)
+        if requirement.assumptions:
+            raise NotEnforced("whether its assumption holds all along is known only at the end")
         if isinstance(subject, NodeTarget) and subject.through:
             raise NotEnforced("its path names only some instances of a node")
         if (

@@ -17,6 +17,7 @@ from btq_lang.btcpp.conditions import (
     number_script,
     real,
     signal_script,
+    table_in_condition,
     table_script,
 )
 from btq_lang.btcpp.document import Element
@@ -33,7 +34,9 @@ from btq_lang.requirements.model import (
     MissionRun,
     NodeTarget,
     Quantity,
+    ResolvedAnyEvent,
     ResolvedClaim,
+    ResolvedEvent,
     ResolvedRequirement,
     ResolvedSignal,
     ResolvedTable,
@@ -132,7 +135,8 @@ class ClauseGuard:
         return self.leaf("ScriptCondition", what, code, f"{self.stop} := true" if self.stop else None)
 
     def script(self, condition: Condition) -> str:
-        return condition_script(condition, self.stored)
+        """The script of a condition; its tables are read with it, not when the node starts."""
+        return condition_script(condition, table_in_condition)
 
     def at_start(self, what: str, script: str) -> str:
         """A variable of the tree that is set to this value when the node starts."""
@@ -263,6 +267,19 @@ def _leaves(guard: ClauseGuard) -> None:
     guard.wrap(CHECK, "Sequence", "leaves", after=(guard.condition("check", code),))
 
 
+def _ends_with(guard: ClauseGuard) -> None:
+    """`<Sequence>X<ScriptCondition code="φ"/></Sequence>`; a failure fails anyway, and halts the mission if φ does
+    not hold then.
+    """
+    code = guard.script(_condition(guard))
+    if (when := guard.when()) is not None:
+        code = f"((!{when}) || {code})"
+    guard.wrap(CHECK, "Sequence", "ends", after=(guard.condition("check", code),))
+    if guard.stop:
+        failed = f"{guard.stop} := ({guard.stop} || (!{code}))"
+        guard.wrap(INSIDE, "Sequence", "failed", attributes=(("_onFailure", failed),))
+
+
 def _uses(guard: ClauseGuard) -> None:
     """The signal's value at the start, and two conditions: while the node runs, and when it has succeeded."""
     signal = guard.claim.signal
@@ -285,7 +302,7 @@ def _tries(guard: ClauseGuard) -> None:
     """A counter of starts; where the clause says `per` a node, each start of that node resets it."""
     count, most = _counter(guard)
     code = f"(({count} + 1.0) {most})"
-    guard.wrap(CONDITION, "Sequence", guard.claim.word, before=(guard.condition("check", code),))
+    guard.wrap(CONDITION, "Sequence", guard.claim.head, before=(guard.condition("check", code),))
     counter = guard.leaf("Script", "counter", f"{count} := ({count} + 1.0)")
     guard.wrap(INSIDE, "Sequence", "counted", before=(counter,))
     _reset(guard, count)
@@ -294,17 +311,17 @@ def _tries(guard: ClauseGuard) -> None:
 def _results(guard: ClauseGuard) -> None:
     """A counter of results, and a condition after a success; a failure that is one too many is the violation itself."""
     count, most = _counter(guard)
-    attribute = _RECORDED_BY[guard.claim.word]
+    attribute = _RECORDED_BY[guard.claim.head]
     assert attribute is not None, "it records a result"
     is_kept = f"({count} {most})"
-    if guard.claim.word != "fails":
+    if guard.claim.head != "fails":
         guard.wrap(CHECK, "Sequence", "results", after=(guard.condition("check", is_kept),))
-    if guard.stop and guard.claim.word != "succeeds":
+    if guard.stop and guard.claim.head != "succeeds":
         failed = f"{guard.stop} := ({guard.stop} || (!{is_kept}))"
         guard.wrap(INSIDE, "Sequence", "failed", attributes=(("_onFailure", failed),))
     guard.wrap(INSIDE, "Sequence", "counted", attributes=((attribute, f"{count} := ({count} + 1.0)"),))
     _reset(guard, count)
-    if guard.claim.word != "succeeds" and not guard.stop:
+    if guard.claim.head != "succeeds" and not guard.stop:
         guard.notes.append("a failure that is one too many is the violation itself")
 
 
@@ -331,24 +348,45 @@ def _follows(guard: ClauseGuard) -> None:
     guard.refuse_scopes()
     event = guard.claim.event
     assert event is not None, "the clause names one"
-    subject = event.subject
-    is_start = isinstance(subject, MissionRun) and event.happening == "starts"
-    if not is_start and (not isinstance(subject, NodeTarget) or event.happening not in _RECORDED_BY):
-        raise NotEnforced("the engine runs no script at this event")
-    if isinstance(subject, NodeTarget) and subject.through:
-        raise NotEnforced("its event names only some instances of a node")
-    flag = guard.entry("seen", "true" if is_start else "false")
+    flag = guard.entry("seen", "true" if _is_recorded(event) else "false")
     guard.wrap(CONDITION, "Sequence", "follows", before=(guard.condition("check", f"({flag} == true)"),))
     reset = guard.leaf("Script", "taken", f"{flag} := false")
     guard.wrap(INSIDE, "Sequence", "started", before=(reset,))
-    if not isinstance(subject, NodeTarget):
-        return
-    attribute = _RECORDED_BY[event.happening]
-    note = f"{flag} := true"
-    if attribute is None:
-        guard.wrap(INSIDE, "Sequence", "event", before=(guard.leaf("Script", "seen", note),), node=subject.node)
-    else:
-        guard.wrap(INSIDE, "Sequence", "event", attributes=((attribute, note),), node=subject.node)
+    _record(guard, event, "event", "seen", f"{flag} := true")
+
+
+def _is_recorded(event: ResolvedEvent | ResolvedAnyEvent) -> bool:
+    """Whether an event has happened when the mission starts.
+
+    Raises:
+        NotEnforced: the engine does not notice the event.
+    """
+    has_happened = False
+    for atom in event.atoms:
+        is_start = isinstance(atom.subject, MissionRun) and atom.happening == "starts"
+        if not is_start and (not isinstance(atom.subject, NodeTarget) or atom.happening not in _RECORDED_BY):
+            raise NotEnforced("the engine runs no script at this event")
+        if isinstance(atom.subject, NodeTarget) and atom.subject.through:
+            raise NotEnforced("its event names only some instances of a node")
+        has_happened = has_happened or is_start
+    return has_happened
+
+
+def _record(
+    guard: ClauseGuard, event: ResolvedEvent | ResolvedAnyEvent, what: str, script_name: str, script: str
+) -> None:
+    """Have a script run at an event; none does at the start of the mission."""
+    for number, atom in enumerate(event.atoms, 1):
+        if not isinstance(atom.subject, NodeTarget):
+            continue
+        attribute = _RECORDED_BY[atom.happening]
+        suffix = f"_{number}" if number > 1 else ""
+        node = atom.subject.node
+        if attribute is None:
+            leaf_before = (guard.leaf("Script", f"{script_name}{suffix}", script),)
+            guard.wrap(INSIDE, "Sequence", f"{what}{suffix}", before=leaf_before, node=node)
+        else:
+            guard.wrap(INSIDE, "Sequence", f"{what}{suffix}", attributes=((attribute, script),), node=node)
 
 
 def _upper_bound(guard: ClauseGuard) -> Limit:
@@ -390,6 +428,7 @@ _BY_VERB: Final[dict[str, Callable[[ClauseGuard], None]]] = {
     "keeps": _keeps,
     "never": _keeps,
     "leaves": _leaves,
+    "ends with": _ends_with,
     "uses": _uses,
     "tries": _tries,
     "starts per": _tries,

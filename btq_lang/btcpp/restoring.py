@@ -23,6 +23,7 @@ from btq_lang.syntax.tree import (
     Apply,
     Context,
     Entry,
+    Hazard,
     Include,
     Models,
     Node,
@@ -216,4 +217,4 @@ def _attaching(parsed: Parsed, entry: Entry, part: Tree | Node | None, text: str
     return Edit(Span(line, line), f"{parsed.text[line:first]}{text}\n")
 
 
-_WITHOUT_ELEMENT = (Qualities, QualityDecl, Signal, Context, Requirement, Apply)
+_WITHOUT_ELEMENT = (Qualities, QualityDecl, Signal, Context, Requirement, Apply, Hazard)

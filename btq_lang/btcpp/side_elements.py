@@ -87,7 +87,8 @@ def _line(requirement: Mapping[str, Any], applied: Mapping[str, Any]) -> str:
     """`rq1 (time-behaviour): Reach it in time; takes at most 30 s (enforced); on violation fail`."""
     arguments = ", ".join(f"{name} = {value['text']}" for name, value in applied.get("arguments", {}).items())
     name = f"{requirement['id']}({arguments})" if arguments else requirement["id"]
-    quality = requirement.get("quality", "").rpartition(".")[2]
+    qualities = [requirement.get("quality", ""), *requirement.get("further_qualities", ())]
+    quality = ", ".join(name.rpartition(".")[2] for name in qualities)
     parts = [requirement["title"]] if "title" in requirement else []
     for clause in applied.get("clauses", ()):
         parts.append(f"{clause['clause']} ({clause['held']}{': ' + clause['why'] if 'why' in clause else ''})")

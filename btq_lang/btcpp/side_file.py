@@ -23,7 +23,7 @@ from btq_lang.requirements import model
 from btq_lang.requirements.model import Applied, InContext, NodeTarget, ResolvedRequirement, ResolvedSignal
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.requirements.resolve import requirements
-from btq_lang.syntax.tree import Apply, Context, Entry, Qualities, QualityDecl, Satisfices, Tree
+from btq_lang.syntax.tree import Apply, Context, Entry, Hazard, Qualities, QualityDecl, Satisfices, Tree
 from btq_lang.syntax.tree import Requirement as RequirementItem
 from btq_lang.syntax.tree import Signal as SignalItem
 from btq_lang.util.record import Record, fields_of
@@ -133,7 +133,7 @@ def _says_more(entry: Entry) -> bool:
     item = entry.item
     if isinstance(item, Tree):
         return bool(item.clauses) or any(node.clauses for node in item.walk())
-    return isinstance(item, Qualities | QualityDecl | SignalItem | Context | RequirementItem | Apply)
+    return isinstance(item, Qualities | QualityDecl | SignalItem | Context | RequirementItem | Apply | Hazard)
 
 
 def _text(data: dict[str, Json]) -> str:
@@ -209,6 +209,8 @@ def _node(instance: Instance, node: ResolvedNode | None, place: _Places) -> Json
 def _requirement(requirement: ResolvedRequirement, loose: list[Json] | None, place: _Places) -> Json:
     plain = _plain(requirement, place)
     assert isinstance(plain, dict), "a requirement has fields"
+    if requirement.ways:
+        plain["verified_by"] = requirement.method
     return {**plain, "clauses_without_nodes": loose} if loose else plain
 
 
@@ -294,7 +296,7 @@ def _plain(value: object, place: _Places) -> Json:
 
 
 _LEFT_OUT: Final = frozenset(("place", "path", "item"))
-_RENAMED: Final = {"name": "id", "action": "on_violation", "method": "verified_by"}
+_RENAMED: Final = {"name": "id", "action": "on_violation"}
 # The format keeps these names, whatever the classes are called.
 _KINDS: Final[dict[type, str]] = {
     model.NodeTarget: "target",
@@ -305,6 +307,7 @@ _KINDS: Final[dict[type, str]] = {
     model.SignalRead: "read",
     model.ResolvedParameter: "parameter",
     model.Aggregate: "aggregate",
+    model.Age: "age",
     model.Minus: "minus",
     model.Arithmetic: "arithmetic",
     model.ResolvedCase: "case",
@@ -317,11 +320,15 @@ _KINDS: Final[dict[type, str]] = {
     model.ClassicScript: "script",
     model.Limit: "limit",
     model.ResolvedEvent: "event",
+    model.ResolvedAnyEvent: "any-event",
     model.Interval: "span",
     model.DurationSum: "total",
+    model.ResolvedEachEvent: "each",
     model.EveryNode: "every",
     model.ResolvedClaim: "claim",
     model.ResolvedScope: "scope",
     model.ResolvedOdds: "odds",
     model.ResolvedWindow: "window",
+    model.ResolvedWay: "way",
+    model.ResolvedApproval: "approval",
 }

@@ -53,6 +53,11 @@ def phrase_at(line: str, index: int) -> tuple[int, str] | None:
     )
 
 
+def in_line(words: str, line: str) -> str:
+    """The phrase that a word belongs to in its line: of `never near for more than 30 s`, `never` to `never for`."""
+    return "never for" if words == "never" and " for more than " in line else words
+
+
 def beginning(words: str) -> Phrase:
     """The longest phrase that begins a clause: `takes` for `takes at most`.
 
@@ -83,6 +88,8 @@ item
     signal | signal battery : % from {{battery_level}} level initially 100 % | a measured value | \
         a value on the robot's blackboard, with its unit, for use in conditions
     context | context humans_near : distance < 2 m | a named condition | a situation that conditions can name
+    hazard | hazard H1 "Collision with a person" | a hazard | \
+        what may go wrong, which requirements mitigate
     apply | apply slow to every MoveBase except ToDock | a requirement for many nodes | \
         attaches a requirement to nodes anywhere in the mission
     quality | quality hygiene : safety "Nothing is carried along" | a custom quality | \
@@ -143,6 +150,8 @@ subject
     every | every MoveArm takes at most 8 s | subject: each node of a kind | each node of an ID or a kind
     from | {_SPAN} | subject: between two events | the time from an event to the next event after `to`
     to | {_SPAN} | the later event | the event that ends the time
+    each | each Pick fails is followed by Recover starts | subject: every time that it happens | \
+        each occurrence of an event; what is demanded is what follows it
     sum of | sum of ToBox, ToHome takes at most 120 s | subject: several nodes together | \
         the durations of several nodes in one run, added up
 claim
@@ -153,6 +162,7 @@ bound
     less than | takes less than 30 s | an upper bound | less than this
     more than | takes more than 1 s | a lower bound | more than this
     between | takes between 0.2 s and 1 s | a lower and an upper bound | from the first value to the second
+    for more than | never lamp_on for more than 30 s | the longest time | no longer than this at a stretch
     within | succeeds within 30 s | an upper bound | no later than this
     if | takes at most 6 min if night else 8 min | a value for a situation | the value while that holds
     else | takes at most 6 min if night else 8 min | the value otherwise | the value in all other situations
@@ -166,19 +176,24 @@ event
     finishes | follows Pick finishes | SUCCESS or FAILURE | the node returns SUCCESS or FAILURE
     halts | follows Pick halts | it is halted while it runs | another node or the program halts the node while it runs
     when | starts within 1 s after when humans_near | a condition | a condition becomes true
+    or | follows Pick fails or Place fails | any of several | any of several events; a condition comes last
 clause
     while | while humans_near | only while a condition holds | \
         counts only the time (or the activations) in which the condition holds
     when | when fragile | only when a condition holds | counts only activations at whose start the condition holds
+    assuming | assuming visibility >= 1 m | not applicable otherwise | \
+        runs, or activations of a node, in which the condition does not hold all along are counted apart
     on average | on average | the mean | \
         of `takes` and `uses`: the mean of all activations that succeed or fail keeps the bound, and not each of them
     in at least | in at least 98 % of activations | how often | \
-        allows some violations; also `of runs` and `with probability >= 98 %`
+        allows some violations; also `of runs`, of an event `of occurrences`, and `with probability >= 98 %`
     of time | in at least 95 % of time | a share of the time | \
         of `keeps` and `never`: in each run the condition may be broken for the rest of the time that the node runs
     with probability | with probability >= 98 % of runs | how often | allows some violations
     activations | in at least 98 % of activations | from its start to its end | each time that the node runs
     runs | in at least 98 % of runs | whole missions | each time that the mission runs
+    occurrences | in at least 98 % of occurrences | each time that an event happens | \
+        each time that the event of `each … is followed by` happens
     confidence | confidence 95 % | how sure | the required statistical confidence of a verdict on the probability
     over last | over last 200 activations | window | ignores older ones; also `over last 7 d`
     on violation | on violation fail | what happens: fail, halt, warn or log | \
@@ -187,6 +202,14 @@ clause
     because | because "visitors do not know the robot" | the reason | the reason
     verified by | verified by review | monitor, analysis, test or review | \
         the verification method: `monitor`, `test`, `analysis` or `review`
+    source | source "ISO 13482, 5.10.2" | where it is from | where it is from: a clause of a standard, a document, a URL
+    refines | refines safe_speed | what it is a part of | the requirements of which this one is a part
+    mitigates | mitigates H1, H2 | hazards | the hazards that it makes less likely or less severe
+    priority | priority high | a tag | how important it is: a word of your own, which is shown and filtered
+    approved by | approved by "Kim" on "2026-11-29" of "1:0123456789ab" | who, when, and what | \
+        an approval, which `btq approve` writes; it counts until the requirement means something else
+clause of a hazard
+    severity | severity high | a tag | how severe it is: a word of your own
 action
     fail | on violation fail | stop the node | stops the node and makes it fail; its parent handles the failure
     halt | on violation halt | stop the mission | \
@@ -196,8 +219,8 @@ action
 method
     monitor | verified by monitor | from logs | tools check it from logs; the default
     analysis | verified by analysis | by people | people analyze it; no tool computes it
-    test | verified by test | by people | a test shows it; no tool computes it
-    review | verified by review | by people | people review it; no tool computes it
+    test | verified by test "TC-12" | by people | a test shows it; no tool computes it
+    review | verified by review "R-3" | by people | people review it; no tool computes it
 selector
     every | apply slow to every MoveBase | all nodes of a kind | all nodes of an ID or a kind
     under | apply slow to every MoveBase under Dock | below a node | only the nodes below another node
@@ -216,6 +239,8 @@ part of a condition
     p95 | leaves p95(force) < 8 N | the 95th percentile | the 95th percentile, over the node's activation
     stddev | leaves stddev(force) < 8 N | the standard deviation | the standard deviation, over the node's activation
     change | leaves change(force) < 8 N | how much it changes | how much it changes, over the node's activation
+    age | keeps age(position) <= 1 s | how old a value is | \
+        the time since the last reading of a signal; before its first, since the node started
     count | leaves count(force) < 8 N | the number of readings | the number of readings, over the node's activation
 """
 

@@ -17,5 +17,6 @@ class Kind(Enum):
     SIGNAL = "signal"
     CONTEXT = "context"
     QUALITY = "quality"
+    HAZARD = "hazard"
 
     __hash__ = object.__hash__  # `Enum` implements it in Python, and every name is looked up with its kind

@@ -14,7 +14,17 @@ from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     Operand: TypeAlias = Literal[
-        "duration", "deadline", "condition", "use", "count", "rate", "failures", "reaction", "event"
+        "duration",
+        "deadline",
+        "condition",
+        "use",
+        "count",
+        "rate",
+        "failures",
+        "reaction",
+        "event",
+        "answer",
+        "stretch",
     ]
     Judged: TypeAlias = Literal["at its start", "while it runs", "at its end", "over the run"]
     Limits: TypeAlias = Literal["", "completion", "success"]
@@ -25,10 +35,10 @@ class Verb(Record):
     """A verb.
 
     Attributes:
-        word: one, or the first word of its clauses and what tells them from those of another verb: `keeps of time`.
+        word: one, or the first word of its clauses and what tells them from those of another verb: `ends with`.
         operand: what it is followed by: a bound of a duration, perhaps a deadline, a condition, a bound of the use of a
             signal, a bound of a count, a period or a rate, a bound of a failure rate, a deadline after an event, an
-            event.
+            event, an event or a condition that answers one, a condition and how long it may hold.
         measures: what is compared with the bound, or evaluated.
         judged: when it is known whether an activation, or a run, satisfies or violates it.
         phrases: for each continuation: its words, an example, what it is about, and when a clause is violated.
@@ -205,6 +215,24 @@ VERBS: Final = {
             )
         ),
         Verb(
+            word="never for",
+            operand="stretch",
+            measures="how long a condition holds at a stretch",
+            judged=_MEANWHILE,
+            said="held for {}",
+            phrases=(
+                (
+                    "never for",
+                    "never lamp_on for more than 30 s",
+                    "what must not hold for long",
+                    "it is true for longer at a stretch while the node runs",
+                ),
+            ),
+            forms=(("never for more than", "never ${1:condition} for more than ${0:30 s}"),),
+            why_monitored="a condition in BehaviorTree.CPP cannot tell how long it has held",
+            is_final=True,
+        ),
+        Verb(
             word="leaves",
             operand="condition",
             measures="a condition",
@@ -216,6 +244,22 @@ VERBS: Final = {
                     "leaves battery >= 3 %",
                     "a condition when it has succeeded",
                     "it is false when the node has succeeded. Activations that fail or are halted are not counted",
+                ),
+            ),
+            enforced="check",
+        ),
+        Verb(
+            word="ends with",
+            operand="condition",
+            measures="a condition",
+            judged=_END,
+            said="{} at the end",
+            phrases=(
+                (
+                    "ends with",
+                    "ends with gripper_empty",
+                    "a condition when it has ended",
+                    "it is false when the node has succeeded or failed. Activations that are halted are not counted",
                 ),
             ),
             enforced="check",
@@ -357,15 +401,33 @@ VERBS: Final = {
             ),
             enforced="refusal",
         ),
+        Verb(
+            word="followed",
+            operand="answer",
+            measures="the time from an event to another one, or until a condition holds",
+            judged=_RUN,
+            said="was followed after {}",
+            phrases=(
+                (
+                    "is followed by",
+                    "each Pick fails is followed by Recover starts within 5 s",
+                    "what comes after an event",
+                    "after one of the events the other one does not happen, or the condition does not hold at any "
+                    "moment, within that time; without `within`, before the run ends",
+                ),
+            ),
+            forms=(("each", "each ${1:A} fails is followed by ${0:B} starts"),),
+            why_monitored=_NOTHING_STARTS_NODES,
+        ),
     )
 }
 _OF_MEANS: Final = [verb for verb in VERBS if verb.endswith(" on average")]
 POOLED: Final = words(operands=("failures",)).union(_OF_MEANS)  # judged of all runs together
 COUNTING: Final = frozenset([verb.partition(" ")[0] for verb in words(operands=("count",)) if verb.endswith(" per")])
 _UNITS: Final[dict[str, str | None]] = {
-    **dict.fromkeys((*words(operands=("duration",)), "within", "every", "per"), "s"),
+    **dict.fromkeys((*words(operands=("duration",)), "within", "every", "per", "for"), "s"),
     **dict.fromkeys(("in", "probability", "confidence"), "%"),
     **dict.fromkeys(words(operands=("condition", "use", "count", "rate"))),
     **dict.fromkeys(COUNTING),
-    **dict.fromkeys(("while", "when", "if", "context", "over", "goal", "initially")),
+    **dict.fromkeys(("while", "when", "assuming", "if", "context", "over", "goal", "initially")),
 }

@@ -18,6 +18,7 @@ the next.  Checks do not know what an edit changed, nor how findings are printed
     statuses.py, results.py, unreachable.py, reactive.py, preconditions.py, resets.py   what nodes return, and traps
     nav2_nodes.py, nav2_literals.py, unread.py   nodes of Nav2: what they need and share, poses, goals, error codes
     requirements.py, clauses.py, bounds.py, qualities.py, prose.py, wording.py   requirements by themselves
+    chain.py, approvals.py   hazards, and what requirements refine; approvals of an earlier meaning
     demanded.py, demands.py, budgets.py, limits.py, never_counted.py   at their nodes
     signals.py, renewals.py, enforcement.py   likewise, of what the engine is to enforce
     origins.py, placeholders.py   diagnostics shown on XML; classic placeholders
@@ -30,9 +31,11 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import TypeAlias
 
 from btq_lang.checks import (
+    approvals,
     arguments,
     attributes,
     bounds,
+    chain,
     children,
     clauses,
     demands,
@@ -103,7 +106,12 @@ _OF_CLAUSES: tuple[Check, ...] = (
     requirements.requirement_without_text,
     clauses.duplicate_clause,
     clauses.clause_without_odds,
+    clauses.odds_of_what,
     clauses.unused_parameter,
+    chain.unknown_hazard,
+    chain.cyclic_refinement,
+    approvals.approval_outdated,
+    approvals.approval_missing,
     bounds.impossible_bound,
     bounds.uses_of_gauge,
 )
@@ -210,6 +218,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         requirements.unresolved,
     ),
     syntax.Requirement: (
+        requirements.unknown_requirement,
         requirements.conflicting_requirement,
         requirements.unused_requirement,
         *_OF_CLAUSES,
@@ -219,6 +228,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         requirements.unresolved,
         requirements.requirement_without_subject,
     ),
+    syntax.Hazard: (kinds.duplicate_definition, chain.shared_id, names.empty_text),
     syntax.Apply: (requirements.unknown_requirement, clauses.named_twice, requirements.unresolved),
     syntax.Qualities: (qualities.quality_name,),
     syntax.QualityDecl: (kinds.duplicate_definition, names.empty_text, qualities.quality_name),

@@ -150,18 +150,21 @@ def _of_subject(view: View, claim: syntax.Claim) -> tuple[str, str] | None:
         message = f"a mission starts only once in a run, so `{verb}` does not apply to it"
         return message, "name the node whose starts to count: `MoveBase tries at most 3`"
     note = "name the node that is meant: `Dock starts within 2 s after Batch succeeds`"
-    if verb == "follows" and event.condition is not None:
+    if verb == "follows" and isinstance(event, syntax.Event) and event.condition is not None:
         note = "for what must hold when it starts, write `mission needs …`"
     return "a mission starts before all else in its run, not after it", note
 
 
 def _of_event(view: View, claim: syntax.Claim) -> tuple[str, str] | None:
     """The message and the note for a claim about what happens after the mission has ended, or what runs before it."""
-    event = claim.event
+    if VERBS[claim.verb.raw].operand == "answer":
+        return None
+    event = claim.event if isinstance(claim.event, syntax.Event) else None
+    for atom in claim.event.atoms if claim.event is not None else ():
+        if atom is not None and atom.happening != "starts" and _is_of_mission(view, atom):
+            return f"nothing happens in a run after `{_event_text(atom)}`", _BY_ITSELF
     if event is None or not _is_of_mission(view, event):
         return None
-    if event.happening != "starts":
-        return f"nothing happens in a run after `{_event_text(event)}`", _BY_ITSELF
     if claim.verb.raw != "ends" or not _starts_first(view) or _is_mission(view, claim.subject):
         return None
     ending = _path_text(claim.subject) if isinstance(claim.subject, syntax.Path) else "…"
@@ -171,11 +174,17 @@ def _of_event(view: View, claim: syntax.Claim) -> tuple[str, str] | None:
 
 def _of_span(view: View, claim: syntax.Claim) -> tuple[str, str] | None:
     """The message and the note for a claim about a time that begins when the mission ends, or ends when it starts."""
-    if not isinstance(claim.subject, syntax.Between):
+    subject = claim.subject
+    if isinstance(subject, syntax.Between):
+        first, last = subject.first, subject.last
+    elif isinstance(subject, syntax.EachEvent) and claim.event is not None:
+        first, last = subject.event, claim.event
+    else:
         return None
-    for event, side, is_outside in ((claim.subject.first, "after", False), (claim.subject.last, "before", True)):
-        if event is not None and (event.happening == "starts") is is_outside and _is_of_mission(view, event):
-            return f"nothing happens in a run {side} `{_event_text(event)}`", _BY_ITSELF
+    for event, side, is_outside in ((first, "after", False), (last, "before", True)):
+        for atom in event.atoms if event is not None else ():
+            if atom is not None and (atom.happening == "starts") is is_outside and _is_of_mission(view, atom):
+                return f"nothing happens in a run {side} `{_event_text(atom)}`", _BY_ITSELF
     return None
 
 
@@ -217,7 +226,7 @@ _NAMES: Final = {
     **{"tries": "attempts", "starts per": "attempts"},
     **{"succeeds per": "successes", "fails per": "failures", "finishes per": "results"},
 }
-_TIMED: Final = ("duration", "deadline", "rate", "reaction")
+_TIMED: Final = ("duration", "deadline", "rate", "reaction", "answer", "stretch")
 # Verbs about when, and how often, a node starts.
 _STARTS: Final = words(operands=("count", "rate", "event")) | {"starts"}
 _SEEN_FIRST: Final = ("sequence", "fallback", "parallel", "parallel-all", "choice", "retry", "repeat")

@@ -22,6 +22,7 @@ _ONCE: dict[type, str] = {
     syntax.OnViolation: "what happens on violation",
     syntax.Goal: "a goal",
     syntax.How: "how to verify it",
+    syntax.Priority: "a priority",
 }
 
 
@@ -58,6 +59,25 @@ def clause_without_odds(view: View) -> Iterator[Diagnostic]:
                 message = f"{subject} has no effect here: without a required probability a single violation counts"
                 notes = ("state how often it must hold: `in at least 95 % of activations`",)
                 yield Diagnostic("clause-without-odds", Span(clause.start, clause.end), message, notes=notes)
+
+
+def odds_of_what(view: View) -> Iterator[Diagnostic]:
+    """A probability that counts the occurrences of an event, in a requirement about activations, or the reverse."""
+    for _, requirement in view.requirements:
+        subjects = [clause.subject for clause in requirement.clauses if isinstance(clause, syntax.Claim)]
+        are_events = {isinstance(subject, syntax.EachEvent) for subject in subjects}
+        counted = [clause.experiments for clause in requirement.clauses if isinstance(clause, syntax.Odds)]
+        for word in counted:
+            if word is None or len(are_events) != 1 or are_events != {word.raw == "activations"}:
+                continue
+            if word.raw == "activations":
+                message, meant = "an event has occurrences, not activations", "occurrences"
+            elif word.raw == "occurrences":
+                message, meant = "only an event has occurrences: `each … is followed by …`", "activations"
+            else:
+                continue
+            fix = replace_fix(f"Replace `{word.raw}` with `{meant}`", word.span, meant)
+            yield Diagnostic("impossible-odds", word.span, message, fixes=(fix,))
 
 
 def unused_parameter(view: View) -> Iterator[Diagnostic]:

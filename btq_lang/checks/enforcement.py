@@ -93,7 +93,8 @@ def _is_reported_otherwise(
 def _nodes(claim: ResolvedClaim, node: ResolvedNode) -> Iterator[ResolvedNode]:
     """The nodes that get a wrapper."""
     yield node
-    for other in (claim.per, claim.event.subject if claim.event is not None else None):
+    events = claim.event.atoms if claim.event is not None else ()
+    for other in (claim.per, *[atom.subject for atom in events]):
         if isinstance(other, NodeTarget):
             yield other.node
 

@@ -234,7 +234,7 @@ def clause_as_node(view: View) -> Iterator[Diagnostic]:
 
 
 def duplicate_definition(view: View) -> Iterator[Diagnostic]:
-    """A second signal, context or quality of one name, or a second model with another interface."""
+    """A second signal, context, quality or hazard of one name, or a second model with another interface."""
     for first, second in view.clashes(*_DEFINED_ONCE):
         if not _is_same_model(first.symbol, second.symbol):
             both = Related(first.place, COUNTS), Related(second.place, SECOND)
@@ -536,7 +536,7 @@ def _is_clause(resolved: ResolvedNode) -> bool:
     )
 
 
-_DEFINED_ONCE = (Kind.MODEL, Kind.SIGNAL, Kind.CONTEXT, Kind.QUALITY)
+_DEFINED_ONCE = (Kind.MODEL, Kind.SIGNAL, Kind.CONTEXT, Kind.QUALITY, Kind.HAZARD)
 
 
 def _second(

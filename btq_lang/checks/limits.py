@@ -183,9 +183,8 @@ def _limits(claim: ResolvedClaim) -> Iterator[_Limit]:
         yield ("duration",), claim.lowest, claim.highest
     elif claim.signal is not None:
         yield (claim.verb, claim.signal.name), claim.lowest, claim.highest
-    elif (
-        claim.limit is None and claim.verb != "never" and isinstance(claim.condition, Compare)
-    ):  # the condition is what must not hold
+    elif claim.limit is None and claim.head != "never" and isinstance(claim.condition, Compare):
+        # the condition of `never` is what must not hold, and a share of time has a limit
         yield from _compared(claim.verb, claim.condition)
 
 

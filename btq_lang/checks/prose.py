@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 def prose_constraint(view: View) -> Iterator[Diagnostic]:
     """A keyword followed by prose, in a requirement without clauses; reported once, where it is defined."""
     for symbol, requirement in view.requirements:
-        if requirement.text is None or requirement.clauses:
+        if requirement.text is None or not requirement.is_text:
             continue
         constraints = _not_checked(view, requirement, symbol.name)
         first = view.ask(lookups.declaration, Kind.REQUIREMENT, symbol.name)

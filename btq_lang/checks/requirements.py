@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks import lookups
+from btq_lang.checks.chain import in_other_clause, is_external, is_refined, may_be_external, near_external
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.qualities import other_word
 from btq_lang.checks.view import (
@@ -41,16 +42,27 @@ def unknown_requirement(view: View) -> Iterator[Diagnostic]:
     for use in view.uses(Kind.REQUIREMENT):
         if view.ask(lookups.is_defined, Kind.REQUIREMENT, use.name):
             continue
+        if view.ask(lookups.is_defined, Kind.HAZARD, use.name):
+            yield in_other_clause(view, use, "unknown-requirement")
+            continue
+        if is_refined(view, use) and may_be_external(view, use.name):
+            continue
+        if is_external(view, use.name):
+            message = f"`{use.name}` is a requirement of another tool, and has no clauses that a node could satisfy"
+            instead = f"define one with clauses and `refines {written(use.name)}`, and attach that"
+            yield Diagnostic("unknown-requirement", use.span, message, notes=(instead,))
+            continue
         if not view.ask(inputs.is_complete):
             return
         elsewhere = view.ask(lookups.elsewhere, Kind.REQUIREMENT, use.name)
-        quality = view.ask(quality_named, use.name)
-        if not elsewhere and (quality is None or quality.kind != "unknown"):
+        quality = view.ask(quality_named, use.name) if not is_refined(view, use) else None
+        if not elsewhere and not is_refined(view, use) and (quality is None or quality.kind != "unknown"):
             is_exact = quality is None or quality.kind == "exact"
             yield other_word(view, use, "unknown-requirement", requirement=False, safe=is_exact)
             continue
         fixes = tuple(include_fix(view, path) for path in elsewhere[:3])
-        likely = view.ask(near_names, Kind.REQUIREMENT, use.name)
+        external = near_external(view, use.name) if is_refined(view, use) else ()
+        likely = (*view.ask(near_names, Kind.REQUIREMENT, use.name), *external)
         fixes += tuple(replace_fix(f"Replace `{use.name}` with `{name}`", use.span, written(name)) for name in likely)
         message = f"unknown requirement `{use.name}`{NOWHERE if elsewhere or not likely else did_you_mean(likely)}"
         meant = quality.near if quality is not None and not fixes else ()
@@ -237,7 +249,7 @@ def _without_subject(view: View, name: str) -> Iterator[Diagnostic]:
             subject = (
                 "the time from one event to another" if isinstance(claim.subject, Interval) else "a sum of durations"
             )
-            message = f"`{claim.word}` is about a node, not about {subject}, so nothing can check it"
+            message = f"`{claim.head}` is about a node, not about {subject}, so nothing can check it"
             note = "write `takes` after it, or a node before the verb"
             yield _diagnostic(claim, message, note)
         elif claim.subject is None and not is_about_nothing and not view.ask(_is_attached, name):

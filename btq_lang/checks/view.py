@@ -273,7 +273,7 @@ class View:
 
     def constraints(self, requirement: Requirement) -> tuple[tuple[Constraint, bool], ...]:
         """The constraints after SuccessIf and FailureIf in a description, each with whether a tool can check it."""
-        if requirement.text is None or requirement.clauses:
+        if requirement.text is None or not requirement.is_text:
             return ()
         from btq_lang.requirements.constraints import (  # requirements with clauses need none of it
             can_be_checked,

@@ -251,6 +251,17 @@ def _add_trace(parser: SuggestingParser) -> None:
     _add_paths(parser)
     _add_evidence(parser, _OF_PROJECT)
     parser.flag("--bundle", "what is enforced in builds with --bundle")
+    parser.add("--priority", action="append", default=[], metavar="NAME", help="only requirements of this priority")
+    parser.add(
+        "--quality", action="append", default=[], metavar="NAME", help="only those for this quality or its parts"
+    )
+    parser.add(
+        "--state",
+        action="append",
+        default=[],
+        metavar="STATE",
+        help="only those that are enforced, violated, suspect, …",
+    )
     parser.add("--format", choices=TRACE_FORMATS, help="default: by the suffix of the -o file, else table")
     parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
     _add_config(parser)
@@ -463,6 +474,23 @@ def _add_diff(parser: SuggestingParser) -> None:
     parser.add("--format", choices=("text", "markdown", "json"), default="text", help="default: text")
     _add_config(parser)
     _add_color(parser)
+
+
+@_command(
+    "approve",
+    "write who has approved a requirement, and the fingerprint of what it means",
+    "exit codes: 0 written, or approved already; 1 a requirement that cannot be approved; 2 usage or I/O\n\n"
+    "examples:\n  btq approve slow --by Kim\n"
+    "  btq approve slow rq7 --by Kim --in missions/\n",
+)
+def _add_approve(parser: SuggestingParser) -> None:
+    parser.add("ids", nargs="+", metavar="ID", help="the IDs of requirements")
+    parser.add("--by", required=True, metavar="NAME", help="who has approved them")
+    parser.add(
+        "--in", action="append", dest="paths", metavar="PATH", help="files and folders that define them; default: ."
+    )
+    parser.add("--date", metavar="DATE", help="when, as 2026-11-29; default: today")
+    _add_config(parser)
 
 
 @_command(

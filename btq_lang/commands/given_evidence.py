@@ -23,7 +23,7 @@ from btq_lang.workspace.loader import absolute, find_project, read, shown
 if TYPE_CHECKING:
     from btq_lang.evidence.verdicts import RequirementVerdict
     from btq_lang.projects.files import FileGroup
-    from btq_lang.trace.collect import VerdictsOf
+    from btq_lang.trace.collect import BuildsOf, VerdictsOf
     from btq_lang.workspace.config import Project
 
 
@@ -55,6 +55,20 @@ def verdicts_for(evidence: Sequence[str], groups: Sequence[FileGroup], problems:
     if problems and not by_mission:
         return None
     return lambda mission: by_mission.get(mission) or by_mission.get(name_of(mission), [])
+
+
+def builds_for(evidence: Sequence[str], groups: Sequence[FileGroup], problems: list[str]) -> BuildsOf | None:
+    """A function from the path of a mission to the verdicts on it by the labels in stores; None: there are no labels.
+
+    Args:
+        evidence, problems: as of `verdicts_for`.
+    """
+    by_mission: dict[str, list[tuple[str, Sequence[RequirementVerdict]]]] = {}
+    for store in filter(is_store, evidence_paths(evidence, groups)):
+        for mission, label, verdicts in _verdicts_by_label(store, problems):
+            by_mission.setdefault(mission, []).append((label, verdicts))
+    has_labels = any(label for builds in by_mission.values() for label, _ in builds)
+    return (lambda mission: by_mission.get(name_of(mission), ())) if has_labels else None
 
 
 def evidence_paths(evidence: Sequence[str], groups: Sequence[FileGroup]) -> Sequence[str]:
@@ -111,6 +125,19 @@ def _verdicts_in_store(store: str, problems: list[str]) -> Sequence[tuple[str, S
         problems.append(str(error))
         return ()
     return [(mission.name, mission.requirements) for mission in report.missions]
+
+
+def _verdicts_by_label(store: str, problems: list[str]) -> Sequence[tuple[str, str, Sequence[RequirementVerdict]]]:
+    """The verdicts of the runs with each label of a store, by the name of the mission, in the order of first runs."""
+    from btq_lang.evidence.store.engine import NoEngine, asked  # which needs DuckDB
+    from btq_lang.evidence.store.summary import parted
+
+    try:
+        parts = sorted(parted(asked(store), store, ("label",)), key=lambda part: part[0]["start_us"] or 0)
+    except NoEngine as error:
+        problems.append(str(error))
+        return ()
+    return [(row["mission"], row["label"] or "", mission.requirements) for row, mission in parts]
 
 
 def _verdicts_by_logs(

@@ -61,4 +61,10 @@ def _value(value: object) -> str:
 
 
 _OF_RULES: Final = ("rules", "overrides")
-_DEFAULTS: Final = {"engine": VERSIONS, "qualities": Project().qualities, "baseline": "", "evidence": {}}
+_DEFAULTS: Final = {
+    "engine": VERSIONS,
+    "qualities": Project().qualities,
+    "baseline": "",
+    "evidence": {},
+    "requirements": {},
+}

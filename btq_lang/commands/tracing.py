@@ -12,7 +12,7 @@ from btq_lang.projects.options import refuse
 from btq_lang.trace import FORMATS
 from btq_lang.trace.missions import trace_tables
 from btq_lang.trace.wording import incomplete
-from btq_lang.util.record import Record
+from btq_lang.util.record import Record, replace
 
 
 class TraceOptions(Record):
@@ -21,12 +21,16 @@ class TraceOptions(Record):
     Attributes:
         evidence: the paths of logs, stores and files of verdicts; none: those of the project.
         bundle: show what is enforced in builds with `--bundle`.
+        priority, quality, state: show only requirements with one of these.
     """
 
     paths: Sequence[str]
     stdin_filename: str | None
     evidence: Sequence[str]
     bundle: bool
+    priority: Sequence[str]
+    quality: Sequence[str]
+    state: Sequence[str]
     format: str | None
     output: str | None
     color: str
@@ -35,7 +39,16 @@ class TraceOptions(Record):
 def run(options: TraceOptions, messages: CommandOutput) -> int:
     """Write the overview; for missions with errors, of all valid parts."""
     refuse(usage_problem(options.paths) or form_problem(options.format, options.output, FORMATS))
-    from btq_lang.commands.given_evidence import verdicts_for  # it imports the readers of logs
+    from btq_lang.trace.selection import STATES, Selection, selected  # as that below
+
+    refuse(
+        *(
+            f"unknown state {state!r}; expected one of {', '.join(STATES)}"
+            for state in options.state
+            if state not in STATES
+        )
+    )
+    from btq_lang.commands.given_evidence import builds_for, verdicts_for  # it imports the readers of logs
 
     groups, problems = Files().groups(options.paths, options.stdin_filename)
     messages.problems(problems)
@@ -44,10 +57,13 @@ def run(options: TraceOptions, messages: CommandOutput) -> int:
         return 2
     evidence_problems: list[str] = []
     verdicts_of = verdicts_for(options.evidence, groups, evidence_problems)
+    builds_of = builds_for(options.evidence, groups, evidence_problems) if not evidence_problems else None
     for problem in evidence_problems:
         messages.remark(f"btq trace: {problem}")
     parts = [(group.workspace, group.given) for group in groups]
-    table = trace_tables(parts, options.bundle, verdicts_of=verdicts_of)
+    table = trace_tables(parts, options.bundle, verdicts_of=verdicts_of, builds_of=builds_of)
+    selection = Selection(options.priority, options.quality, options.state)
+    table = replace(table, overview=selected(table.overview, selection))
     to_terminal = options.output is None and sys.stdout.isatty()
     colour = is_coloured(options.color, to_terminal)
     form = form_of(options.format, options.output, FORMATS)

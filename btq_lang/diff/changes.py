@@ -17,6 +17,7 @@ TITLES: Final = {
     "include": "Includes",
     "requirement": "Requirements",
     "apply": "Requirements applied",
+    "hazard": "Hazards",
     "quality": "Qualities",
     "signal": "Signals",
     "context": "Contexts",

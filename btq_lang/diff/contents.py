@@ -243,6 +243,8 @@ class _Reader:
             if item.parent is not None:
                 values["below"] = self._quality_value(item.parent)
             yield self._item("quality", item.name, values, item)
+        elif isinstance(item, syntax.Hazard):
+            yield self._hazard(item)
         elif isinstance(item, syntax.Include):
             values = {pair.key.text: _value(pair.value) for pair in item.attributes}
             path = posixpath.normpath(item.path.text) if item.path is not None else ""  # `./lib.btq` is the same file
@@ -269,7 +271,7 @@ class _Reader:
             values["title"] = AspectValue(text, f'"{text}"')
         quality = requirement.quality or quality
         if quality is not None:
-            values["quality"] = self._quality_value(quality)
+            values["quality"] = self._qualities_value((quality, *requirement.further))
         for parameter in requirement.parameters:
             text = " : ".join(word.raw for word in (parameter.name, parameter.unit) if word is not None)
             default = f" = {self._text(parameter.default)}" if parameter.default is not None else ""
@@ -278,12 +280,16 @@ class _Reader:
             aspect = clause.row if isinstance(clause, syntax.Claim) else _ASPECTS[type(clause)]
             if isinstance(clause, syntax.Odds) and clause.is_of_time:
                 aspect = "share of time"
-            number = 2
-            while aspect in values:
-                aspect = f"{aspect.split(' #')[0]} #{number}"
-                number += 1
+            aspect = numbered(aspect, values)
             values[aspect] = AspectValue(_meaning(clause), self._slice(clause.start, clause.end))
         return self._item("requirement", requirement.name, values, requirement)
+
+    def _hazard(self, hazard: syntax.Hazard) -> Item:
+        values = {"title": _value(hazard.text)} if hazard.text is not None else {}
+        for clause in hazard.clauses:
+            aspect = numbered(_ASPECTS[type(clause)], values)
+            values[aspect] = AspectValue(_meaning(clause), self._slice(clause.start, clause.end))
+        return self._item("hazard", hazard.name, values, hazard)
 
     def _model(self, model: syntax.Model) -> Item:
         values = {"category": _value(model.category), **self._ports(model.ports)}
@@ -323,6 +329,10 @@ class _Reader:
 
     def _quality_value(self, path: syntax.QualityPath) -> AspectValue:
         return AspectValue(self._quality(path), path.text)
+
+    def _qualities_value(self, paths: tuple[syntax.QualityPath, ...]) -> AspectValue:
+        meaning = sorted(map(self._quality, paths))
+        return AspectValue(meaning[0] if len(meaning) == 1 else (*meaning,), " and ".join(path.text for path in paths))
 
     def _text(self, part: object) -> str:
         """A part of the tree as it is written, on one line."""
@@ -369,6 +379,12 @@ def _value(word: syntax.Word | None, unit: str | None = None) -> AspectValue:
     return AspectValue(word.text, word.raw if "\n" not in word.raw else " ".join(word.raw.split()))
 
 
+def numbered(aspect: str, values: Values) -> str:
+    """The key of a further value of an aspect: `because #2`."""
+    count = 1 + sum(key.split(" #")[0] == aspect for key in values)
+    return aspect if count == 1 else f"{aspect} #{count}"
+
+
 def _saying(word: syntax.Word | None) -> str:
     return word.text if word is not None else ""
 
@@ -382,6 +398,7 @@ def _default(port: syntax.Port) -> str:
 _MISSION_WORDS: Final = {"main_tree_to_execute": MAIN}
 _ASPECTS: Final[dict[type, str]] = {
     syntax.ScopeClause: "scope",
+    syntax.Assuming: "assumption",
     syntax.Average: "on average",
     syntax.Odds: "odds",
     syntax.Confidence: "confidence",
@@ -390,4 +407,10 @@ _ASPECTS: Final[dict[type, str]] = {
     syntax.Goal: "goal",
     syntax.Because: "because",
     syntax.How: "verified by",
+    syntax.Source: "source",
+    syntax.Refines: "refines",
+    syntax.Mitigates: "mitigates",
+    syntax.Priority: "priority",
+    syntax.Approval: "approved by",
+    syntax.HazardSeverity: "severity",
 }

@@ -50,7 +50,9 @@ def _lines(change: Change, detail: Detail) -> Iterator[tuple[str, str]]:
     if change.thing in ("node", "tree") and kind in _CLAUSES and name:
         for sign, text in sides:
             yield sign, f"{_CLAUSES[kind]} {name}{f'({text})' if text not in ('', 'attached') else ''}"
-    elif kind == "port" or (change.thing == "requirement" and detail.aspect not in _IN_WORDS):  # they are whole lines
+    elif kind == "port" or (
+        change.thing in ("requirement", "hazard") and detail.aspect not in _IN_WORDS
+    ):  # they are whole lines
         yield from ((sign, text or detail.aspect) for sign, text in sides)
     elif detail.aspect in _IN_WORDS or (detail.old is not None and detail.new is not None):
         sign = sides[0][0] if len(sides) == 1 else "~"

@@ -6,8 +6,8 @@ One invariant: a clause that cannot be judged is unknown with the reason, and ne
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Sequence
-from typing import TYPE_CHECKING, Final, TypeAlias
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from btq_lang.catalog.verbs import POOLED, VERBS
 from btq_lang.evidence import margins
@@ -38,13 +38,16 @@ from btq_lang.evidence.verbs import duration as lasted
 from btq_lang.evidence.verdicts import NEVER, VIOLATED, CauseLink, ClauseVerdict, Measures
 from btq_lang.evidence.wording import duration
 from btq_lang.requirements.model import (
+    Age,
     Aggregate,
     DurationSum,
     Interval,
     MissionRun,
     NodeTarget,
     Quantity,
+    ResolvedEachEvent,
     Running,
+    events_of,
     parts_in,
     signals_in,
 )
@@ -58,7 +61,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.model import Outcome
     from btq_lang.evidence.odds import Limits
     from btq_lang.evidence.outline import Demand
-    from btq_lang.requirements.model import ResolvedClaim, ResolvedEvent, Subject
+    from btq_lang.requirements.model import ResolvedAnyEvent, ResolvedClaim, ResolvedEvent, Subject
 
 
 class _Place(Record):
@@ -109,15 +112,18 @@ class JudgedClause:
         self._events: Final = _events(claim, subject)
         subjects = (subject, *(event.subject for event in self._events))
         self._is_about_mission: Final = any(isinstance(each, MissionRun) for each in subjects)
-        parts = (claim.condition, claim.limit, *self._events, *(scope.condition for scope in requirement.scopes))
+        scopes = (*requirement.scopes, *requirement.assumptions)
+        parts = (claim.condition, claim.limit, *self._events, *(scope.condition for scope in scopes))
         self._running: Final = [part.target for part in parts_in(parts) if isinstance(part, Running)]
-        measures_time = VERBS[claim.verb].operand not in ("condition", "use")
+        has_age = any(isinstance(part, Age) for part in parts_in(parts))  # which counts from the start
+        measures_time = has_age or VERBS[claim.verb].operand not in ("condition", "use")
         self._bounds_time: Final = VERBS[claim.verb].operand in _OF_TIME and not isinstance(subject, DurationSum)
         self._reads: Final = None if measures_time else [*signals_in((parts, claim.signal))]
         self._is_at_any_time: Final = VERBS[claim.verb].judged == "while it runs"
         is_whole = any(scope.word == "while" for scope in requirement.scopes) and not self._is_at_any_time
         is_of_all = any(isinstance(part, Aggregate) for part in parts_in(parts))
-        self._is_final: Final = VERBS[claim.verb].is_final and not (self._running or is_whole or is_of_all)
+        is_open = self._running or is_whole or is_of_all or requirement.assumptions
+        self._is_final: Final = VERBS[claim.verb].is_final and not is_open
         self.findings.missing = self._why_not()
         self._is_judged: Final = not self.findings.missing
         self._nodes: Final[list[int]] = []  # of the current log, as are these:
@@ -181,7 +187,8 @@ class JudgedClause:
         if activation.uid in self._around:
             if guard is not None and guard.requirement == self.requirement.name and self.claim.verb in guard.verbs:
                 self._stopped.append(activation)
-            return
+            if activation.uid not in self._nodes:
+                return
         self.findings.has_run = self._has_started = True
         if activation.timing in BEGUN_BEFORE:
             return
@@ -213,7 +220,7 @@ class JudgedClause:
         if in_scope(starts, verb, observed) is not True:
             return False
         started, until = self._looked.get(uid, (None, activation.started))
-        if self._is_at_any_time and started == activation.started:
+        if self._is_at_any_time and VERBS[verb].operand != "stretch" and started == activation.started:
             observed = observed.between(until, activation.ended)
         self._looked[uid] = activation.started, activation.ended
         judgement = self._judge(self.judged, activation, observed)
@@ -237,6 +244,13 @@ class JudgedClause:
         by = f"its guard at {refusal.guard.path}" if is_own else refusal.guard.requirement
         time = refusal.at[0]
         judgement = Judgement(False, time, f"its start was refused by {by}")
+        observed = Observed(self._signals, self._nearby(refusal.uid), refusal.at, refusal.at)
+        applies = in_scope(self.requirement.assumptions, self.claim.verb, observed)
+        if applies is False:
+            self.findings.left_out["not_applicable"] += 1
+            return
+        if isinstance(applies, UnknownValue):
+            judgement = Judgement(None, time, applies.why)
         self._add(judgement, path, time, time, self.explainer.chain(self.claim, judgement, path))
 
     def _broken(self, activation: Activation, guard: Guard, observed: Observed) -> Judgement:
@@ -291,13 +305,20 @@ class JudgedClause:
         assert self._judge_run is not None, "the clause is judged by runs"
         judged: list[tuple[Judgement | None, _Place, OverRun]] = []
         for place in self._places:
+            applies = self._is_applicable(root, place)
+            if applies is False:
+                continue
             over = self._over(place, root)
             overs = [over]
             are_begins_known = root.is_begin_known and place.others.are_begins_known()
             if not are_begins_known or not all(activation.is_begin_known for activation in over.own):
                 early = root.from_earliest()
                 overs.append(replace(over, root=early, observed=over.observed.earlier(early.started)))
-            judged += [(judgement, place, over) for judgement in self._judged_over(self.judged, overs)]
+            judgements = self._judged_over(self.judged, overs)
+            if isinstance(applies, UnknownValue):
+                judgements = [each and Judgement(None, each.at, applies.why) for each in judgements]
+                self._margins.is_exact = False
+            judged += [(judgement, place, over) for judgement in judgements]
             self.findings.missed += len(over.missed)
             if self._extremes:
                 self._measure([self._judged_over(claim, overs) for claim in self._extremes], root)
@@ -311,11 +332,28 @@ class JudgedClause:
             else:
                 self._count(judgement, root, place.path)
 
+    def _is_applicable(self, root: Activation, place: _Place) -> bool | UnknownValue:
+        """Whether the assumptions hold all along in a run; if they do not, it is counted as not applicable."""
+        if not self.requirement.assumptions:
+            return True
+        observed = Observed(self._signals, place.others, root.started, root.ended, root.timing != "latest")
+        ways: list[_Way] = [(root, observed, True)]
+        if not root.is_begin_known:
+            ways.append((root, observed.earlier(root.begun(True)), True))
+        applicable = self._applicable(ways)
+        if applicable is None:
+            return False
+        answers = [applies for *_, applies in applicable]
+        unknown = next((answer for answer in answers if isinstance(answer, UnknownValue)), None)
+        return True if all(answer is True for answer in answers) else unknown or UnknownValue(UNKNOWN_BEGIN)
+
     def _over(self, place: _Place, root: Activation) -> OverRun:
         observed = Observed(self._signals, place.others, root.started, root.ended)
         own = self._history.activations_of(place.uids)
         refused = [refusal for refusal in self._refused if refusal.uid in place.uids]
-        return OverRun(self.claim.verb, self.requirement.scopes, root, own, observed, refused, self._stopped, [])
+        return OverRun(
+            self.claim.verb, self.requirement.scopes, root, place.uids, own, observed, refused, self._stopped, []
+        )
 
     def _judged_over(self, claim: ResolvedClaim, overs: Sequence[OverRun]) -> Sequence[Judgement | None]:
         """The judgements of a run by a claim; `overs`: the run as it may have been."""
@@ -350,6 +388,10 @@ class JudgedClause:
             ways.append((early, earlier, in_scope(self.requirement.scopes, self.claim.verb, earlier)))
         if all(counts is False for *_, counts in ways):
             return
+        applicable = self._applicable(ways) if self.requirement.assumptions else ways
+        if applicable is None:
+            return
+        ways = applicable
         judgement = self._judged_by(self.judged, ways)
         if judgement is None and guard is not None and not guard.requirement:
             why = f"it was stopped by {guard.path}, which the mission does not have"
@@ -358,6 +400,19 @@ class JudgedClause:
         self._count(_clocked(judgement, root), activation, path)
         if self._extremes:
             self._measure([[_clocked(self._judged_by(extreme, ways), root)] for extreme in self._extremes], activation)
+
+    def _applicable(self, ways: list[_Way]) -> list[_Way] | None:
+        """The ways in which an activation, or a run, may have been, in scope only if the assumptions hold all along;
+        None if it is not applicable, and counted as such."""
+        assumptions, verb = self.requirement.assumptions, self.claim.verb
+        applies = [in_scope(assumptions, verb, observed) for _, observed, _ in ways]
+        if all(each is False for each in applies):
+            self.findings.left_out["not_applicable"] += 1
+            return None
+        return [
+            (activation, observed, applicable if counts is True or applicable is False else counts)
+            for (activation, observed, counts), applicable in zip(ways, applies, strict=True)
+        ]
 
     def _depends_on_begin(self, activation: Activation) -> bool:
         """Whether its judgement may differ between the earliest and the latest begin of an activation."""
@@ -412,7 +467,7 @@ class JudgedClause:
     def _count(self, judgement: Judgement | None, activation: Activation, path: str) -> None:
         if judgement is None:
             self._tally.cut_off += activation.outcome == "O"
-            if self.claim.verb == "leaves" and activation.outcome in _WITHOUT_SUCCESS:
+            if self.claim.verb in ("leaves", "ends with") and activation.outcome in _WITHOUT_SUCCESS:
                 self.findings.left_out[_WITHOUT_SUCCESS[activation.outcome]] += 1
         else:
             if judgement.note:
@@ -435,13 +490,19 @@ class JudgedClause:
         if self._is_about_mission and not joined.build.is_main:  # which did not run as a whole
             return []
         if isinstance(subject, Interval):
-            firsts = self._instances(joined, _node_of(subject.first.subject))
-            groups: dict[tuple[int, ...], tuple[int, ...]] = {}
-            lasts = self._instances(joined, _node_of(subject.last.subject))
-            for uid in firsts if subject.first.subject is not None else [ROOT]:
-                together = near(uid, lasts, joined.tree)
+            firsts = self._instances_of(joined, subject.first)
+            groups: dict[tuple[tuple[int, ...], ...], tuple[int, ...]] = {}
+            lasts = [self._instances(joined, _node_of(atom.subject)) for atom in subject.last.atoms]
+            for uid in firsts:
+                together = tuple(near(uid, of_atom, joined.tree) for of_atom in lasts)
                 groups[together] = (*groups.get(together, ()), uid)
             return [*groups.values()] if not self.findings.missing else []
+        if isinstance(subject, ResolvedEachEvent):
+            answers = self.claim.event.atoms if self.claim.event is not None else ()
+            firsts = [*self._instances_of(joined, subject.event)]
+            for atom in answers:
+                self._instances(joined, _node_of(atom.subject))
+            return [(uid,) for uid in firsts] if not self.findings.missing else []
         if isinstance(subject, DurationSum):
             uids = [uid for target in subject.targets for uid in self._instances(joined, target)]
             return [tuple(uids)] if uids and not self.findings.missing else []
@@ -449,6 +510,14 @@ class JudgedClause:
         if VERBS[self.claim.verb].operand == "failures":  # together, for they share the exposure
             return [tuple(own)] if own else []
         return [(uid,) for uid in own]
+
+    def _instances_of(self, joined: Joined, event: ResolvedEvent | ResolvedAnyEvent) -> Iterable[int]:
+        """The uids of the nodes of an event; that of the root for a condition."""
+        uids: dict[int, None] = {}
+        for atom in event.atoms:
+            own = self._instances(joined, _node_of(atom.subject)) if atom.condition is None else [ROOT]
+            uids.update(dict.fromkeys(own))
+        return uids
 
     def _instances(self, joined: Joined, target: NodeTarget | None) -> list[int]:
         """The uids of a node's instances; notes those missing from the log."""
@@ -463,7 +532,7 @@ class JudgedClause:
 
     def _is_own(self, guard: Guard) -> bool:
         """Whether a guard enforces this clause; spans and sums have no guards."""
-        if isinstance(self._subject, Interval | DurationSum):
+        if isinstance(self._subject, Interval | DurationSum | ResolvedEachEvent):
             return False
         return guard.requirement == self.requirement.name and self.claim.verb in guard.verbs
 
@@ -479,7 +548,7 @@ class JudgedClause:
             return "its bound depends on the situation, and all runs are judged together"
         if self._judge is None and self._judge_run is None:
             measured = "the time from one event to another" if isinstance(subject, Interval) else "a sum of durations"
-            return f"`{self.claim.word}` cannot be judged of {measured}"
+            return f"`{self.claim.head}` cannot be judged of {measured}"
         return ""
 
     def remarks(self, tree: LoggedTree, keeping: Collection[int]) -> Iterator[str]:
@@ -504,6 +573,8 @@ class JudgedClause:
         findings = self.findings
         tally = self._tally.result() if open_run is None else self._tally.so_far(open_run, self.broken.values())
         verdict, why = verdict_of(tally, findings.missing, findings.has_run)
+        if verdict == NEVER and findings.left_out["not_applicable"]:
+            why = f"its assumption did not hold ({counted(findings.left_out['not_applicable'], 'time')})"
         if verdict == NEVER and findings.missed and self.claim.event is not None:
             event = self.claim.text.partition(" after ")[2].removeprefix("when ")
             why = f"it was not running when {event} ({counted(findings.missed, 'time')})"
@@ -512,15 +583,16 @@ class JudgedClause:
         is_of_run = is_share or (verb.operand == "count" and self.claim.per is None)
         is_pooled = self.claim.verb in POOLED and self._judge_run is not None
         is_once_a_run = isinstance(self._subject, DurationSum) or (is_of_run and len(findings.paths) == 1)
+        of_each: Literal["activations", "occurrences"] = "activations"
+        if isinstance(self._subject, ResolvedEachEvent):
+            of_each = "occurrences"
         return ClauseVerdict(
             text=self.text,
             path=", ".join(findings.paths),
-            of=self.claim.text.partition(f" {self.claim.word} ")[0]
-            if isinstance(self._subject, Interval | DurationSum)
-            else "",
+            of=self.claim.subject_text if isinstance(self._subject, Interval | DurationSum | ResolvedEachEvent) else "",
             verdict=verdict,
             why=why,
-            unit="runs" if tally.counts_runs or is_once_a_run or is_pooled else "activations",
+            unit="runs" if tally.counts_runs or is_once_a_run or is_pooled else of_each,
             confidence=self.requirement.confidence,
             histogram=tally.distribution.histogram(self.marks()),
             timeline=findings.timeline if verdict == VIOLATED else None,
@@ -528,6 +600,7 @@ class JudgedClause:
             failed=findings.left_out["failed"],
             halted=findings.left_out["halted"],
             idle=findings.left_out["idle"],
+            not_applicable=findings.left_out["not_applicable"],
             **tally.fields(),
         )
 
@@ -565,9 +638,8 @@ def _kind(judgement: Judgement | None, activation: Activation) -> int:
 
 def _events(claim: ResolvedClaim, subject: Subject | None) -> tuple[ResolvedEvent, ...]:
     """The events that a clause names."""
-    if isinstance(subject, Interval):
-        return subject.first, subject.last
-    return (claim.event,) if claim.event is not None else ()
+    events = (*events_of(subject), *([claim.event] if claim.event is not None else ()))
+    return tuple(atom for event in events for atom in event.atoms)
 
 
 def _node_of(subject: Subject | None) -> NodeTarget | None:
@@ -585,4 +657,5 @@ def _clocked(judgement: Judgement | None, root: Activation | None) -> Judgement 
 
 
 _WITHOUT_SUCCESS: Final[dict[Outcome, str]] = {"F": "failed", "H": "halted"}
-_OF_TIME: Final = ("duration", "deadline", "reaction")  # operands that bound the time since something began
+# The operands that bound the time since something began.
+_OF_TIME: Final = ("duration", "deadline", "reaction", "answer", "stretch")

@@ -38,7 +38,7 @@ class ClauseFindings:
         has_run: whether one of its nodes has.
         missed: how many events happened while its node was not active.
         timeline: the run with the worst violation; None if none is kept.
-        left_out: as `failed`, `halted` and `idle` of `ClauseVerdict`.
+        left_out: as `failed`, `halted`, `idle` and `not_applicable` of `ClauseVerdict`.
     """
 
     def __init__(self, requirement: ResolvedRequirement, limits: Limits, pool: Pool | None = None) -> None:

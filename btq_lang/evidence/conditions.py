@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 from btq_lang.catalog.units import ONE, Unit, parse_unit
 from btq_lang.evidence.signals import UnknownValue
 from btq_lang.requirements.model import (
+    Age,
     Aggregate,
     All,
     Any,
@@ -181,8 +182,11 @@ def _compared_with_bound(condition: Compare, observed: Observed, moment: Moment,
     bound = bound_at(right, observed, moment)
     if not isinstance(value, float) or isinstance(bound, UnknownValue):
         return None
+    sign = OPPOSITE[sign] if is_negated else sign
+    if isinstance(left, Age):
+        return Measure(value, sign, bound, bound.unit, f"age({left.signal.name})")
     name = left.signal.name if isinstance(left, SignalRead) else f"{left.function}({left.signal.name})"
-    return Measure(value, OPPOSITE[sign] if is_negated else sign, bound, _unit(left), name)
+    return Measure(value, sign, bound, _unit(left), name)
 
 
 def _compared(condition: Compare, observed: Observed, moment: Moment) -> Truth:
@@ -208,6 +212,8 @@ def _number(part: Number | Flag | TextValue, observed: Observed, moment: Moment)
         return part.si
     if isinstance(part, Flag | TextValue):
         return part.value
+    if isinstance(part, Age):
+        return observed.age(part.signal, moment)
     if isinstance(part, Aggregate):
         return observed.summary(part.function, part.signal)
     if isinstance(part, ResolvedTable):
@@ -259,7 +265,7 @@ _OPERATIONS: Final[dict[str, Callable[[float, float], float]]] = {
     "*": operator.mul,
     "/": operator.truediv,
 }
-_MEASURED: Final = (SignalRead, Aggregate)
+_MEASURED: Final = (SignalRead, Aggregate, Age)
 _BOUNDS: Final = (Quantity, ResolvedTable, SignalRead)
 MIRRORED: Final = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 OPPOSITE: Final = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}

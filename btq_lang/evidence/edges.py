@@ -18,6 +18,7 @@ from btq_lang.requirements.model import (
     Limit,
     Quantity,
     ResolvedClaim,
+    ResolvedEachEvent,
     ResolvedRequirement,
     SignalRead,
     Subject,
@@ -58,8 +59,9 @@ class Edge(Record):
 
 def edge_of(claim: ResolvedClaim, subject: Subject | None, requirement: ResolvedRequirement) -> Edge | None:
     """The bound of a claim at a subject; None if it has none that may be moved."""
-    if requirement.window is not None or isinstance(subject, DurationSum):
-        return None  # a window holds other judgements for another bound; of a sum parts may be unknown
+    if requirement.window is not None or isinstance(subject, DurationSum | ResolvedEachEvent):
+        # A window holds other judgements for another bound; parts of a sum, and earlier answers, may be unknown.
+        return None
     if claim.limit is not None:
         if claim.verb in POOLED:
             return None  # all runs decide together
@@ -74,7 +76,7 @@ def edge_of(claim: ResolvedClaim, subject: Subject | None, requirement: Resolved
 def key_of(requirement: ResolvedRequirement, claim: ResolvedClaim, edge: Edge | None) -> str:
     """What a clause demands apart from its bound and its odds: judgements of equal keys count the same."""
     text = claim.text.replace(edge.value.text, "…", 1) if edge is not None else claim.text
-    parts = [text, *(scope.text for scope in requirement.scopes)]
+    parts = [text, *(scope.text for scope in (*requirement.scopes, *requirement.assumptions))]
     parts += [requirement.window.text] if requirement.window is not None else []
     of_runs = requirement.odds is not None and requirement.odds.experiments == "runs"
     return " ".join([*parts, "of runs"] if of_runs else parts)

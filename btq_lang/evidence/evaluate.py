@@ -30,6 +30,7 @@ from btq_lang.evidence.verdicts import (
     ContextSummary,
     EvidenceFile,
     MissionVerdicts,
+    RequirementLinks,
     RequirementVerdict,
     worst_of,
 )
@@ -249,6 +250,7 @@ class MissionEvaluation:
                 " ".join((requirements.all[name].title or "").split()),
                 worst_of(clause_verdict.verdict for clause_verdict in clauses),
                 tuple(clauses),
+                RequirementLinks.of(requirements.all[name]),
             )
             for name, clauses in by_requirement.items()
         )
@@ -320,5 +322,5 @@ class _OpenSession:
 def _reading(mission: Candidate, clauses: Sequence[JudgedClause]) -> Iterator[tuple[str, object]]:
     """The parts of the model that read signals, each with the name of its requirement or context."""
     for clause in clauses:
-        yield clause.requirement.name, (clause.claim, clause.requirement.scopes)
+        yield clause.requirement.name, (clause.claim, clause.requirement.scopes, clause.requirement.assumptions)
     yield from ((name, context) for name, context in mission.requirements.contexts.items() if context is not None)

@@ -101,7 +101,8 @@ class Explainer:
     def chain(self, claim: ResolvedClaim, judgement: Judgement, path: str) -> tuple[CauseLink, ...]:
         """What led to the violation of a clause by the activation, of the node with this path, that has just ended."""
         if claim.condition is not None:
-            return tuple(self._sample(claim.condition, judgement.at, path))
+            since = judgement.since if judgement.since is not None else judgement.at
+            return tuple(self._sample(claim.condition, since, path))
         for activation, sums, origin in self._ended.values():
             if activation.end == judgement.at and self._tree.nodes[activation.uid].path == path:
                 parts = tuple(self._parts(activation, sums))

@@ -50,7 +50,9 @@ class RunExplainer:
             return tuple(self._shares(judgement.starts))
         event = claim.subject.last if isinstance(claim.subject, Interval) else claim.event
         if judgement.measure is None and event is not None:
-            return tuple(self._last(event, judgement.at, others))
+            return tuple(link for atom in event.atoms for link in self._last(atom, judgement.at, others))
+        if judgement.measure is None and claim.condition is not None:
+            return tuple(self._samples(claim.condition, judgement.at))
         if judgement.starts:
             return (_ends(self._path(judgement.starts[0]), judgement.starts), *self._inside(judgement.starts))
         if judgement.since is None:  # only a guard refused it

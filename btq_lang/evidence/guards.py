@@ -157,5 +157,5 @@ def _guard(tree: LoggedTree, uid: int, condition: int, requirement: str) -> Guar
 
 
 # The last word in the name of a Sequence that checks a success, and the verb of its clause.
-_CHECKED: Final = {"leaves": "leaves", "used": "uses"}
+_CHECKED: Final = {"leaves": "leaves", "ends": "ends with", "used": "uses"}
 _REFUSED: Final = {"starts": "starts per"}

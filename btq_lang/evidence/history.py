@@ -88,6 +88,11 @@ class Nearby:
         uids = self._uids[target]
         return [] if isinstance(uids, UnknownValue) else self._history.activations_of(uids)
 
+    def of(self, target: NodeTarget, activations: Iterable[Activation]) -> list[Activation]:
+        """Those activations that are of any instance of a node."""
+        uids = {uid for _, uid in self._joined.instances(target)}
+        return [activation for activation in activations if activation.uid in uids]
+
     def are_begins_known(self) -> bool:
         """Whether the log says when all of these nodes began in the run."""
         known = (uids for uids in self._uids.values() if not isinstance(uids, UnknownValue))

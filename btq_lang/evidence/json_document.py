@@ -13,13 +13,14 @@ from btq_lang.evidence.verdicts import (
     ClauseVerdict,
     Measures,
     Pooled,
+    RequirementLinks,
     RequirementVerdict,
     RunValue,
     Violation,
     Worst,
 )
 from btq_lang.evidence.wording import time_of, timestamp
-from btq_lang.util.record import Record, as_dict
+from btq_lang.util.record import Record, as_dict, fields_of
 from btq_lang.workspace.loader import shown
 
 if TYPE_CHECKING:
@@ -95,6 +96,7 @@ def _requirement(requirement: RequirementVerdict, mission: MissionVerdicts) -> J
         "mission": mission.name,
         "title": requirement.title,
         "verdict": requirement.verdict,
+        **{name: links if isinstance(links, str) else [*links] for name, links in requirement.links.named.items()},
         "clauses": [_clause(each) for each in requirement.clauses],
     }
 
@@ -208,7 +210,15 @@ def _parts_of(mission: dict[str, Any], parts: Iterable[dict[str, Any]]) -> Itera
 
 
 def _read_requirement(data: dict[str, Any]) -> RequirementVerdict:
-    return RequirementVerdict(data["id"], data["title"], data["verdict"], tuple(map(_read_clause, data["clauses"])))
+    links: dict[str, Any] = {
+        name: data[name] if isinstance(data[name], str) else tuple(data[name])
+        for name in fields_of(RequirementLinks())
+        if name in data
+    }
+    return RequirementVerdict(
+        *(data["id"], data["title"], data["verdict"], tuple(map(_read_clause, data["clauses"]))),
+        RequirementLinks(**links),
+    )
 
 
 def _read_source(data: dict[str, Any]) -> WrittenSource:

@@ -2,7 +2,8 @@
 
 One invariant: the names of a case's properties are unique.  `verifies` is the requirement's ID, which
 sphinx-test-reports turns into links (`tr_property_link_types`) and StrictDoc into a field of its test results; both
-read one property with several IDs, separated by commas.  StrictDoc refuses a repeated name, and `<error>`.
+read one property with several IDs, separated by commas, as `refines` and `mitigates` are.  StrictDoc refuses a repeated
+name, and `<error>`.
 """
 
 from __future__ import annotations
@@ -52,7 +53,17 @@ def _numbers(requirements: Sequence[RequirementVerdict]) -> str:
 
 def _case(requirement: RequirementVerdict, mission: MissionVerdicts) -> Iterator[str]:
     yield f'    <testcase classname="{escaped(mission.name)}" name="{escaped(requirement.id)}" time="0">'
-    yield f'      <properties><property name="verifies" value="{escaped(requirement.id)}"/></properties>'
+    links = requirement.links
+    properties = {
+        "verifies": requirement.id,
+        "refines": ",".join(links.refines),
+        "mitigates": ",".join(links.mitigates),
+        "verified_by": ",".join(links.verified_by),
+        "source": "; ".join(links.sources),
+        "priority": links.priority,
+    }
+    listed = (f'<property name="{name}" value="{escaped(value)}"/>' for name, value in properties.items() if value)
+    yield f"      <properties>{''.join(listed)}</properties>"
     worst = next(clause for clause in requirement.clauses if clause.verdict == requirement.verdict)
     if requirement.verdict == VIOLATED:
         yield f'      <failure type="violated" message="{escaped(headline(worst, mission.medians))}">'

@@ -5,13 +5,23 @@ One invariant: an answer is a value in SI, or the reason why it is unknown.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from itertools import pairwise
 from math import fsum, sqrt
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.model import UNKNOWN_END, Activation, Moment, SampleValue
 from btq_lang.evidence.signals import Signals, UnknownValue
-from btq_lang.requirements.model import InContext, ResolvedSignal, Running, SignalRead, parts_in
+from btq_lang.requirements.model import (
+    Age,
+    Compare,
+    InContext,
+    Quantity,
+    ResolvedSignal,
+    Running,
+    SignalRead,
+    parts_in,
+)
 
 if TYPE_CHECKING:
     from btq_lang.evidence.history import Nearby
@@ -90,6 +100,16 @@ class Observed:
         """The value of a signal at a moment."""
         return self.signals.reading(signal, moment[0], self.reads_initial)
 
+    def age(self, signal: ResolvedSignal, moment: Moment) -> float | UnknownValue:
+        """How old the last sample of a signal is at a moment, in seconds."""
+        renewed = self.signals.renewed(signal, self.begin[0], moment[0])
+        return renewed if isinstance(renewed, UnknownValue) else (moment[0] - renewed) / 1e6
+
+    def oldest(self, signal: ResolvedSignal, moment: Moment) -> Moment:
+        """The last moment before the next sample of a signal after another moment, or before the end."""
+        later = self.signals.renewals(signal, moment[0], self.end[0])
+        return (later[1] - 1, 0) if not isinstance(later, UnknownValue) and len(later) > 1 else (self.end[0], 0)
+
     def summary(self, function: str, signal: ResolvedSignal) -> float | UnknownValue:
         """An aggregate of the samples from beginning to end, including the value at the beginning."""
         begin, end = self.begin[0], self.end[0]
@@ -117,7 +137,9 @@ class Observed:
         begin, end = self.begin, self.end
         for part in parts:
             for read in parts_in(part):
-                if isinstance(read, SignalRead):
+                if isinstance(read, Compare):
+                    moments.update([(time, 0) for time in self._ages(read) if begin[0] < time <= end[0]])
+                elif isinstance(read, SignalRead):
                     moments.update([(time, 0) for time in self.signals.changes(read.signal, begin[0], end[0])])
                 elif isinstance(read, Running):
                     for activation in self.nodes.activations(read.target):
@@ -126,6 +148,23 @@ class Observed:
                         since = started[0], started[1] + 1  # unknown from then on if the end is
                         moments.update([moment for moment in (started, since, stopped) if begin < moment <= end])
         return sorted(moments)
+
+    def _ages(self, compare: Compare) -> Iterator[int]:
+        """The times at which an age reaches or passes what it is compared with, at which it is 0 again after that, and
+        at which it is largest."""
+        bounds = [round(part.si * 1e6) for part in parts_in(compare.operands) if isinstance(part, Quantity)]
+        for age in compare.operands:
+            if not isinstance(age, Age):
+                continue
+            renewals = self.signals.renewals(age.signal, self.begin[0], self.end[0])
+            if isinstance(renewals, UnknownValue):
+                continue
+            periods = [*pairwise([*renewals, self.end[0] + 1])]
+            for sampled, following in periods:
+                passed = [sampled + bound for bound in bounds if sampled + bound < following]
+                yield from (*passed, *[time + 1 for time in passed if time + 1 < following])
+                yield following if passed else self.begin[0]
+            yield max(periods, key=lambda period: period[1] - period[0])[1] - 1
 
 
 def _mean(values: Sequence[float]) -> float:

@@ -43,7 +43,7 @@ class Demand(Record):
     def text(self) -> str:
         """The clause as typed, with all that counts for its requirement."""
         requirement = self.requirement
-        of_all = (*requirement.scopes, requirement.odds, requirement.window)
+        of_all = (*requirement.scopes, *requirement.assumptions, requirement.odds, requirement.window)
         parts = [self.claim.text, *(part.text for part in of_all if part is not None)]
         return " ".join([*parts, f"goal {requirement.goal.text}"] if requirement.goal is not None else parts)
 
@@ -129,7 +129,7 @@ _WORDS: Final[dict[type, str]] = {
 def open_reason(requirement: ResolvedRequirement) -> str:
     """Why no log can show a requirement; empty if logs can."""
     if requirement.is_verified_by_people:
-        return f"verified by {requirement.method}"
+        return requirement.verification
     return "" if requirement.claims or requirement.unread else "it has no clause that can be measured"
 
 

@@ -6,10 +6,18 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.conditions import truth
-from btq_lang.evidence.model import UNKNOWN_END, Activation, Moment
+from btq_lang.evidence.model import ROOT, UNKNOWN_END, Activation, Moment
 from btq_lang.evidence.scopes import in_scope
 from btq_lang.evidence.signals import UnknownValue
-from btq_lang.requirements.model import All, Condition, MissionRun, NodeTarget, ResolvedEvent, ResolvedScope
+from btq_lang.requirements.model import (
+    All,
+    Condition,
+    MissionRun,
+    NodeTarget,
+    ResolvedAnyEvent,
+    ResolvedEvent,
+    ResolvedScope,
+)
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
@@ -26,6 +34,7 @@ class Happening(Record):
         is_certain: it did happen, rather than may have.
         order: the moment that orders it among other events; None: its own.
         judged: when scopes and bounds are read; None: at `at`.
+        uid: of the node that it happened to; 0: it is a condition.
     """
 
     at: Moment
@@ -34,6 +43,7 @@ class Happening(Record):
     is_certain: bool = True
     order: Moment | None = None
     judged: Moment | None = None
+    uid: int = 0
 
     @property
     def first(self) -> Moment:
@@ -69,7 +79,8 @@ class OverRun(Record):
     Attributes:
         verb, scopes: of the clause.
         root: the activation of its root, which spans the run.
-        own: the activations of the clause's nodes, in the order of their starts.
+        uids: the clause's nodes; the root for a span that begins with a condition.
+        own: the activations of these, in the order of their starts.
         observed: of the whole run.
         refused: starts of the clause's nodes that its own guard refused.
         stopped: activations of the nodes around a span that its own guard stopped.
@@ -79,6 +90,7 @@ class OverRun(Record):
     verb: str
     scopes: Sequence[ResolvedScope]
     root: Activation
+    uids: Sequence[int]
     own: Sequence[Activation]
     observed: Observed
     refused: Sequence[RefusedStart]
@@ -100,7 +112,7 @@ class OverRun(Record):
             return True
         return in_scope(self.scopes, self.verb, self.observed.during(activation))
 
-    def begins(self, event: ResolvedEvent) -> list[Moment]:
+    def begins(self, event: ResolvedEvent | ResolvedAnyEvent) -> list[Moment]:
         """When the clause's nodes began, to be compared with an event: a moment, or the row of another node."""
         is_by_row = event.condition is None
         return [activation.shown if is_by_row else activation.begun(self.observed.is_early) for activation in self.own]
@@ -117,9 +129,13 @@ class OverRun(Record):
             return [Stretch(self.observed.begin, self.observed.end)]
         return self.with_all_along(All(tuple(conditions)))
 
-    def with_all_along(self, condition: Condition) -> list[Stretch]:
-        """The maximal parts of the run in which a condition holds or is unknown."""
-        observed = self.observed.in_scope
+    def with_all_along(self, condition: Condition, observed: Observed | None = None) -> list[Stretch]:
+        """The maximal parts of the run in which a condition holds or is unknown.
+
+        Args:
+            observed: of the run; None: with the values `initially` of signals.
+        """
+        observed = observed or self.observed.in_scope
         stretches: list[Stretch] = []
         begin = observed.begin
         before: bool | UnknownValue = False
@@ -135,14 +151,30 @@ class OverRun(Record):
         return stretches
 
     def happenings(
-        self, event: ResolvedEvent, activations: Sequence[Activation] | None = None, is_by_row: bool = True
+        self, event: ResolvedEvent | ResolvedAnyEvent, is_own: bool = False, is_by_row: bool = True
     ) -> list[Happening]:
         """The certain and possible occurrences of an event, in order.
 
         Args:
-            activations: of its node; None: those of the node that the clause names.
+            is_own: only those of the clause's nodes, not of all that the event names.
             is_by_row: begins are in the order of their rows, not of their times.
         """
+        if not isinstance(event, ResolvedAnyEvent):
+            return self._happenings(event, self.own if is_own else None, is_by_row)
+        is_by_row = is_by_row and event.condition is None
+        occurrences: dict[Happening, None] = {}  # each once: what succeeds finishes, too
+        for atom in event.atoms:
+            own: Sequence[Activation] | None = None
+            if is_own and atom.condition is None:
+                own = self.observed.nodes.of(target_of(atom), self.own)
+            elif is_own and ROOT not in self.uids:
+                continue
+            occurrences.update(dict.fromkeys(self._happenings(atom, own, is_by_row)))
+        return sorted(occurrences, key=lambda happening: happening.first)
+
+    def _happenings(
+        self, event: ResolvedEvent, activations: Sequence[Activation] | None, is_by_row: bool
+    ) -> list[Happening]:
         occurrences: list[Happening] = []
         if event.condition is not None:
             ended: Moment | None = None  # of the last part in which it is unknown
@@ -155,14 +187,17 @@ class OverRun(Record):
             return occurrences
         outcomes = _OUTCOMES.get(event.happening)
         for activation in activations if activations is not None else self.observed.nodes.activations(target_of(event)):
+            uid = activation.uid
             if outcomes is None:
                 begun = activation.begun(self.observed.is_early)
                 order = activation.shown if is_by_row else begun
-                occurrences.append(Happening(activation.begun(True), activation.started, order=order, judged=begun))
+                moments = activation.begun(True), activation.started
+                occurrences.append(Happening(*moments, order=order, judged=begun, uid=uid))
             elif activation.outcome in outcomes and activation.timing == "latest":
-                occurrences.append(Happening(activation.shown, activation.ended, UNKNOWN_END, judged=activation.ended))
+                moments = activation.shown, activation.ended
+                occurrences.append(Happening(*moments, UNKNOWN_END, judged=activation.ended, uid=uid))
             elif activation.outcome in outcomes:
-                occurrences.append(Happening(activation.ended, activation.ended))
+                occurrences.append(Happening(activation.ended, activation.ended, uid=uid))
         return sorted(occurrences, key=lambda happening: happening.first)
 
 

@@ -15,14 +15,25 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.evidence.conditions import Measure, compared
+from btq_lang.evidence.conditions import Measure, compared, truth
 from btq_lang.evidence.exposure import rate
 from btq_lang.evidence.model import UNKNOWN_BEGIN, UNKNOWN_END, Activation
 from btq_lang.evidence.over_run import Happening, OverRun, Stretch
 from btq_lang.evidence.signals import UnknownValue
 from btq_lang.evidence.time_shares import of_time
 from btq_lang.evidence.verbs import OUT, Judgement, between, is_same
-from btq_lang.requirements.model import DurationSum, Interval, NodeTarget, Quantity, ResolvedClaim, Subject
+from btq_lang.requirements.model import (
+    Condition,
+    DurationSum,
+    Interval,
+    NodeTarget,
+    Quantity,
+    ResolvedAnyEvent,
+    ResolvedClaim,
+    ResolvedEachEvent,
+    ResolvedEvent,
+    Subject,
+)
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
@@ -30,6 +41,8 @@ if TYPE_CHECKING:
     from btq_lang.evidence.observed import Observed
 
 Judgements: TypeAlias = Iterator[Judgement | None]
+# Of an event: the next one of some others that has happened, and those that only may have happened before that.
+NextOf: TypeAlias = Callable[[Happening], "tuple[Happening | None, Sequence[Happening]]"]
 RunJudge: TypeAlias = Callable[[ResolvedClaim, OverRun], Judgements]
 
 
@@ -133,6 +146,95 @@ def _timed(claim: ResolvedClaim, times: tuple[Measure, Measure], moment: int, si
 
 def _begin(activation: Activation, run: OverRun) -> Happening:
     return Happening(activation.begun(True), activation.started, judged=activation.begun(run.observed.is_early))
+
+
+def _followed(claim: ResolvedClaim, run: OverRun) -> Judgements:
+    """`each e is followed by f within d`: for each event, whether the other one happens, or the condition holds, in
+    time."""
+    each, answer = claim.subject, claim.event
+    assert isinstance(each, ResolvedEachEvent), "the verb has no other subject"
+    if answer is None:
+        assert claim.condition is not None, "an event or a condition follows"
+        next_of = _next_true(claim.condition, run)
+        events = [Happening(event.read, event.read, event.why) for event in run.happenings(each.event, is_own=True)]
+    else:
+        is_by_row = each.event.condition is None and answer.condition is None
+        is_later = each.event == answer or (_names_nodes(each.event) and _names_nodes(answer))
+        next_of = _next_of(run.happenings(answer, is_by_row=is_by_row), run, is_later=is_later)
+        events = run.happenings(each.event, is_own=True, is_by_row=is_by_row)
+    for event in events:
+        yield from _followed_by(claim, run, event, *next_of(event))
+
+
+def _names_nodes(event: ResolvedEvent | ResolvedAnyEvent) -> bool:
+    return event.atoms[0].condition is None
+
+
+def _next_true(condition: Condition, run: OverRun) -> NextOf:
+    """Finds when a demanded condition holds next; `initially` does not count, for it is not measured."""
+    stretches = [
+        Happening(part.begin, part.begin, part.why, not part.why)
+        for part in run.with_all_along(condition, run.observed)
+    ]
+    next_of = _next_of(stretches, run, is_later=True)
+
+    def next_true(event: Happening) -> tuple[Happening | None, Sequence[Happening]]:
+        now = truth(condition, run.observed, event.at)
+        if now is True:
+            return event, ()
+        later, unclear = next_of(event)
+        if isinstance(now, UnknownValue):
+            unclear = [Happening(event.at, event.at, now.why), *unclear]
+        return later, unclear
+
+    return next_true
+
+
+def _followed_by(
+    claim: ResolvedClaim, run: OverRun, event: Happening, answer: Happening | None, unclear: Sequence[Happening]
+) -> Judgements:
+    """The judgement of an event and what follows it; None: the log ends before the deadline."""
+    end = answer or Happening(run.root.ended, run.root.ended)
+    until = deadline = end.read
+    times = _between_limits(claim, run.observed, event, end) if claim.limit is not None else None
+    if isinstance(times, tuple):
+        deadline = min(until, (event.read[0] + round(times[1].bound.si * 1e6), until[1]))
+    time = deadline[0]
+    if event.why:  # whether it is in scope is unknown, too
+        yield Judgement(None, time, event.why)
+        return
+    counts = run.counts(event.read, deadline)
+    if counts is False:
+        yield OUT
+        return
+    if isinstance(times, UnknownValue):
+        yield Judgement(None, time, times.why)
+        return
+    is_late, is_surely_in_time = times is not None and not times[0].holds, times is None or times[1].holds
+    # The condition may hold after the run, before the time is over.
+    is_open = claim.condition is not None and times is not None and times[0].excess < 0
+    earlier = [other.why for other in unclear if times is None or _may_be_in_time(claim, run, event, other)]
+    if earlier and (answer is None or not is_surely_in_time):
+        yield Judgement(None, time, earlier[0])
+    elif answer is None and not is_late and (run.is_cut_off or is_open):
+        left_out = None if run.is_cut_off else OUT
+        yield left_out if is_surely_in_time else Judgement(None, time, UNKNOWN_BEGIN)
+    elif isinstance(counts, UnknownValue):
+        yield Judgement(None, time, counts.why)
+    elif answer is not None and times is not None:
+        yield _timed(claim, times, until[0], event.until[0])
+    elif answer is not None:
+        yield Judgement(True, until[0], "")
+    elif times is not None and is_late:
+        yield Judgement(False, time, "had not been followed after {}", times[0], event.at[0])
+    else:
+        yield Judgement(False, time, "had not been followed when the run ended", since=event.at[0])
+
+
+def _may_be_in_time(claim: ResolvedClaim, run: OverRun, event: Happening, other: Happening) -> bool:
+    """Whether what may have happened was before the deadline, if it did."""
+    least = compared(claim, max(other.at[0] - event.until[0], 0) / 1e6, run.observed, event.read)
+    return isinstance(least, Measure) and least.holds
 
 
 def _follows(claim: ResolvedClaim, run: OverRun) -> Judgements:
@@ -319,22 +421,39 @@ def _span(claim: ResolvedClaim, run: OverRun) -> Judgements:
     assert isinstance(span, Interval), "the time between two events"
     first = span.first
     is_by_row = first.condition is None and span.last.condition is None
-    lasts = run.happenings(span.last, is_by_row=is_by_row)
-    certain = [last_event for last_event in lasts if last_event.is_certain]
-    moments = [last_event.first for last_event in certain]
-    # The first one that has happened, of those from each index on.
-    ends = [*accumulate(reversed(certain), lambda *pair: min(pair, key=attrgetter("last")))][::-1]
-    next_after = bisect_right if first == span.last else bisect_left  # an event does not follow itself
-    for event in run.happenings(first, run.own if first.condition is None else None, is_by_row):
-        index = next_after(moments, event.first)
-        last = ends[index] if index < len(ends) else None
+    # An event does not follow itself.
+    next_of = _next_of(run.happenings(span.last, is_by_row=is_by_row), run, is_later=first == span.last)
+    for event in run.happenings(first, is_own=True, is_by_row=is_by_row):
+        last, others = next_of(event)
         until = last.last if last is not None else run.root.ended
         if any(stopped.shown <= event.first <= stopped.ended <= until for stopped in run.stopped):
             yield Judgement(False, until[0], "its guard stopped it before it came to an end", since=event.read[0])
             continue
-        others = [last_event for last_event in lasts if last_event.until >= event.first and last_event.at <= until]
-        unclear = next((last_event.why for last_event in others if last_event.why), "")
-        yield from _ended(claim, run, event, last, unclear)
+        yield from _ended(claim, run, event, last, others[0].why if others else "")
+
+
+def _next_of(events: Sequence[Happening], run: OverRun, *, is_later: bool) -> NextOf:
+    """Finds what happens next; `is_later`: not at the same moment."""
+    certain = sorted([event for event in events if event.is_certain], key=attrgetter("first", "last"))
+    unclear = [event for event in events if event.why]
+    moments = [event.first for event in certain]
+    # The first one that has happened, of those from each index on.
+    nexts = [*accumulate(reversed(certain), _earlier)][::-1]
+
+    def next_of(event: Happening) -> tuple[Happening | None, Sequence[Happening]]:
+        index = bisect_left(moments, event.first)
+        while is_later and index < len(certain) and certain[index].last == event.first:
+            index += 1
+        last = nexts[index] if index < len(nexts) else None
+        until = last.last if last is not None else run.root.ended
+        return last, [other for other in unclear if other.until >= event.first and other.at <= until]
+
+    return next_of
+
+
+def _earlier(next_event: Happening, event: Happening) -> Happening:
+    """Which one has happened first; of those that happen at once, that which began first."""
+    return min(event, next_event, key=attrgetter("last"))
 
 
 def _ended(claim: ResolvedClaim, run: OverRun, first: Happening, last: Happening | None, unclear: str) -> Judgements:
@@ -413,6 +532,7 @@ JUDGES: Final[dict[str, RunJudge]] = {
     "starts": _starts,
     "ends": _ends,
     "follows": _follows,
+    "followed": _followed,
     **dict.fromkeys(("tries", "starts per", *_RESULTS), _tries),
     "runs": _runs,
     "fails per time": rate,

@@ -12,7 +12,7 @@ from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.conditions import truth
 from btq_lang.evidence.model import UNKNOWN_END
 from btq_lang.evidence.signals import UnknownValue
-from btq_lang.requirements.model import Any, Negation, ResolvedClaim, ResolvedScope
+from btq_lang.requirements.model import All, Any, Negation, ResolvedClaim, ResolvedScope
 from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
@@ -27,6 +27,8 @@ def within(claim: ResolvedClaim, scopes: Sequence[ResolvedScope]) -> ResolvedCla
             claim = replace(claim, condition=Any((Negation(scope), condition)))
         elif scope.word == "while" and condition is not None and claim.verb == "never":
             claim = replace(claim, condition=Negation(Any((Negation(scope), Negation(condition)))))
+        elif scope.word == "while" and condition is not None and claim.verb == "never for":
+            claim = replace(claim, condition=All((scope, condition)))
     return claim
 
 

@@ -36,6 +36,8 @@ def result(clause: ClauseVerdict) -> str:
     if left_out and clause.verdict != UNKNOWN:
         number = clause.failed + clause.halted
         parts.append(f"{' and '.join(left_out)} {'was' if number == 1 else 'were'} not counted")
+    if clause.not_applicable and clause.verdict != NEVER:
+        parts.append(f"{clause.not_applicable} not applicable")
     bounded = f"; {clause.bounded.number} bounded by {clause.bounded.text}" if clause.bounded is not None else ""
     return f"{', '.join(parts)}{bounded}"
 

@@ -57,6 +57,23 @@ class Signals:
         sample = self._series(signal).at(time)
         return sample[0] if sample is not None else None
 
+    def renewals(self, signal: ResolvedSignal, begin: int, end: int) -> list[int] | UnknownValue:
+        """From when on the age of a signal counts: the last sample up to `begin`, or else `begin` itself, and those
+        after it, up to `end`."""
+        series = self._series(signal)
+        if not series.times:
+            return UnknownValue(_none_of(signal))
+        before = series.at(begin)
+        return [before[0] if before is not None else begin, *series.between(begin, end)]
+
+    def renewed(self, signal: ResolvedSignal, begin: int, time: int) -> int | UnknownValue:
+        """From when on the age of a signal counts at a time; see `renewals`."""
+        series = self._series(signal)
+        last_sample = series.at(time)
+        if not series.times:
+            return UnknownValue(_none_of(signal))
+        return last_sample[0] if last_sample is not None else begin
+
     def changes(self, signal: ResolvedSignal, begin: int, end: int) -> list[int]:
         """The times after `begin`, up to `end`, at which a signal may change: a sample comes or expires."""
         series = self._series(signal)

@@ -28,7 +28,7 @@ def of_time(claim: ResolvedClaim, run: OverRun) -> Iterator[Judgement | None]:
     """`keeps φ in at least p of time`: the share of the time of a node's activations in a run in which φ is true."""
     assert claim.condition is not None, "something is kept"
     times = _Times()
-    condition = Negation(claim.condition) if claim.word == "never" else claim.condition
+    condition = Negation(claim.condition) if claim.head == "never" else claim.condition
     for activation in run.own:
         for piece in pieces(run, activation, condition):
             times.add(*piece)
@@ -127,5 +127,5 @@ def _judged(claim: ResolvedClaim, run: OverRun, times: _Times) -> Judgement:
 
 def _condition(claim: ResolvedClaim) -> str:
     """The condition as typed."""
-    text = claim.text.partition(f"{claim.word} ")[2]
+    text = claim.text.partition(f"{claim.head} ")[2]
     return max((text.rpartition(words)[0] for words in (" in at least ", " with probability ")), key=len)

@@ -6,6 +6,7 @@ One invariant: an activation is judged when it has ended, None if it does not co
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from operator import itemgetter
 from typing import Final, NamedTuple, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
@@ -16,7 +17,7 @@ from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.signals import UnknownValue
 from btq_lang.evidence.use import fallen, risen
 from btq_lang.evidence.wording import quantity
-from btq_lang.requirements.model import Aggregate, Condition, Negation, ResolvedClaim, parts_in, signals_in
+from btq_lang.requirements.model import Age, Aggregate, Condition, Negation, ResolvedClaim, parts_in, signals_in
 
 Judge: TypeAlias = Callable[[ResolvedClaim, Activation, Observed], "Judgement | None"]
 
@@ -66,7 +67,7 @@ def agreed(late: Judgement | None, early: Judgement | None, activation: Activati
         return Judgement(None, activation.end, UNKNOWN_BEGIN)
     if late.amounts is not None and early.amounts is not None:
         return late._replace(amounts=late.amounts.joined(early.amounts))
-    return between(late, late.measure, early.measure)
+    return between(late, late.measure, early.most or early.measure)
 
 
 def between(judgement: Judgement, one: Measure | None, other: Measure | None) -> Judgement:
@@ -210,6 +211,14 @@ def leaves(claim: ResolvedClaim, activation: Activation, observed: Observed) -> 
     return _of(_result(claim.condition, activation.ended, observed), activation.ended, claim, observed)
 
 
+def ends_with(claim: ResolvedClaim, activation: Activation, observed: Observed) -> Judgement | None:
+    """`ends with φ`: a condition at the end of an activation that succeeded or failed."""
+    assert claim.condition is not None, "it ends with a condition"
+    if activation.outcome not in ("S", "F"):
+        return None
+    return _of(_result(claim.condition, activation.ended, observed), activation.ended, claim, observed)
+
+
 def keeps(claim: ResolvedClaim, activation: Activation, observed: Observed) -> Judgement:
     """`keeps φ`: a condition from the start of an activation to its end, at each moment at which it may change.
 
@@ -227,6 +236,7 @@ def keeps(claim: ResolvedClaim, activation: Activation, observed: Observed) -> J
         elif answer is False or (isinstance(answer, Measure) and not answer.holds):
             if activation.timing != "exact" and moment != observed.begin:
                 return Judgement(None, moment[0], "the log does not say whether it was still running")
+            answer = _at_worst(condition, answer, moment, observed)
             is_of_all = any(isinstance(part, Aggregate) for part in parts_in(condition))  # known only at the end
             return _of(answer, (activation.end, 0) if is_of_all else moment, claim, observed)
         else:
@@ -239,10 +249,56 @@ def keeps(claim: ResolvedClaim, activation: Activation, observed: Observed) -> J
     return _of(answer, moment, claim, observed)
 
 
+def never_for(claim: ResolvedClaim, activation: Activation, observed: Observed) -> Judgement:
+    """`never φ for more than d`: the longest stretch of an activation in which a condition holds.
+
+    Between two moments at which it is known not to hold, it holds at least from one known moment to the next unknown
+    one, and at most all the time.
+    """
+    assert claim.condition is not None, "something is limited"
+    if activation.timing == "broken":
+        return Judgement(None, activation.end, CLOCK_SET_BACK)
+    moments = observed.moments(claim.condition)
+    answers = [truth(claim.condition, observed, moment) for moment in moments]
+    ends = [*[moment[0] for moment in moments[1:]], activation.end]
+    least, most, unknown = (0, activation.begin), 0, ""  # how long it held and when that began; how long it may have
+    held_since = open_since = -1
+    for (time, _), answer, end in zip(moments, answers, ends, strict=True):
+        open_since = -1 if answer is False else open_since if open_since >= 0 else time
+        held_since = -1 if answer is not True else held_since if held_since >= 0 else time
+        if answer is True:
+            least = max(least, (end - held_since, held_since), key=itemgetter(0))
+        if answer is not False:
+            most = max(most, end - open_since)
+        if isinstance(answer, UnknownValue):
+            unknown = unknown or answer.why
+    measure = compared(claim, least[0] / 1e6, observed, activation.started)
+    longest = compared(claim, most / 1e6, observed, activation.started)
+    if isinstance(measure, UnknownValue) or isinstance(longest, UnknownValue):
+        return Judgement(None, activation.end, measure.why if isinstance(measure, UnknownValue) else "")
+    if measure.holds and (not longest.holds or all(isinstance(answer, UnknownValue) for answer in answers)):
+        return Judgement(None, activation.end, unknown)
+    if not measure.holds and activation.timing != "exact":
+        return Judgement(None, activation.end, UNKNOWN_END)
+    condition = claim.text.partition("never ")[2].rpartition(" for ")[0]
+    sentence = f"`{condition}` {VERBS[claim.verb].said}"
+    judgement = Judgement(measure.holds, least[1] + least[0], sentence, since=least[1])
+    return between(judgement._replace(measure=measure), measure, longest)
+
+
 def _result(condition: Condition, moment: Moment, observed: Observed) -> Measure | bool | UnknownValue:
     """Whether a condition holds at a moment, as a measure if it compares a signal with a bound."""
     measure = measure_of(condition, observed, moment)
     return measure if measure is not None else truth(condition, observed, moment)
+
+
+def _at_worst(condition: Condition, answer: Measure | bool, moment: Moment, observed: Observed) -> Measure | bool:
+    """The measure of a violation; of an age when it was largest, before the next sample."""
+    age = next((part for part in parts_in(condition) if isinstance(part, Age)), None)
+    if age is None or not isinstance(answer, Measure) or answer.name != f"age({age.signal.name})":
+        return answer
+    later = measure_of(condition, observed, observed.oldest(age.signal, moment))
+    return later if later is not None and not later.holds else answer
 
 
 def _of(result: Measure | bool | UnknownValue, moment: Moment, claim: ResolvedClaim, observed: Observed) -> Judgement:
@@ -284,8 +340,10 @@ JUDGES: Final[dict[str, Judge]] = {
     "uses": uses,
     "needs": needs,
     "leaves": leaves,
+    "ends with": ends_with,
     "keeps": keeps,
     "never": keeps,
+    "never for": never_for,
     "takes on average": on_average,
     "uses on average": on_average,
 }

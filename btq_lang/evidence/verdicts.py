@@ -8,14 +8,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
-from btq_lang.util.record import Record
+from btq_lang.util.record import Record, as_dict
 
 if TYPE_CHECKING:
     from btq_lang.catalog.units import Unit
     from btq_lang.evidence.margins import Margins
     from btq_lang.evidence.model import Outcome, SampleValue
     from btq_lang.evidence.odds import Limits
-    from btq_lang.requirements.model import Quantity, Sort
+    from btq_lang.requirements.model import Quantity, ResolvedRequirement, Sort
     from btq_lang.workspace.resolved import ResolvedNode
 
 Verdict: TypeAlias = Literal["violated", "unknown", "undecided", "satisfied", "never exercised", "open"]
@@ -249,6 +249,7 @@ class ClauseVerdict(Record):
         by_run: the last 60 runs with a judgement, the earliest first.
         failed, halted: activations left out because the clause is about those that succeed.
         idle: in how many runs its node did not start, if it is about activations of one.
+        not_applicable: how many activations, or runs, were left out because an assumption did not hold.
         pooled: of a clause about all runs together, from which its verdict follows; else None.
     """
 
@@ -257,7 +258,7 @@ class ClauseVerdict(Record):
     of: str
     verdict: Verdict
     why: str
-    unit: Literal["activations", "runs"]
+    unit: Literal["activations", "runs", "occurrences"]
     counted: int
     violated: int
     unknown: int
@@ -277,15 +278,46 @@ class ClauseVerdict(Record):
     halted: int = 0
     idle: int = 0
     pooled: Pooled | None = None
+    not_applicable: int = 0
+
+
+class RequirementLinks(Record):
+    """What a requirement is connected with.
+
+    Attributes:
+        sources: where it is from.
+        refines, mitigates: the IDs of requirements and of hazards.
+        priority: empty without one.
+        verified_by: the ways to verify it: `test TC-12`.
+    """
+
+    sources: tuple[str, ...] = ()
+    refines: tuple[str, ...] = ()
+    mitigates: tuple[str, ...] = ()
+    priority: str = ""
+    verified_by: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, requirement: ResolvedRequirement) -> RequirementLinks:
+        """Those of a requirement."""
+        ways = tuple(f"{way.method} {way.id or ''}".rstrip() for way in requirement.ways)
+        sources = tuple(" ".join(source.split()) for source in requirement.sources)
+        return cls(sources, requirement.refines, requirement.mitigates, requirement.priority or "", ways)
+
+    @property
+    def named(self) -> dict[str, str | tuple[str, ...]]:
+        """Those that there are, by their names."""
+        return {name: value for name, value in as_dict(self).items() if value}
 
 
 class RequirementVerdict(Record):
-    """A requirement; its verdict is the worst of its clauses."""
+    """A requirement; its verdict is the worst of its clauses.  links: unknown, and so empty, by a store."""
 
     id: str
     title: str
     verdict: Verdict
     clauses: tuple[ClauseVerdict, ...]
+    links: RequirementLinks = RequirementLinks()
 
 
 class EvidenceFile(Record):

@@ -23,8 +23,8 @@ The style:
 * one blank between words, none inside brackets, paths and units, one between a number and its unit, two before a
   comment after code; such comments on consecutive lines stay aligned if they are;
 * each clause in the block of a requirement has a line of its own, in one order: what is demanded, `while` and `when`,
-  odds, confidence, window, `on violation`, `goal`, `because`, `verified by`; clauses after the requirement's head stay
-  there if they fit the line;
+  `assuming`, odds, confidence, window, `on violation`, `goal`, `because`, `verified by`; clauses after the
+  requirement's head stay there if they fit the line;
 * at most one blank line anywhere, none at the start of the file or of a block; one before and after every item that
   has a block; no blanks at the end of a line;
 * the line ends that the file has: `\\r\\n` where its first one is that, else `\\n`, in strings and comments too, where

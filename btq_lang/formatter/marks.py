@@ -157,10 +157,12 @@ class Marks:
             self.tight.add(self._tokens[index + 1].start)
 
 
-# The order of clauses in a block: what is demanded, where and how often, what follows, why, and how it is verified.
+# The order of clauses in a block: what is demanded, where and how often, what follows, why, how it is verified, where
+# it is from, what it belongs to, and who approved it.
 _ORDER: Final = (
     syntax.Claim,
     syntax.ScopeClause,
+    syntax.Assuming,
     syntax.Average,
     syntax.Odds,
     syntax.Confidence,
@@ -169,5 +171,10 @@ _ORDER: Final = (
     syntax.Goal,
     syntax.Because,
     syntax.How,
+    syntax.Source,
+    syntax.Refines,
+    syntax.Mitigates,
+    syntax.Priority,
+    syntax.Approval,
 )
 _OPERANDS: Final = (NAME, NUMBER, QUANTITY, STRING, CLOSE)

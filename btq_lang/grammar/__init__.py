@@ -11,6 +11,8 @@ meaning of names are unknown here.
     attributes.py    attributes in brackets, and what is attached to nodes
     requirements.py  requirements, their parameters and units
     clauses.py       the clauses of a requirement
+    metadata.py      those of them that demand nothing
+    hazards.py       hazards
     claims.py        what a clause demands
     conditions.py    the conditions in clauses
     prose.py, clause_slips.py   clauses in the words of other notations

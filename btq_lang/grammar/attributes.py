@@ -10,11 +10,11 @@ from typing import Final
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, replace_fix, write_fix
 from btq_lang.grammar.conditions import close_group
 from btq_lang.grammar.cursor import VALUES, Cursor, shown
+from btq_lang.grammar.metadata import parse_requirement_id
 from btq_lang.grammar.requirements import (
     parse_quality_path,
     parse_req_ref,
     parse_requirement,
-    parse_requirement_id,
     skip_brackets,
 )
 from btq_lang.syntax.suggestions import CHILDREN, value_meant

@@ -16,10 +16,14 @@ from btq_lang.grammar.conditions import (
     BOUNDS,
     COMPARISONS,
     HEADS,
+    METADATA_HEADS,
     RELATIONS,
+    accept_one,
     bound_ahead,
+    parse_cases,
     parse_cond,
     parse_path,
+    parse_simple,
     written_otherwise,
 )
 from btq_lang.grammar.cursor import Cursor, shown
@@ -28,34 +32,39 @@ from btq_lang.syntax.scan import number_end
 from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
 from btq_lang.syntax.tree import (
     Amount,
+    AnyEvent,
     Between,
     Bound,
     Bounded,
-    Case,
     Claim,
     Condition,
+    EachEvent,
     Event,
     Every,
     Mission,
     Path,
     Subject,
     Sum,
-    Table,
     Word,
     quote,
 )
+from btq_lang.util.record import replace
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 
 _BEFORE_BOUNDS: Final = frozenset(("fails", "finishes"))  # verbs there alone: elsewhere events, or names
-VERB_WORDS: Final = frozenset(verb.partition(" ")[0] for verb in VERBS) - _BEFORE_BOUNDS
+# Those that follow a subject; `followed` is one only after `each … is`.
+VERB_WORDS: Final = (
+    frozenset(verb.partition(" ")[0] for verb in VERBS.keys() - words(operands=("answer",))) - _BEFORE_BOUNDS
+)
 HAPPENINGS: Final = frozenset(("starts", "succeeds", "fails", "finishes", "halts"))
-MAX_CASES: Final = 100  # in one value: each case of a table may be another table
 
 
 def parse_claim(cursor: Cursor) -> Claim | None:
-    """Claim = [ Subject ] Verb"""
+    """Claim = [ Subject ] Verb | Followed"""
     start = cursor.start()
+    if cursor.raw in _EACH and (verb := followed_ahead(cursor)):
+        return parse_followed(cursor, verb)
     subject: Subject | None = None
     if not at_verb(cursor):
         subject = parse_subject(cursor)
@@ -76,7 +85,7 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
     condition: Condition | None = None
     resource: Word | None = None
     per: Path | Word | None = None
-    event: Event | None = None
+    event: Event | AnyEvent | None = None
     every = False
     of: Path | None = None
     counts = verb.raw in COUNTING and bound_follows(cursor, cursor.index)
@@ -96,6 +105,7 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
             cursor.recover()
         elif not signal_last(cursor, verb.raw):
             condition = parse_cond(cursor)
+            bound = parse_stretch(cursor) if verb.raw == "never" and cursor.raw == "for" else None
     elif operand == "use":
         bound = parse_bound(cursor)
         resource = cursor.plain_name("a signal") if cursor.expect_word("of", forgotten=cursor.kind == NAME) else None
@@ -117,6 +127,8 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
                 per = cursor.quantity("a duration: 1 s") if cursor.expect_word("per") else None
     elif operand == "event":
         event = parse_event(cursor)
+    elif verb.raw == "ends" and cursor.accept_word("with"):
+        condition = None if signal_last(cursor, "ends with") else parse_cond(cursor)
     else:
         bound = parse_within(cursor) if cursor.expect_word("within") else None
         event = parse_event(cursor) if cursor.expect_word("after", ("of", "from", "since")) else None
@@ -143,6 +155,33 @@ def parse_period(cursor: Cursor, verb: str, is_optional: bool) -> Path | Word | 
     return None
 
 
+def parse_followed(cursor: Cursor, verb: int) -> Claim:
+    """Followed = "each" Event "is" "followed" "by" ( Event | Cond ) [ "within" Bounded ]; `verb`: its third word"""
+    start = cursor.start()
+    if not cursor.accept_word("each"):
+        fix = replace_fix(f"Replace `{cursor.raw}` with `each`", cursor.here(), "each", safe=True)
+        cursor.complain(cursor.here(), "all occurrences of an event are written `each …`", fix)
+        cursor.advance()
+    subject = EachEvent(start, cursor.last_end(), parse_event(cursor))
+    subject = replace(subject, end=cursor.last_end())
+    begin = cursor.index
+    cursor.go_to(verb)
+    word = cursor.take()
+    cursor.expect_word("by")
+    if cursor.raws[begin:verb] != ["is"] and subject.event is not None:
+        last = cursor.index - 1
+        span = Span(cursor.starts[begin], cursor.starts[last] + len(cursor.raws[last]))
+        cursor.complain(span, "this is written `is followed by`", write_fix("is followed by", span))
+    event: Event | AnyEvent | None = None
+    condition: Condition | None = None
+    if cursor.at_word("when") or is_event_ahead(cursor):
+        event = parse_event(cursor)
+    else:
+        condition = parse_cond(cursor)
+    bound = parse_within(cursor) if cursor.accept_word("within") else None
+    return Claim(start, cursor.last_end(), subject, word, bound, condition, event=event)
+
+
 def parse_subject(cursor: Cursor) -> Subject | None:
     """Subject = Path | "mission" | "every" Name | "from" Event "to" Event | "sum" "of" Path { "," Path }"""
     start = cursor.start()
@@ -165,8 +204,19 @@ def parse_subject(cursor: Cursor) -> Subject | None:
     return parse_path(cursor, "a node")
 
 
-def parse_event(cursor: Cursor) -> Event | None:
-    """Event = ( Path | "mission" ) ( "starts" | "succeeds" | … ) | "when" Cond"""
+def parse_event(cursor: Cursor) -> Event | AnyEvent | None:
+    """Event = { EventAtom "or" } ( EventAtom | "when" Cond )"""
+    first = parse_event_atom(cursor)
+    if first is None or not accept_one(cursor, ("or",)):
+        return first
+    events: list[Event | None] = [first, parse_event_atom(cursor)]
+    while events[-1] is not None and accept_one(cursor, ("or",)):
+        events.append(parse_event_atom(cursor))
+    return AnyEvent(first.start, cursor.last_end(), tuple(events))
+
+
+def parse_event_atom(cursor: Cursor) -> Event | None:
+    """EventAtom = ( Path | "mission" ) ( "starts" | "succeeds" | … );  "when" Cond too"""
     start = cursor.start()
     if cursor.accept_word("when"):
         condition = parse_cond(cursor)
@@ -174,6 +224,8 @@ def parse_event(cursor: Cursor) -> Event | None:
     path = None if cursor.accept_word("mission") else parse_path(cursor, "an event: a node and what happens to it")
     if not (cursor.kind == NAME and cursor.raw in HAPPENINGS) and not blank_in_path(cursor, path, HAPPENINGS):
         note = "an event is a node and what happens to it: `Pick starts`, `Place succeeds`"
+        if cursor.at_word("or"):
+            note = "of several events each has its own word: `Pick fails or Place fails`"
         cursor.expected("starts, succeeds, fails, finishes or halts", (note,), cursor.replaced_by(HAPPENINGS))
         return None
     happening = cursor.take().raw
@@ -216,6 +268,20 @@ def parse_within(cursor: Cursor) -> Bound:
     return Bound(min(start, end), end, "<=", value)
 
 
+def parse_stretch(cursor: Cursor) -> Bound | None:
+    """ "for" "more" "than" Bounded; other words for `more than` are reported"""
+    start = cursor.start()
+    relation = BOUNDS.get(tuple(cursor.raws[cursor.index + 1 : cursor.index + 3]))
+    if relation not in (("more", "than"), ("at", "least")):
+        return None
+    cursor.advance()
+    if not cursor.at_word("more"):
+        written_otherwise(cursor, "this time", 2, "more than")
+    cursor.go_to(cursor.index + 2)
+    value = parse_bounded(cursor)
+    return Bound(start, cursor.last_end(), "<=", value)
+
+
 def parse_bounded(cursor: Cursor) -> Bounded | None:
     """Bounded = Simple | Simple "if" Cond { "," Simple "if" Cond } "else" Simple"""
     if cursor.at_word("if") or (
@@ -223,40 +289,7 @@ def parse_bounded(cursor: Cursor) -> Bounded | None:
     ):
         return choice_in_other_words(cursor)
     value = parse_simple(cursor)
-    if value is None or not cursor.at_word("if"):
-        return value
-    cases: list[Case] = []
-    while cursor.accept_word("if"):
-        cases.append(Case(value, parse_cond(cursor)))
-        if not cursor.accept(","):
-            break
-        if len(cases) == MAX_CASES:
-            note = "compute the value in a node, and declare a signal for its output"
-            cursor.complain(
-                cursor.here(), f"more than {MAX_CASES} cases in one value", notes=(note,), rule="nested-too-deep"
-            )
-            cursor.recover()
-            return Table(tuple(cases))
-        value = parse_simple(cursor)
-        if value is None:
-            return Table(tuple(cases))
-        if not cursor.at_word("if"):
-            cursor.expected("`if` and a condition, or `else` instead of the comma")
-            return Table(tuple(cases))
-    otherwise = parse_simple(cursor) if cursor.expect_word("else") else None
-    return Table(tuple(cases), otherwise)
-
-
-def parse_simple(cursor: Cursor, strings: bool = False) -> Amount | None:
-    """Simple = [ "-" ] ( QUANTITY | NUMBER ) | NAME;  with `strings` a STRING too"""
-    cursor.skip_sign(":")
-    negative = cursor.accept("-")
-    if cursor.kind == QUANTITY or cursor.kind == NUMBER:
-        return Amount(cursor.take(), negative)
-    if not negative and (cursor.kind == NAME or (strings and cursor.kind == STRING)):
-        return Amount(cursor.take())
-    cursor.expected("a value with its unit: 30 s")
-    return None
+    return parse_cases(cursor, value) if value is not None and cursor.at_word("if") else value
 
 
 # ---- what productions ask and report ----
@@ -312,6 +345,31 @@ def every_meant(cursor: Cursor) -> bool:
     return True
 
 
+def followed_ahead(cursor: Cursor) -> int:
+    """The token `followed` of a clause that begins here; 0 if none does."""
+    raws = cursor.raws
+    for index in range(cursor.index + 2, len(raws) - 1):
+        if raws[index] == "followed" and (raws[index - 1] == "is" or raws[index + 1] == "by"):
+            return index
+    return 0
+
+
+def is_event_ahead(cursor: Cursor) -> bool:
+    """Whether a path and what happens to it are next, rather than a condition and the verb of another clause."""
+    last, kinds, raws = cursor.index, cursor.kinds, cursor.raws
+    if kinds[last] not in (NAME, STRING):
+        return False
+    while raws[last + 1] == "/" and kinds[last + 2] in (NAME, STRING):
+        last += 2
+    last += 1
+    if kinds[last] != NAME or raws[last] not in HAPPENINGS:
+        return False
+    if raws[last + 1] == "within":
+        later = next((raw for raw in raws[last + 2 :] if raw == "after" or raw in VERB_WORDS or raw in HEADS), "")
+        return later != "after"  # `starts within 2 s after …`
+    return raws[last + 1] != "between" and tuple(raws[last + 1 : last + 3]) not in RELATIONS
+
+
 def is_verb_ahead(cursor: Cursor, further: int) -> bool:
     """Whether the word `further` tokens ahead is a verb."""
     index = cursor.index + further
@@ -322,6 +380,11 @@ def no_verb(cursor: Cursor, subject: Subject) -> None:
     """Report a subject without a verb, or of a misspelt verb that was read as a subject."""
     first = subject.names[0] if isinstance(subject, Path) and len(subject.names) == 1 else None
     if isinstance(subject, Path) and (in_other_words(cursor, subject) or situation(cursor, first)):
+        cursor.recover()
+    elif isinstance(subject, Path) and cursor.raw in HAPPENINGS and followed_ahead(cursor):
+        before = Span(subject.span.start + cursor.base, subject.span.start + cursor.base)
+        fix = replace_fix("Put `each` before it", before, "each ")
+        cursor.complain(cursor.here(), f"expected `each` before `{before_verb(cursor, subject)} {cursor.raw}`", fix)
         cursor.recover()
     elif isinstance(subject, Path) and cursor.kind == NAME and cursor.raw in NO_VERBS:
         cursor.expected(_A_VERB, (NO_VERBS[cursor.raw],))
@@ -348,7 +411,9 @@ def no_verb(cursor: Cursor, subject: Subject) -> None:
         cursor.recover()
     elif not isinstance(subject, Path):
         cursor.expected(_A_VERB)
-    elif len(subject.names) == 1 and (likely := near(subject.names[0].raw, VERB_WORDS | HEADS, limit=1)):
+    elif len(subject.names) == 1 and (
+        likely := near(subject.names[0].raw, VERB_WORDS | HEADS | METADATA_HEADS, limit=1)
+    ):
         cursor.misspelt(subject.span.shifted(cursor.base), subject.names[0].raw, likely[0])
         cursor.recover()
     else:
@@ -559,17 +624,22 @@ MEANT: Final = {  # by the word that is read as a node before a verb
     "within": "write `succeeds within 30 s`, or `takes at most 30 s`",
     "if": "to limit a clause to a situation, add `while humans_near` or `when fragile`",
     "unless": "write `while not humans_near`",
-    "after": "write `follows Look succeeds`, or `starts within 2 s after Look succeeds`",
+    "after": "write `follows Look succeeds`, `starts within 2 s after Look succeeds`, or "
+    "`each Look succeeds is followed by Pick starts`",
+    **dict.fromkeys(("whenever", "once"), "write `each Pick fails is followed by Recover starts within 5 s`"),
     "before": "write `from Pick starts to Place succeeds takes at most 45 s`, or `Place follows Pick succeeds`",
     "between": "a range is written `keeps 0 N <= force <= 3 N`",
     "always": "write `keeps battery >= 15 %`",
     "not": "write `never lamp_on`, or `keeps not lamp_on`",
     "quality": QUALITY_IN_HEAD,
+    "severity": "a hazard has a `severity`, a requirement a `priority`",
     **dict.fromkeys(
         ("title", "description", "text"), 'a requirement has one title, after its name: `QualityReq fast "in time"`'
     ),
 }
 _NO_NAMES: Final = HEADS | {"and", "or", "not", "if", "else", "is", "to", "of", "by", "per", "at", "within", "after"}
+_BEGINNINGS: Final = VERB_WORDS | HEADS | METADATA_HEADS
+_EACH: Final = frozenset(("each", "every", "all", "any"))
 _OPEN: Final = re.compile("<[a-z]+>")  # what is left to choose in a clause
 _A_CHOICE: Final = "60 s if battery_low else 30 s"
 _A_VERB: Final = "a verb: takes, succeeds, needs, keeps, …"

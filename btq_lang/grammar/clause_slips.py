@@ -86,6 +86,8 @@ _IN_WORDS: Final = _any("during", "for as long as", "as long as", "so long as", 
 _IF: Final = _any(
     "whenever", "only when", "only if", "only while", "provided(?: that)?", "given(?: that)?", "where", "for"
 )
+_WHENEVER: Final = _any("whenever", "after", "once", "if", "each time", "every time", "when")
+_HAPPENS: Final = ("starts", "succeeds", "fails", "finishes", "halts")
 _NOT: Final = _any("except(?: (?:when|while|if|during))?", "until", "but not (?:when|while|if)")
 _MODAL: Final = _any(*MODALS, "has to", "have to", "ought to", "needs to")
 _ENDS: Final = "(?:be |is )?(?:finish(?:es|ed)?|ends?|ended|over|terminate[sd]?|complete[sd]?|returns?|stops?)"
@@ -178,11 +180,26 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
         ("over last {number} activations", "over last {number} runs"),
         "",
     ),
+    # what follows an event
+    *(
+        (
+            rf"{_WHENEVER} OTHER EVENT,? *(?:then )?(?P<answer>{_PATH} {_any(*_HAPPENS)}){within}",
+            (f"each {{other}} {{event}} is followed by {{answer}}{deadline}",),
+            "",
+        )
+        for within, deadline in ((" (?:within|in) TIME", " within {time}"), ("", ""))
+    ),
     # in which situation
+    ("for (?:BOUND)?TIME", (), "only `never` says how long a condition may hold: `never low for more than 30 s`"),
     (f"{_IN_WORDS} CONDITION", ("while {condition}",), ""),
     (f"{_IF} CONDITION", ("while {condition}", "when {condition}"), _SITUATION),
     ("until OTHER EVENT", (), "no clause ends at an event; limit it with a condition: `while not docked`"),
     (rf"{_NOT} (?!\d)CONDITION", ("while not {condition}",), ""),
+    (
+        rf"SUBJECT(?:{_MODAL} )?(?:end|finish(?:es)?|completes?|stops?) with (?!\d)CONDITION",
+        ("{subject}ends with {condition}",),
+        "",
+    ),
     # in which order
     (
         f"SUBJECT(?P<event>starts|succeeds|fails) (?:only )?before OTHER{_STARTS}",

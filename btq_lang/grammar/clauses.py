@@ -18,12 +18,14 @@ from btq_lang.grammar.claims import (
     parse_claim,
     report_slip,
 )
-from btq_lang.grammar.conditions import HEADS, SUBJECT_HEADS, parse_cond
+from btq_lang.grammar.conditions import HEADS, METADATA_HEADS, SUBJECT_HEADS, parse_cond
 from btq_lang.grammar.cursor import Cursor
-from btq_lang.syntax.scan import line_end, line_start
+from btq_lang.grammar.metadata import begins_metadata, list_goes_on, parse_metadata, parse_text
+from btq_lang.syntax.scan import line_start
 from btq_lang.syntax.suggestions import unknown_unit
 from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPERATOR, QUANTITY, STRING
 from btq_lang.syntax.tree import (
+    Assuming,
     Average,
     Because,
     Clause,
@@ -33,14 +35,15 @@ from btq_lang.syntax.tree import (
     Odds,
     OnViolation,
     ScopeClause,
+    Way,
     Window,
     Word,
-    quote,
 )
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 
 EXPERIMENTS: Final = frozenset(("activations", "runs"))
+COUNTED: Final = ("activations", "runs", "occurrences")  # by odds
 AVERAGE: Final = "average"
 TIME: Final = "time"  # a share of it, rather than of experiments
 ACTIONS: Final = ("fail", "halt", "warn", "log")
@@ -70,7 +73,7 @@ def parse_clauses(cursor: Cursor, at_least_one: bool = False) -> tuple[Clause, .
 
 
 def parse_clause(cursor: Cursor) -> Clause | None:
-    """Clause = Claim | Scope | Average | Odds | Confidence | Window | OnViolation | Goal | Because | How"""
+    """Clause = Claim | Scope | Assuming | Average | Odds | Confidence | Window | OnViolation | Goal | Because | …"""
     word = cursor.raw if cursor.kind == NAME else ""
     if word in VERB_WORDS or word in SUBJECT_HEADS:
         return parse_claim(cursor)
@@ -78,6 +81,8 @@ def parse_clause(cursor: Cursor) -> Clause | None:
         return parse_scope(cursor)
     if word == "in" or word == "with":
         return parse_odds(cursor)
+    if word == "assuming" and is_assumption(cursor):
+        return parse_assuming(cursor)
     if word == "confidence":
         return parse_confidence(cursor)
     if word == "over":
@@ -92,6 +97,8 @@ def parse_clause(cursor: Cursor) -> Clause | None:
         return parse_because(cursor)
     if word == "verified":
         return parse_how(cursor)
+    if word in METADATA_HEADS and begins_metadata(cursor):
+        return parse_metadata(cursor)
     if word.lower() in _NOT_IN_BTQ and is_other_clause(cursor):
         other_clause(cursor, _NOT_IN_BTQ[word.lower()])
         return None
@@ -114,6 +121,14 @@ def parse_scope(cursor: Cursor) -> ScopeClause:
     return ScopeClause(word.start, cursor.last_end(), word, condition)
 
 
+def parse_assuming(cursor: Cursor) -> Assuming:
+    """ "assuming" Cond"""
+    start = cursor.take().start
+    cursor.skip_sign(":")
+    condition = parse_cond(cursor)
+    return Assuming(start, cursor.last_end(), condition)
+
+
 def parse_average(cursor: Cursor) -> Average:
     """ "on" "average" """
     start = cursor.take().start
@@ -122,13 +137,13 @@ def parse_average(cursor: Cursor) -> Average:
 
 
 def parse_odds(cursor: Cursor) -> Odds:
-    """ "in" "at" "least" QUANTITY "of" ( Experiments | "time" ) | "with" "probability" ( ">=" | ">" ) QUANTITY …"""
+    """ "in" "at" "least" QUANTITY "of" Counted | "with" "probability" ( ">=" | ">" ) QUANTITY [ "of" Counted ]"""
     start = cursor.start()
     return parse_share(cursor, start) if cursor.accept_word("in") else parse_probability(cursor, start)
 
 
 def parse_share(cursor: Cursor, start: int) -> Odds:
-    """ "at" "least" QUANTITY "of" ( Experiments | "time" )"""
+    """ "at" "least" QUANTITY "of" Counted"""
     value: Word | None = None
     experiments = None
     if cursor.kind == QUANTITY:
@@ -140,13 +155,13 @@ def parse_share(cursor: Cursor, start: int) -> Odds:
         value = parse_percentage(cursor, "at least 98 %", "at least ")
     elif cursor.expect_word("at") and cursor.expect_word("least"):
         value = parse_percentage(cursor, "98 %")
-    if value is not None and cursor.expect_word("of", forgotten=cursor.raw in EXPERIMENTS):
+    if value is not None and cursor.expect_word("of", forgotten=cursor.raw in COUNTED):
         experiments = parse_counted(cursor)
     return Odds(start, cursor.last_end(), ">=", value, experiments)
 
 
 def parse_probability(cursor: Cursor, start: int) -> Odds:
-    """ "with" "probability" ( ">=" | ">" ) QUANTITY [ "of" ( Experiments | "time" ) ]"""
+    """ "with" "probability" ( ">=" | ">" ) QUANTITY [ "of" Counted ]"""
     relation = ">="
     value: Word | None = None
     experiments = None
@@ -219,32 +234,37 @@ def parse_goal(cursor: Cursor) -> Goal:
 def parse_because(cursor: Cursor) -> Because:
     """ "because" STRING"""
     start = cursor.take().start
-    cursor.skip_sign(":", "=")
-    text = cursor.take() if cursor.kind == STRING else None
-    if text is None:
-        begin = cursor.here().start
-        reason = cursor.text[begin : line_end(cursor.text, begin)].partition(" #")[0].rstrip()
-        fix = replace_fix("Put quotes around it", Span(begin, begin + len(reason)), quote(reason))
-        cursor.expected("the reason in quotes", (), (fix,) if reason and not cursor.group else ())
+    text = parse_text(cursor, "the reason")
     return Because(start, cursor.last_end(), text)
 
 
 def parse_how(cursor: Cursor) -> How:
-    """ "verified" "by" ( "monitor" | "analysis" | "test" | "review" )"""
+    """ "verified" "by" Way { "," Way }"""
     start = cursor.take().start
     cursor.expect_word("by")
+    ways = cursor.listed(parse_way, ways_go_on)
+    return How(start, cursor.last_end(), ways)
+
+
+def parse_way(cursor: Cursor) -> Way | None:
+    """( "monitor" | "analysis" | "test" | "review" ) [ STRING ]"""
+    start = cursor.start()
     method = parse_one_of(cursor, METHODS)
-    return How(start, cursor.last_end(), method)
+    if is_bare_id(cursor):
+        cursor.complain(cursor.here(), "the ID of a test or a report goes in quotes", cursor.put_in_quotes())
+        cursor.advance()
+    identifier = cursor.take() if cursor.kind == STRING else None
+    return Way(start, cursor.last_end(), method, identifier) if method is not None else None
 
 
 def parse_counted(cursor: Cursor) -> Word | None:
-    """ "activations" | "runs" | "time"; an article before it is reported"""
+    """ "activations" | "runs" | "occurrences" | "time"; an article before it is reported"""
     following = cursor.index + 1
     if cursor.kind == NAME and cursor.raw in _ARTICLES and cursor.is_word(following, TIME):
         span = Span(cursor.here().start, cursor.starts[following] + len(TIME))
         cursor.complain(span, f"expected `{TIME}`, found `{cursor.raw} {TIME}`", write_fix(TIME, span, safe=True))
         cursor.advance()
-    return parse_one_of(cursor, (*_EXPERIMENTS, TIME))
+    return parse_one_of(cursor, (*COUNTED, TIME))
 
 
 def parse_experiments(cursor: Cursor) -> Word | None:
@@ -287,6 +307,26 @@ def parse_one_of(cursor: Cursor, words: tuple[str, ...]) -> Word | None:
 # ---- what productions ask and report ----
 
 
+def ways_go_on(cursor: Cursor) -> bool:
+    """Skip the comma between ways to verify; where it may belong to `satisfies`, only before a way with an ID."""
+    following = cursor.index + 1
+    if cursor.at(",") and cursor.raws[following] in METHODS and cursor.kinds[following + 1] == STRING:
+        return cursor.accept(",")
+    return list_goes_on(cursor)
+
+
+def is_bare_id(cursor: Cursor) -> bool:
+    """Whether the current word ends its clause and begins no other one."""
+    if cursor.kind != NAME or cursor.raw in VERB_WORDS or cursor.raw in ENDS_CLAUSES:
+        return False
+    return cursor.kinds[cursor.index + 1] == NEWLINE or cursor.raws[cursor.index + 1] == ","
+
+
+def is_assumption(cursor: Cursor) -> bool:
+    """Whether `assuming` begins a clause, and is not the subject of one."""
+    return not (is_verb_ahead(cursor, 1) or cursor.is_operator(cursor.index + 1, "/"))
+
+
 def is_other_clause(cursor: Cursor) -> bool:
     """Whether the current word, of other notations, begins a clause of them and is not the subject of one."""
     following = cursor.index + 1
@@ -299,8 +339,9 @@ def other_clause(cursor: Cursor, nearest: str) -> None:
     """Report a clause of another notation, with the nearest of this one."""
     word, value = cursor.here(), cursor.index + 1 + (cursor.raws[cursor.index + 1] in (":", "="))
     fixes: tuple[Fix, ...] = ()
-    if nearest == _BECAUSE and cursor.kinds[value] == STRING:
-        fixes = (replace_fix("Write `because`", Span(word.start, cursor.starts[value]), "because "),)
+    if nearest in (_BECAUSE, _SOURCE) and cursor.kinds[value] == STRING:
+        head = "because" if nearest == _BECAUSE else "source"
+        fixes = (replace_fix(f"Write `{head}`", Span(word.start, cursor.starts[value]), f"{head} "),)
     elif (
         nearest == _TITLE and cursor.title_at >= 0 and cursor.index == 0 and cursor.kinds[value : value + 2] == _STRING
     ):
@@ -372,19 +413,23 @@ _OTHER_WORDS: Final = {  # for actions and methods
 _A_CLAUSE: Final = "a clause: takes, keeps, in at least, on violation, …"
 _BECAUSE: Final = '`because "…"`'
 _COMMENT: Final = "a comment `# …`"
+_SOURCE: Final = '`source "…"`'
 _TITLE: Final = 'the title in quotes after the name: `QualityReq fast "in time"`'
 # Words with which other notations begin a part of a requirement, each with what is nearest to it.
 _NOT_IN_BTQ: Final = {
     **dict.fromkeys(("rationale", "reason", "justification", "motivation", "why"), _BECAUSE),
     **dict.fromkeys(("description", "desc", "title", "text", "summary", "statement", "label"), _TITLE),
     **dict.fromkeys(
-        ("status", "state", "owner", "author", "source", "stakeholder", "version", "date", "note", "comment", "doc"),
+        ("status", "state", "owner", "author", "stakeholder", "version", "date", "note", "comment", "doc"),
         _COMMENT,
     ),
-    **dict.fromkeys(
-        ("priority", "severity", "criticality", "importance", "risk"), "`on violation` with what happens then"
-    ),
+    **dict.fromkeys(("reference", "ref", "standard", "origin", "url", "link"), _SOURCE),
+    **dict.fromkeys(("criticality", "importance", "prio"), "`priority` with a word"),
+    **dict.fromkeys(("risk", "risks", "hazards", "prevents", "avoids"), "`mitigates` with the ID of a hazard"),
+    **dict.fromkeys(("parent", "parents", "derives", "derived"), "`refines` with the ID of a requirement"),
+    **dict.fromkeys(("approval", "approver", "signed"), "`approved by`, which `btq approve` writes"),
     **dict.fromkeys(("wish", "desire", "target", "ideal", "optional"), "`goal`, a better bound than the required one"),
     **dict.fromkeys(("verification", "verify", "validation"), "`verified by` with a method"),
-    **dict.fromkeys(("precondition", "assumption", "context"), "`while` or `when` with a condition"),
+    **dict.fromkeys(("precondition", "context"), "`while` or `when` with a condition"),
+    **dict.fromkeys(("assumption", "assume", "assumes"), "`assuming` with a condition"),
 }

@@ -11,7 +11,21 @@ from typing import Final
 from btq_lang.diagnostics.model import replace_fix, write_fix
 from btq_lang.grammar.cursor import Cursor
 from btq_lang.syntax.tokens import CLOSE, ERROR, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING, SYMBOL
-from btq_lang.syntax.tree import Binary, Call, Comparison, Condition, Negative, NodeRuns, Not, Operand, Path
+from btq_lang.syntax.tree import (
+    Amount,
+    Binary,
+    Call,
+    Case,
+    Choice,
+    Comparison,
+    Condition,
+    Negative,
+    NodeRuns,
+    Not,
+    Operand,
+    Path,
+    Table,
+)
 from btq_lang.util.text import Span
 
 # Words that begin a clause and so end the condition before them.
@@ -19,7 +33,9 @@ SUBJECT_HEADS: Final = frozenset(("mission", "every", "from", "sum"))
 HEADS: Final = SUBJECT_HEADS.union(
     ("while", "when", "in", "with", "confidence", "over", "on", "goal", "because", "verified")
 )
-FUNCTIONS: Final = frozenset(("max", "min", "mean", "p95", "stddev", "change", "count"))
+# Words that begin a clause only where its continuation follows; else they are names.
+METADATA_HEADS: Final = frozenset(("source", "refines", "mitigates", "priority", "approved"))
+FUNCTIONS: Final = frozenset(("max", "min", "mean", "p95", "stddev", "change", "count", "age"))
 _OTHER_FUNCTIONS: Final = {
     **dict.fromkeys(("avg", "average"), "mean"),
     **{"maximum": "max", "minimum": "min", "std": "stddev", "delta": "change", "diff": "change"},
@@ -29,6 +45,7 @@ RELATIONS: Final = {("at", "most"): "<=", ("at", "least"): ">=", ("less", "than"
 
 MAX_NESTING: Final = 50  # of brackets in one condition
 MAX_OPERATORS: Final = 100  # in one condition
+MAX_CASES: Final = 100  # in one value: each case of a table may be another table
 
 
 def parse_cond(cursor: Cursor) -> Condition | None:
@@ -108,7 +125,7 @@ def parse_term(cursor: Cursor) -> Condition | None:
 
 
 def parse_factor(cursor: Cursor) -> Condition | None:
-    """[ "-" ] ( QUANTITY | NUMBER ) | NAME | STRING | Func "(" NAME ")" | "(" Expr ")\""""
+    """[ "-" ] ( QUANTITY | NUMBER ) | NAME | STRING | Func "(" NAME ")" | "(" ( Expr | Bounded ) ")\""""
     start = cursor.start()
     if cursor.at("-"):
         cursor.advance()
@@ -141,9 +158,48 @@ def parse_factor(cursor: Cursor) -> Condition | None:
         cursor.advance()
         cursor.group += 1
         inner = parse_cond(cursor)
+        if inner is not None and cursor.at_word("if"):
+            inner = choice(cursor, inner)
         close_group(cursor, "`)`")
         return inner
     cursor.expected("a condition: a signal, a context, a value, …")
+    return None
+
+
+def parse_cases(cursor: Cursor, value: Amount) -> Table:
+    """ "if" Cond { "," Simple "if" Cond } "else" Simple; the first value is already read"""
+    cases: list[Case] = []
+    while cursor.accept_word("if"):
+        cases.append(Case(value, parse_cond(cursor)))
+        if not cursor.accept(","):
+            break
+        if len(cases) == MAX_CASES:
+            note = "compute the value in a node, and declare a signal for its output"
+            cursor.complain(
+                cursor.here(), f"more than {MAX_CASES} cases in one value", notes=(note,), rule="nested-too-deep"
+            )
+            cursor.recover()
+            return Table(tuple(cases))
+        following = parse_simple(cursor)
+        if following is None:
+            return Table(tuple(cases))
+        value = following
+        if not cursor.at_word("if"):
+            cursor.expected("`if` and a condition, or `else` instead of the comma")
+            return Table(tuple(cases))
+    otherwise = parse_simple(cursor) if cursor.expect_word("else") else None
+    return Table(tuple(cases), otherwise)
+
+
+def parse_simple(cursor: Cursor, strings: bool = False) -> Amount | None:
+    """Simple = [ "-" ] ( QUANTITY | NUMBER ) | NAME;  with `strings` a STRING too"""
+    cursor.skip_sign(":")
+    negative = cursor.accept("-")
+    if cursor.kind == QUANTITY or cursor.kind == NUMBER:
+        return Amount(cursor.take(), negative)
+    if not negative and (cursor.kind == NAME or (strings and cursor.kind == STRING)):
+        return Amount(cursor.take())
+    cursor.expected("a value with its unit: 30 s")
     return None
 
 
@@ -162,6 +218,17 @@ def parse_path(cursor: Cursor, what: str) -> Path | None:
 
 
 # ---- what productions ask and report ----
+
+
+def choice(cursor: Cursor, first: Condition) -> Condition:
+    """Read the rest of a value table in brackets, whose first value is read."""
+    value = first.operand if isinstance(first, Negative) else first
+    if not isinstance(value, Operand) or value.word.kind == STRING:
+        cursor.expected("`)`", ("the values of a choice are single ones: `(0.5 m/s if humans_near else 1 m/s)`",))
+        cursor.recover()
+        return first
+    table = parse_cases(cursor, Amount(value.word, negative=isinstance(first, Negative)))
+    return Choice(first.start, cursor.last_end(), table)
 
 
 def joined(cursor: Cursor, operand: Callable[[Cursor], Condition | None], *operators: str) -> Condition | None:
@@ -216,6 +283,8 @@ def too_deep(cursor: Cursor, message: str) -> None:
 def in_words(cursor: Cursor) -> str:
     """Report `wind below 10 m/s`, and go to the value; the comparison that is meant, or empty."""
     bound = bound_ahead(cursor) if cursor.kind == NAME and cursor.raw not in _ENDS_OPERAND else None
+    if cursor.raw == "within" and "followed" in cursor.raws[: cursor.index]:
+        return ""  # the deadline of what follows an event
     if bound is None or cursor.kinds[cursor.index + bound[0]] not in (NUMBER, QUANTITY):
         return ""
     length, meant = bound

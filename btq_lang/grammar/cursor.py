@@ -397,6 +397,10 @@ class Cursor:
         start = self.here().start
         return replace_fix(f"Put `{words}` before it", Span(start, start), f"{words} ")
 
+    def put_in_quotes(self) -> Fix:
+        """The fix that puts quotes around the current word."""
+        return replace_fix("Put quotes around it", self.here(), f'"{self.raw}"')
+
     def misspelt(self, span: Span, word: str, likely: str) -> None:
         """Report a misspelt word, or a clause in the words of other notations."""
         if self.report_slip(self):

@@ -10,12 +10,13 @@ from typing import Final
 
 from btq_lang.catalog.verbs import COUNTING
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, replace_fix, write_fix
-from btq_lang.grammar.claims import MEANT, VERB_WORDS, at_verb, parse_bounded
-from btq_lang.grammar.clauses import ENDS_CLAUSES, parse_clauses
+from btq_lang.grammar.claims import MEANT, VERB_WORDS, at_verb, followed_ahead, parse_bounded
+from btq_lang.grammar.clauses import ENDS_CLAUSES, is_assumption, parse_clauses
 from btq_lang.grammar.conditions import HEADS, RELATIONS, close_group
 from btq_lang.grammar.cursor import Cursor
+from btq_lang.grammar.metadata import is_metadata, parse_requirement_id
 from btq_lang.grammar.prose import MODALS
-from btq_lang.syntax.scan import is_unit, path_end, unit_run
+from btq_lang.syntax.scan import is_unit, unit_run
 from btq_lang.syntax.suggestions import unknown_unit
 from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
 from btq_lang.syntax.tree import Argument, Parameter, QualityPath, ReqRef, Requirement, Word, quote, unquote
@@ -39,8 +40,9 @@ def parse_requirement(cursor: Cursor) -> Requirement:
     if cursor.at(":") and cursor.adjacent(cursor.index):
         cursor.skip_last_sign()
     quality = parse_quality_path(cursor) if cursor.accept(":") or skip_key(cursor, ("quality",), ":") else None
+    further = parse_further_qualities(cursor) if quality is not None else ()
     if quality is not None:
-        spaced_quality(cursor, quality)
+        spaced_quality(cursor, (quality, *further)[-1])
     skip_key(cursor, _TITLES, "")
     title = cursor.take() if cursor.kind == STRING else bare_title(cursor, quality is not None)
     if quality is None and title is not None and cursor.at(":"):
@@ -49,25 +51,7 @@ def parse_requirement(cursor: Cursor) -> Requirement:
         quality = parse_quality_path(cursor)
     cursor.title_at = cursor.last_end() + cursor.base if title is None else -1
     clauses = parse_clauses(cursor)
-    return Requirement(start, cursor.last_end(), name, False, parameters, quality, title, clauses)
-
-
-def parse_requirement_id(cursor: Cursor, what: str) -> Word | None:
-    """Name; `REQ.001`, `1.2` and `4711` are accepted, and reported to need quotes"""
-    start = cursor.start()
-    first = cursor.starts[cursor.index]
-    if cursor.kind in (NUMBER, QUANTITY):
-        end = max(path_end(cursor.text, first), first + len(cursor.raw))
-    elif cursor.kind == NAME and cursor.is_operator(cursor.index + 1, ".") and cursor.adjacent(cursor.index + 1):
-        end = path_end(cursor.text, first)
-    else:
-        return cursor.name(what)
-    text = cursor.text[first:end].rstrip(",:")
-    fix = replace_fix("Put quotes around it", Span(first, first + len(text)), quote(text), safe=True)
-    cursor.complain(Span(first, first + len(text)), "this ID needs quotes", fix)
-    while cursor.kind != NEWLINE and cursor.starts[cursor.index] < first + len(text):
-        cursor.advance()
-    return Word(NAME, start, text)
+    return Requirement(start, cursor.last_end(), name, False, parameters, quality, further, title, clauses)
 
 
 def parse_classic_requirement(cursor: Cursor, start: int) -> Requirement:
@@ -85,7 +69,7 @@ def parse_classic_requirement(cursor: Cursor, start: int) -> Requirement:
         cursor.go_to(key + (1 if cursor.kinds[key + 1] == STRING else 2))
         text = cursor.name("the description")
     clauses = parse_clauses(cursor)
-    return Requirement(start, cursor.last_end(), name, True, (), None, text, clauses)
+    return Requirement(start, cursor.last_end(), name, True, (), None, (), text, clauses)
 
 
 def parse_params(cursor: Cursor) -> tuple[Parameter, ...]:
@@ -152,6 +136,17 @@ def parse_quality_path(cursor: Cursor) -> QualityPath | None:
             break
         names.append(name)
     return QualityPath(tuple(names))
+
+
+def parse_further_qualities(cursor: Cursor) -> tuple[QualityPath, ...]:
+    """{ "and" QualityPath }"""
+    qualities: list[QualityPath] = []
+    while cursor.accept_word("and"):
+        quality = parse_quality_path(cursor)
+        if quality is None:
+            break
+        qualities.append(quality)
+    return tuple(qualities)
 
 
 def parse_unit(cursor: Cursor) -> Word | None:
@@ -227,11 +222,18 @@ def spaced_quality(cursor: Cursor, quality: QualityPath) -> None:
     last = quality.names[-1]
     if cursor.kind != NAME or last.kind != NAME or cursor.kinds[cursor.index + 1] not in (STRING, NEWLINE):
         return
-    if cursor.raw not in VERB_WORDS and cursor.raw not in HEADS:
+    if cursor.raw not in VERB_WORDS and cursor.raw not in HEADS and not is_clause_by_context(cursor):
         fix = write_fix("-", Span(last.end + cursor.base, cursor.here().start))
         span = Span(last.start + cursor.base, cursor.here().end)
         cursor.complain(span, "a quality's name has no spaces", fix)
         cursor.advance()
+
+
+def is_clause_by_context(cursor: Cursor) -> bool:
+    """Whether the current word begins a clause by what follows it."""
+    if cursor.raw == "each":
+        return followed_ahead(cursor) > 0
+    return is_assumption(cursor) if cursor.raw == "assuming" else is_metadata(cursor)
 
 
 def second_quality(cursor: Cursor, requirement: Requirement) -> None:
@@ -240,25 +242,22 @@ def second_quality(cursor: Cursor, requirement: Requirement) -> None:
     """
     is_open = requirement.quality is not None and not (requirement.clauses or requirement.text)
     if is_open and cursor.kind == OPERATOR and cursor.raw in (",", "&", "+"):
-        one_quality(cursor)
-
-
-def one_quality(cursor: Cursor) -> None:
-    """Report another quality of a requirement: the current sign or `and`, and what follows."""
-    following = cursor.index + 1
-    end = cursor.starts[following] + len(cursor.raws[following])
-    note = "write a second requirement for the other one, or choose the one that matters most"
-    cursor.complain(Span(cursor.here().start, end), "a requirement has one quality", notes=(note,))
-    cursor.recover()
+        fix = replace_fix("Write `and`", Span(cursor.last_end() + cursor.base, cursor.here().end), " and")
+        cursor.complain(cursor.here(), f"qualities are joined by `and`, not by `{cursor.raw}`", fix)
+        cursor.recover()
 
 
 def bare_title(cursor: Cursor, has_quality: bool) -> Word | None:
     """Report and accept a title without quotes; or report a quality without its `:`."""
     following = cursor.index + 1
-    if has_quality and cursor.at_word("and") and cursor.kinds[following + 1] == NEWLINE:
-        one_quality(cursor)
-        return None
-    if cursor.kind != NAME or cursor.group or at_verb(cursor) or cursor.raw in HEADS or cursor.raw in ENDS_CLAUSES:
+    if (
+        cursor.kind != NAME
+        or cursor.group
+        or at_verb(cursor)
+        or cursor.raw in HEADS
+        or cursor.raw in ENDS_CLAUSES
+        or is_clause_by_context(cursor)
+    ):
         return None
     is_word = cursor.kinds[following] == NEWLINE
     if cursor.kinds[following] == STRING and not has_quality:
@@ -308,7 +307,7 @@ def is_clause(cursor: Cursor, index: int) -> bool:
     raw, second = cursor.raws[index], cursor.raws[index + 1] if cursor.kinds[index + 1] == NAME else ""
     if (raw in VERB_WORDS or raw in COUNTING) and second:
         return second == "between" or (second, cursor.raws[index + 2]) in RELATIONS
-    is_reason = raw == "because" and cursor.kinds[index + 1] == STRING
+    is_reason = raw in ("because", "source") and cursor.kinds[index + 1] == STRING
     return is_reason or raw in ENDS_CLAUSES or (raw, second) in _BEGIN_CLAUSES
 
 
@@ -377,5 +376,6 @@ _BEGIN_CLAUSES: Final = frozenset(
         ("on", "average"),
         ("over", "last"),
         ("verified", "by"),
+        ("approved", "by"),
     )
 )

@@ -10,7 +10,7 @@ from typing import Final, TypeAlias
 
 from btq_lang.graph import draw
 from btq_lang.graph.figure import Box, Figure, MeasuredClause, Note, Outline
-from btq_lang.requirements.model import Applied, DurationSum, Interval, ResolvedClaim
+from btq_lang.requirements.model import Applied, DurationSum, Interval, ResolvedClaim, ResolvedEachEvent
 from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.syntax.tree import Node, NodeClause, QualityPath, Satisfices
 from btq_lang.util.grouping import grouped
@@ -132,9 +132,9 @@ def clauses_in_words(applied: Applied) -> tuple[str, ...]:
     requirement without clauses.
     """
     requirement = applied.requirement
-    is_of_several = isinstance(applied.subject, Interval | DurationSum)
+    is_of_several = isinstance(applied.subject, Interval | DurationSum | ResolvedEachEvent)
     lines = [claim.text if is_of_several else _predicate(claim) for claim in requirement.claims]
-    lines += [scope.text for scope in requirement.scopes]
+    lines += [scope.text for scope in (*requirement.scopes, *requirement.assumptions)]
     if requirement.odds is not None:
         lines.append(requirement.odds.text)
     if requirement.action is not None and not requirement.classic:
@@ -144,7 +144,7 @@ def clauses_in_words(applied: Applied) -> tuple[str, ...]:
 
 def _predicate(claim: ResolvedClaim) -> str:
     """`takes at most 30 s` of `BatteryCheck/MoveBase takes at most 30 s`."""
-    _, verb, after = f" {claim.text} ".partition(f" {claim.word} ")
+    _, verb, after = f" {claim.text} ".partition(f" {claim.head} ")
     return (verb + after).strip() if claim.subject is not None and verb else claim.text
 
 

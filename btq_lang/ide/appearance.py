@@ -13,7 +13,7 @@ from btq_lang.catalog.nodes import lookup
 from btq_lang.grammar.claims import HAPPENINGS, VERB_WORDS
 from btq_lang.grammar.clauses import ACTIONS as ON_VIOLATION
 from btq_lang.grammar.clauses import AVERAGE, EXPERIMENTS, METHODS, TIME
-from btq_lang.grammar.conditions import FUNCTIONS, HEADS
+from btq_lang.grammar.conditions import FUNCTIONS, HEADS, METADATA_HEADS
 from btq_lang.ide.legend import MODIFIERS, TYPES
 from btq_lang.syntax.tokens import (
     BRACED,
@@ -80,6 +80,7 @@ WRITTEN: Final = _appearance("variable", "modification")
 _TYPES: Final = {
     What.TREE: "class",
     What.REQUIREMENT: "interface",
+    What.HAZARD: "interface",
     What.SIGNAL: "variable",
     What.CONTEXT: "variable",
     What.PARAMETER: "parameter",
@@ -101,11 +102,14 @@ KEYWORDS: Final = frozenset(
     | {"TreeNodesModel", "xml", "parameters", "metadata", "Quality", "ID", "description", "true", "false"}
     | {"and", "or", "not", "if", "else", "node", "at", "to", "except", "of", "per", "under", "tagged", "within"}
     | {"most", "least", "less", "more", "than", "between", "after", "violation", "probability", "last", "by", "fresh"}
-    | {"from", "level", "counter", "gauge", "initially", TIME, AVERAGE, *ON_VIOLATION, *METHODS}
+    | {"for", "assuming", TIME, AVERAGE}
+    | {"from", "level", "counter", "gauge", "initially", *ON_VIOLATION, *METHODS}
     | CATEGORIES
     | NODE_CLAUSES
     | DIRECTIONS
     | HEADS
+    | METADATA_HEADS
+    | {"hazard", "severity"}
     | VERB_WORDS
     | HAPPENINGS
     | EXPERIMENTS

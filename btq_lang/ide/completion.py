@@ -15,6 +15,8 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import lookup
 from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.catalog.verbs import VERBS
+from btq_lang.grammar.conditions import HEADS
+from btq_lang.grammar.hazards import HAZARD_HEADS
 from btq_lang.ide import node_proposals as of_nodes
 from btq_lang.ide import proposals as offer
 from btq_lang.ide.clause_words import Expected, expected, is_count, is_window
@@ -254,6 +256,8 @@ def _in_code(workspace: Workspace, path: str, place: CursorPlace, offset: int) -
         yield from _in_item(workspace, path, place, first)
     elif place.block == "ports":
         yield from offer.port_words(place)
+    elif place.block == "hazard":
+        yield from offer.words(('""',) if place.last in ("source", "because") else (), "keyword")
     elif place.block == "clauses" or any(each.kind == NAME and each.text == "QualityReq" for each in place.group):
         yield from _in_requirement(workspace, path, place)
     elif place.block == "tree" and first in ("input", "output", "inout"):
@@ -270,6 +274,8 @@ def _line_heads(workspace: Workspace, path: str, place: CursorPlace) -> Iterator
         yield from offer.category_words()
     elif place.block == "ports":
         yield from offer.port_heads()
+    elif place.block == "hazard":
+        yield from (offer.keyword(word) for word in HAZARD_HEADS)
     elif place.block == "clauses":
         yield from _clause_words(workspace, path, Expected(clause=True), place)
     elif place.block in ("tree", "node"):
@@ -350,7 +356,7 @@ def _in_requirement(workspace: Workspace, path: str, place: CursorPlace) -> Iter
             yield from offer.words(('ID = "" description = ""',), "keyword") if place.depth else ()
             yield from offer.undeclared(workspace, path, *_DECLARED["QualityReq"])
             return
-        if following[-1] in (":", ".") and VERBS.keys().isdisjoint(following):
+        if following[-1] in (":", ".", "and") and VERBS.keys().isdisjoint(following) and HEADS.isdisjoint(following):
             yield from offer.qualities(workspace, path, place)
             return
         if following == ["ID", "="]:
@@ -373,6 +379,12 @@ def _clause_words(workspace: Workspace, path: str, wanted: Expected, place: Curs
         yield from offer.words(_FUNCTIONS if wanted.operand else (), "keyword")
     if wanted.signal:
         yield from offer.signals(workspace, path)
+    if wanted.requirement:
+        yield from offer.requirement_ids(workspace, path, place)
+    if wanted.hazard:
+        yield from offer.hazards(workspace, path)
+    if wanted.requirement or wanted.hazard:
+        yield from offer.external_ids(workspace, place)
     if wanted.node and place.last == "every":
         yield from offer.kinds(workspace, path)
     elif wanted.node:
@@ -446,7 +458,7 @@ def _in_list(workspace: Workspace, path: str, place: CursorPlace, word: str) -> 
         yield from offer.tags(workspace, path)
 
 
-_FUNCTIONS = ("max()", "min()", "mean()", "p95()")
+_FUNCTIONS = ("max()", "min()", "mean()", "p95()", "age()")
 _DECLARED = {
     "BehaviorTree": (Kind.TREE, What.TREE),
     "SubTree": (Kind.TREE, What.TREE),
@@ -454,4 +466,5 @@ _DECLARED = {
     "signal": (Kind.SIGNAL, What.VALUE),
     "context": (Kind.CONTEXT, What.VALUE),
     "quality": (Kind.QUALITY, What.QUALITY),
+    "hazard": (Kind.HAZARD, What.HAZARD),
 }  # the words that declare a name, and the kinds of references to it

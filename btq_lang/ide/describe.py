@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from btq_lang.catalog.language import phrases_of
 from btq_lang.catalog.name_kinds import Kind
@@ -12,6 +12,7 @@ from btq_lang.catalog.units import BASES, Unit, convert, dimension_name, parse_u
 from btq_lang.checks.includes import include_line
 from btq_lang.checks.lookups import head
 from btq_lang.diagnostics.rules import RULES, page
+from btq_lang.ide.external import described
 from btq_lang.ide.meaning import (
     ROOT_BLACKBOARD,
     ReferenceAt,
@@ -25,7 +26,7 @@ from btq_lang.ide.meaning import own_quality as declared_quality
 from btq_lang.ide.outline import clauses_detail
 from btq_lang.ide.ports import builtin_named, cpp_link, ports_of_kind, ports_of_tree, signature
 from btq_lang.syntax.quantities import parse_quantity
-from btq_lang.syntax.tree import Apply, Context, Model, QualityDecl, Requirement, Signal, Tree, Word, walk
+from btq_lang.syntax.tree import Apply, Context, Hazard, Model, QualityDecl, Requirement, Signal, Tree, Word, walk
 from btq_lang.util.text import Edit, Span, counted
 from btq_lang.workspace import inputs
 from btq_lang.workspace.file import Definition
@@ -96,8 +97,9 @@ def requirement(workspace: Workspace, path: str, definition: Definition) -> str:
     assert isinstance(item, Requirement), "a requirement's symbol defines one"
     lines = [f"**{definition.symbol.name}**{_parameters(workspace, definition, item)}"]
     quality = quality_of(definition)
-    if quality is not None:
-        lines[0] += f" · {quality.text}"
+    qualities = item.qualities or (() if quality is None else (quality,))
+    if qualities:
+        lines[0] += f" · {' and '.join(one.text for one in qualities)}"
     if item.text is not None:
         lines.append(" ".join(item.text.text.split()))
     if item.clauses:
@@ -106,13 +108,28 @@ def requirement(workspace: Workspace, path: str, definition: Definition) -> str:
             + "\n".join(_clause(workspace, definition, Span(clause.start, clause.end)) for clause in item.clauses)
             + "\n```"
         )
-    attached = used(workspace, Subject(What.REQUIREMENT, definition.symbol.name, home_of(definition)), "Attached to")
+    wanted = Subject(What.REQUIREMENT, definition.symbol.name, home_of(definition))
+    attached = used(workspace, wanted, "Attached to", lambda use: not is_refinement(use))
+    refined = used(workspace, wanted, "Refined by", is_refinement)
     if item.clauses or item.text is not None:
         from btq_lang.ide.clause_enforcement import enforcement_lines  # most hovers need no plan of a build
 
         enforcement = enforcement_lines(workspace, path, definition, is_attached=bool(attached))
         lines.append(f"Enforcement by `btq build`:\n{enforcement}" if enforcement else "")
-    return "\n\n".join(filter(None, (*lines, attached)))
+    return "\n\n".join(filter(None, (*lines, attached, refined)))
+
+
+def hazard(workspace: Workspace, definition: Definition) -> str:
+    """A hazard as it is written, and the requirements that mitigate it."""
+    item = definition.symbol.target
+    assert isinstance(item, Hazard), "a hazard's symbol defines one"
+    file = workspace.files[definition.path]
+    clauses = [file.on_one_line(definition.entry, Span(clause.start, clause.end)) for clause in item.clauses]
+    shown = "\n".join(("```btq", *clauses, "```")) if clauses else ""
+    title = " ".join(item.text.text.split()) if item.text is not None else ""
+    wanted = Subject(What.HAZARD, definition.symbol.name, home_of(definition))
+    mitigated = used(workspace, wanted, "Mitigated by")
+    return "\n\n".join(filter(None, (f"**{definition.symbol.name}** · hazard", title, shown, mitigated)))
 
 
 def _parameters(workspace: Workspace, definition: Definition, item: Requirement) -> str:
@@ -142,12 +159,21 @@ def _clause(workspace: Workspace, definition: Definition, span: Span) -> str:
     return f"{text}  # {', '.join(converted)}" if converted else text
 
 
-def used(workspace: Workspace, wanted: Subject, heading: str) -> str:
+def is_refinement(use: ReferenceAt) -> bool:
+    """Whether a reference to a requirement or a hazard is in a clause of a requirement."""
+    mention = use.mention
+    is_named = mention.what in (What.REQUIREMENT, What.HAZARD) and not mention.defines
+    return is_named and isinstance(mention.owner, Requirement)
+
+
+def used(
+    workspace: Workspace, wanted: Subject, heading: str, counts: Callable[[ReferenceAt], bool] = lambda _: True
+) -> str:
     """Where something is used: a list of nodes; empty if it is not used."""
     uses = [
         reference
         for reference in everywhere(workspace, wanted)
-        if not reference.mention.defines or reference.mention.node
+        if (not reference.mention.defines or reference.mention.node) and counts(reference)
     ]
     lines = [f"- {place_of(workspace, reference)}" for reference in uses[:_MOST_USES]]
     if len(uses) > _MOST_USES:
@@ -159,6 +185,9 @@ def place_of(workspace: Workspace, reference: ReferenceAt) -> str:
     """The place of a reference: `` `MoveBase ToWard` in `Deliver` (deliver.btq) ``, or the `apply` that it is in."""
     node, entry = reference.mention.node, reference.entry
     item = entry.item if entry is not None else None
+    owner = reference.mention.owner
+    if isinstance(owner, Requirement) and is_refinement(reference):
+        item = owner
     name = item.name.text if isinstance(item, Tree | Requirement | Signal | Context) and item.name else ""
     where = f"`{node.called}`" + (f" in `{name}`" if name else "") if node is not None else f"`{name}`" if name else ""
     if isinstance(item, Apply) and entry is not None:
@@ -282,6 +311,12 @@ def documentation(workspace: Workspace, path: str, kind: str, name: str) -> str 
     if kind == "requirement":
         definition = _definition(workspace, path, Kind.REQUIREMENT, name)
         return requirement(workspace, path, definition) if definition else None
+    if kind == "hazard":
+        definition = _definition(workspace, path, Kind.HAZARD, name)
+        return hazard(workspace, definition) if definition else None
+    if kind == "external":
+        imported = workspace.project.external_requirements
+        return described(workspace, imported.by_id[name]) if imported and name in imported.by_id else None
     if kind in ("signal", "context"):
         definition = _definition(workspace, path, Kind.SIGNAL if kind == "signal" else Kind.CONTEXT, name)
         return declared(workspace, definition) if definition else None

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.side_elements import element_descriptions
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
-from btq_lang.catalog.language import phrase_at
-from btq_lang.ide import describe
+from btq_lang.catalog.language import in_line, phrase_at
+from btq_lang.ide import describe, external
 from btq_lang.ide.meaning import ReferenceAt, Subject, at, definition, everywhere, quality_match, subject
 from btq_lang.ide.navigation import writes
 from btq_lang.ide.place import item_tokens, place_at
@@ -64,6 +64,8 @@ def _written_by_build(workspace: Workspace, reference: ReferenceAt, side: str | 
 def _explained(workspace: Workspace, reference: ReferenceAt, wanted: Subject) -> str | None:
     path, mention = reference.path, reference.mention
     node = mention.node
+    if (imported := external.external_requirement(workspace, path, wanted)) is not None:
+        return external.described(workspace, imported)
     if wanted.what is What.NODE:
         children = len(node.nodes) if node is not None else None
         return describe.node_kind(workspace, path, mention.name, mention.word.quoted and node is not None, children)
@@ -84,6 +86,9 @@ def _explained(workspace: Workspace, reference: ReferenceAt, wanted: Subject) ->
     if wanted.what is What.REQUIREMENT:
         place = definition(workspace, path, wanted)
         return describe.requirement(workspace, path, place) if place else None
+    if wanted.what is What.HAZARD:
+        place = definition(workspace, path, wanted)
+        return describe.hazard(workspace, place) if place else None
     if wanted.what in (What.SIGNAL, What.CONTEXT):
         place = definition(workspace, path, wanted)
         return describe.declared(workspace, place) if place else None
@@ -112,8 +117,9 @@ def _word_of_the_language(file: File, offset: int) -> Hover | None:
     if not any(token.kind == NAME and token.start <= offset <= token.end for token in item_tokens(file, offset)):
         return None
     start = file.text.rfind("\n", 0, offset) + 1
-    phrase = phrase_at(file.text[start:].partition("\n")[0], offset - start)
-    markdown = describe.words(phrase[1]) if phrase is not None else None
+    line = file.text[start:].partition("\n")[0]
+    phrase = phrase_at(line, offset - start)
+    markdown = describe.words(in_line(phrase[1], line)) if phrase is not None else None
     if phrase is None or markdown is None:
         return None
     return Hover(Span(start + phrase[0], start + phrase[0] + len(phrase[1])), markdown)

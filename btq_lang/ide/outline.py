@@ -18,7 +18,7 @@ class Outline(Record):
 
     Attributes:
         kind: mission, include, tree, control, decorator, action, condition, subtree, node (of unknown kind), port,
-            model, requirement, signal, context, quality or apply.
+            model, requirement, hazard, signal, context, quality or apply.
         detail: a short text beside the name.
         span: all of it, with its block; `name_span`: the word to select.
     """
@@ -111,6 +111,8 @@ def _item(workspace: Workspace, path: str, entry: syntax.Entry) -> Iterator[Outl
                 yield _model(model, by)
     elif isinstance(item, syntax.Requirement):
         yield _named(item.name, "requirement", requirement_detail(item), item, by)
+    elif isinstance(item, syntax.Hazard):
+        yield _named(item.name, "hazard", " ".join(item.text.text.split()) if item.text else "", item, by)
     elif isinstance(item, syntax.Signal):
         yield _named(item.name, "signal", item.unit.text if item.unit else "", item, by)
     elif isinstance(item, syntax.Context):
@@ -156,7 +158,7 @@ def clauses_detail(clauses: tuple[syntax.NodeClause, ...]) -> str:
 
 def requirement_detail(requirement: syntax.Requirement) -> str:
     """A requirement's quality and text, on one line."""
-    quality = requirement.quality.text if requirement.quality else ""
+    quality = " and ".join(quality.text for quality in requirement.qualities)
     text = " ".join(requirement.text.text.split()) if requirement.text else ""
     return ": ".join(filter(None, (quality, text)))
 

@@ -22,8 +22,20 @@ from btq_lang.ide.outline import requirement_detail
 from btq_lang.ide.place import CursorPlace, word_text
 from btq_lang.requirements.nodes import nodes as nodes_in_scope
 from btq_lang.syntax.tokens import CATEGORIES
-from btq_lang.syntax.tree import Context, Entry, QualityDecl, Requirement, Signal, Tree, is_name, quote, shape, written
-from btq_lang.util.record import Record
+from btq_lang.syntax.tree import (
+    Context,
+    Entry,
+    Hazard,
+    QualityDecl,
+    Requirement,
+    Signal,
+    Tree,
+    is_name,
+    quote,
+    shape,
+    written,
+)
+from btq_lang.util.record import Record, replace
 from btq_lang.workspace.file import Definition
 from btq_lang.workspace.references import Mention, What
 from btq_lang.workspace.workspace import Workspace
@@ -33,8 +45,8 @@ class Proposal(Record):
     """A word that may follow at a place.
 
     Attributes:
-        kind: keyword, node, tree, requirement, quality, signal, context, parameter, port, attribute, key, unit, file,
-            rule, tag, instance, enum or snippet.
+        kind: keyword, node, tree, requirement, hazard, external, quality, signal, context, parameter, port, attribute,
+            key, unit, file, rule, tag, instance, enum or snippet.
         detail: shown beside it in the list.
         insert: the text to insert; `snippet`: the same as a snippet of LSP.
         filter: the text that the typed letters are compared with, if not the label.
@@ -132,6 +144,30 @@ def requirements(workspace: Workspace, path: str) -> Iterator[Proposal]:
         fill = ", ".join(f"{key} = ${{{index}:{key}}}" for index, key in enumerate(needed, 1))
         snippet = f"{escaped(name)}({fill})" if needed else None
         yield Proposal(definition.symbol.name, "requirement", text, name, snippet, "", definition.symbol.name, include)
+
+
+def requirement_ids(workspace: Workspace, path: str, place: CursorPlace) -> Iterator[Proposal]:
+    """Requirements that another can refine: all but the one that is being written."""
+    own = [word_text(word) for word in (*place.parent, *place.words)]
+    for one in requirements(workspace, path):
+        if one.label not in own:
+            yield replace(one, snippet=None)
+
+
+def hazards(workspace: Workspace, path: str) -> Iterator[Proposal]:
+    for definition, include in defined(workspace, path, Kind.HAZARD):
+        item, name = definition.symbol.target, definition.symbol.name
+        text = " ".join(item.text.text.split()) if isinstance(item, Hazard) and item.text is not None else ""
+        yield Proposal(name, "hazard", text, written(name), None, "", name, include)
+
+
+def external_ids(workspace: Workspace, place: CursorPlace) -> Iterator[Proposal]:
+    """The requirements of other tools, without those that the clause has."""
+    imported = workspace.project.external_requirements
+    written_names = [word_text(word) for word in place.words]
+    for one in imported.by_id.values() if imported is not None else ():
+        if one.id not in written_names:
+            yield Proposal(one.id, "external", one.title, written(one.id), None, "", one.id)
 
 
 def undeclared(workspace: Workspace, path: str, kind: Kind, what: What) -> Iterator[Proposal]:
@@ -398,6 +434,7 @@ _ITEMS = (
     ("signal", "signal ${1:name} : ${2:unit} from {${0:key}\\}"),
     ("context", "context ${1:name} : $0"),
     ("apply", "apply ${1:requirement} to $0"),
+    ("hazard", 'hazard ${1:H1} "$0"'),
     ("quality", 'quality ${1:name} : ${2:parent} "$0"'),
     ("qualities", "qualities ${0:iso25010-2023}"),
     ("Action", "Action ${1:Name}\n    $0"),
@@ -407,7 +444,7 @@ _ITEMS = (
     ("SubTree", "SubTree ${1:Name}\n    $0"),
     ("TreeNodesModel", "TreeNodesModel\n    $0"),
 )
-_ONCE = frozenset(("in", "with", "confidence", "over", "on", "goal", "because", "verified"))
+_ONCE = frozenset(("in", "with", "confidence", "over", "on", "goal", "because", "verified", "priority"))
 _CLAUSES = (
     *(form for verb in VERBS.values() for form in verb.forms or ((verb.word, None),) if form[0]),
     ("mission", None),
@@ -416,6 +453,7 @@ _CLAUSES = (
     ("sum of", None),
     ("while", None),
     ("when", None),
+    ("assuming", None),
     ("on average", None),
     ("in at least", "in at least ${1:95 %} of ${0:runs}"),
     ("with probability", "with probability >= ${1:95 %} of ${0:runs}"),
@@ -425,4 +463,9 @@ _CLAUSES = (
     ("goal", "goal ${0:10 s}"),
     ("because", 'because "$0"'),
     ("verified by", "verified by ${0:test}"),
+    ("source", 'source "$0"'),
+    ("refines", None),
+    ("mitigates", None),
+    ("priority", "priority ${0:high}"),
+    ("approved by", None),
 )

@@ -157,8 +157,9 @@ def _unfit(wanted: Subject, name: str) -> str:
 
 
 def _is_the_other(workspace: Workspace, path: str, wanted: Subject, name: str) -> str:
-    """Why a signal cannot have the name of a context, or a context that of a signal; empty if it can."""
-    other = {What.SIGNAL: Kind.CONTEXT, What.CONTEXT: Kind.SIGNAL}.get(wanted.what)
+    """Why a signal cannot have the name of a context, a requirement that of a hazard, or the other way round; empty if
+    it can."""
+    other = _SHARING_NAMES.get(wanted.what)
     taken = workspace.scope(path).find(other, name) if other is not None else None
     if taken is None or other is None:
         return ""
@@ -244,5 +245,11 @@ _FIXED = {
     What.EDITION: "an edition",
     What.RULE: "a rule",
     What.INCLUDE: "a file here: rename it in its folder",
+}
+_SHARING_NAMES = {
+    What.SIGNAL: Kind.CONTEXT,
+    What.CONTEXT: Kind.SIGNAL,
+    What.REQUIREMENT: Kind.HAZARD,
+    What.HAZARD: Kind.REQUIREMENT,
 }
 _PLAIN = frozenset((What.SIGNAL, What.CONTEXT, What.PARAMETER))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from btq_lang.ide.external import external_links
 from btq_lang.ide.meaning import at, entry_at
 from btq_lang.syntax.tokens import BLANK, CLOSE, COMMENT, DEDENT, INDENT, NEWLINE, OPEN, STRING
 from btq_lang.syntax.tree import Include, Tree
@@ -20,10 +21,16 @@ class Fold(Record):
 
 
 class FileLink(Record):
-    """A word that leads to a file; target: None if the file does not exist."""
+    """A word that leads to a file or a web page.
+
+    Attributes:
+        target: its path or address; None if the file does not exist.
+        line: in the file, from 1; 0: it leads to the file.
+    """
 
     span: Span
     target: str | None
+    line: int = 0
 
 
 def folding_ranges(workspace: Workspace, path: str) -> tuple[Fold, ...]:
@@ -121,7 +128,7 @@ def _brackets(workspace: Workspace, path: str) -> Iterator[Span]:
 
 
 def document_links(workspace: Workspace, path: str) -> tuple[FileLink, ...]:
-    """The paths of includes."""
+    """The paths of includes, and the names of imported requirements."""
     file = workspace.files[path]
     links = []
     for include in file.includes:
@@ -129,4 +136,6 @@ def document_links(workspace: Workspace, path: str) -> tuple[FileLink, ...]:
             span = include.path.span.shifted(file.start_of(include))
             inside = Span(span.start + 1, max(span.end - 1, span.start + 1)) if include.path.quoted else span
             links.append(FileLink(inside, workspace.included_by(path, include)))
+    for span, requirement in external_links(workspace, path):
+        links.append(FileLink(span, requirement.url or requirement.path, 0 if requirement.url else requirement.line))
     return tuple(links)

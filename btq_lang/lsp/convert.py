@@ -95,6 +95,12 @@ class Converter:
     def uri(self, path: str) -> str:
         return self._uris.get(path) or _uri_of(path)
 
+    def link(self, target: str, line: int) -> str:
+        """The URI of a path and a line, which counts from 1 if it matters, or of a web page."""
+        if "://" in target:
+            return target
+        return self.uri(target) + (f"#L{line}" if line else "")
+
     def learn_uri(self, path: str, uri: str) -> None:
         """Remember the editor's spelling of a file's URI."""
         self._uris[path] = uri
@@ -393,6 +399,7 @@ SYMBOL_KINDS = {
     "port": types.SymbolKind.Field,
     "model": types.SymbolKind.Interface,
     "requirement": types.SymbolKind.Property,
+    "hazard": types.SymbolKind.Key,
     "signal": types.SymbolKind.Variable,
     "context": types.SymbolKind.Constant,
     "quality": types.SymbolKind.EnumMember,
@@ -405,6 +412,8 @@ _COMPLETION_KINDS = {
     "node": types.CompletionItemKind.Function.value,
     "tree": types.CompletionItemKind.Class.value,
     "requirement": types.CompletionItemKind.Interface.value,
+    "hazard": types.CompletionItemKind.Event.value,
+    "external": types.CompletionItemKind.Reference.value,
     "quality": types.CompletionItemKind.EnumMember.value,
     "signal": types.CompletionItemKind.Variable.value,
     "context": types.CompletionItemKind.Constant.value,

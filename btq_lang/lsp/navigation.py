@@ -107,7 +107,7 @@ def selections(server: Server, params: types.SelectionRangeParams) -> list[types
 def includes(server: Server, params: types.DocumentLinkParams) -> list[types.DocumentLink]:
     place = server.at(params.text_document, reads=True)
     return [
-        types.DocumentLink(server.convert.range(*place, link.span), target=server.convert.uri(link.target))
+        types.DocumentLink(server.convert.range(*place, link.span), target=server.convert.link(link.target, link.line))
         for link in features.structure.document_links(*place)
         if link.target is not None
     ]

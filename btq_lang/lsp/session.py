@@ -24,6 +24,7 @@ from btq_lang.util.globs import path_matcher
 from btq_lang.util.record import replace
 from btq_lang.util.text import LineIndex
 from btq_lang.workspace.config import SEVERITIES, Project
+from btq_lang.workspace.external_requirements import IMPORTED_SUFFIXES
 from btq_lang.workspace.factories import merged
 from btq_lang.workspace.file import CPP_SUFFIXES, SIDE_SUFFIX, SUFFIXES, YAML_SUFFIXES, File
 from btq_lang.workspace.findings import FileFindings, Reported
@@ -53,7 +54,8 @@ class Session:
         check_seconds: the duration of the last check of an open file, by path.
     """
 
-    watched: Final = (*_ENDINGS, SIDE_SUFFIX, *YAML_SUFFIXES, *CPP_SUFFIXES)  # how names of files end that may matter
+    # How names of files end that may matter; those of side files end in .json.
+    watched: Final = (*_ENDINGS, *IMPORTED_SUFFIXES, *YAML_SUFFIXES, *CPP_SUFFIXES)
 
     def __init__(self) -> None:
         self.folders: tuple[str, ...] = ()
@@ -300,9 +302,10 @@ class Session:
         return path.endswith(CPP_SUFFIXES)
 
     def places(self) -> set[str]:
-        """All known files, and all folders above them."""
+        """All known files, also of imported requirements, and all folders above them."""
         places: set[str] = set()
-        for place in self.paths():
+        imports = {path for workspace in self._workspaces for path in workspace.project.imports}
+        for place in (*self.paths(), *imports):
             while place not in places:
                 places.add(place)
                 place = place.rpartition("/")[0]

@@ -30,6 +30,7 @@ from btq_lang.workspace.workspace import Workspace
 if TYPE_CHECKING:
     from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.projects.cpp_files import CppFiles, ProjectSources
+    from btq_lang.projects.external_files import ExternalFiles
     from btq_lang.projects.nav2_factory import ParameterFile
     from btq_lang.projects.xml_below import XmlBelow
     from btq_lang.workspace.config import Project
@@ -67,7 +68,9 @@ class FileGroup(Record):
     @property
     def watched(self) -> Iterator[str]:
         """The files that another run would depend on."""
-        return (path for path in (*self.workspace.files, *self.absent, self.project_file) if path)
+        return (
+            path for path in (*self.workspace.files, *self.absent, *self.project.imports, self.project_file) if path
+        )
 
 
 def usage_problem(paths: Iterable[str]) -> str | None:
@@ -119,6 +122,7 @@ class Files:
         self._stdin_problem: LoadProblem | None = None
         self.folders: tuple[str, ...] = (absolute("."),)
         self._parsed: dict[str, File] = {}
+        self._external: ExternalFiles | None = None
         self._sources: dict[str, ProjectSources] = {}  # the C++ of the last request, by the path of the project file
 
     def groups(
@@ -142,7 +146,7 @@ class Files:
         paths = tuple(paths)
         self.parameter_files.clear()
         self._sources.clear()
-        projects = _Projects(self.overlay)
+        projects = _Projects(self.overlay, self._with_imports)
         absolute_paths = (self._read_stdin(stdin_filename) if path == STDIN else absolute(path) for path in paths)
         requested = self._requested(absolute_paths, projects, with_xml)
         folders = [f"{path.rstrip('/')}/" for path in map(absolute, paths) if os.path.isdir(path)]
@@ -314,6 +318,15 @@ class Files:
 
         return CppFiles()
 
+    def _with_imports(self, home: FoundProject) -> FoundProject:
+        """A project with the requirements that it imports."""
+        if not home.project.imports:
+            return home
+        from btq_lang.projects.external_files import ExternalFiles  # few projects import any
+
+        self._external = self._external or ExternalFiles(self.overlay)
+        return self._external.read(home)
+
     def _missions(self, folder: str, paths: tuple[str, ...]) -> tuple[str, ...]:
         """Those of a folder's files that are missions."""
         return paths if all(path.endswith(SUFFIXES) for path in paths) else self.xml.missions(folder, paths)
@@ -370,8 +383,9 @@ class _Projects:
         problems: their mistakes, and others of the request, in order.
     """
 
-    def __init__(self, overlay: Mapping[str, str]) -> None:
+    def __init__(self, overlay: Mapping[str, str], completed: Callable[[FoundProject], FoundProject]) -> None:
         self._overlay = overlay
+        self._completed = completed
         self._of_folder: dict[str, FoundProject] = {}
         self.governing: dict[str, FoundProject] = {}
         self.problems: list[LoadProblem] = []
@@ -380,7 +394,7 @@ class _Projects:
         """The project of a file or folder."""
         folder = path if os.path.isdir(path) else os.path.dirname(path)
         if folder not in self._of_folder:
-            self._of_folder[folder] = find_project(folder, self._overlay)
+            self._of_folder[folder] = self._completed(find_project(folder, self._overlay))
         return self._of_folder[folder]
 
     def govern(self, path: str) -> FoundProject:

@@ -1,7 +1,8 @@
 """`btq check --since REV`: the files that changed since a revision, and those that depend on such a file.
 
 A file depends on itself; on the project file; on what it includes, directly or not, also where an included file is not
-there any more; in a factory on all files of it, and on the parameter file of Nav2 that names them;
+there any more; in a factory on all files of it, and on the parameter file of Nav2 that names them; on the files of
+requirements that the project imports;
 and XML on the files of its pool that define the trees and nodes it uses, or did so at the revision.
 
 One invariant: a file that is left out has the same findings as at the revision, as far as they depend on files.
@@ -81,6 +82,7 @@ class _Concerned:
         """The paths that a file itself depends on, existing or not."""
         workspace = self._workspace
         yield from workspace.scope(path).paths
+        yield from workspace.project.imports
         if workspace.factory is not None and workspace.factory.nav2:
             yield workspace.factory.nav2
         for include, is_of_package in workspace.files[path].included_paths:

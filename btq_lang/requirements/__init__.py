@@ -10,6 +10,8 @@ identified by its facts.  What they read is in workspace/inputs.py.
     model.py     a requirement with its words resolved
     paths.py, terms.py, reader.py   reading paths, values and conditions
     clauses.py   what each verb demands
+    metadata.py   the clauses that demand nothing
+    fingerprint.py, approval.py, approving.py   whether a requirement is approved as it is, and writing that
     shares.py, pooled.py   claims of a share of time, and those that are judged of all runs together
     classic.py, constraints.py   the same in SuccessIf and FailureIf of descriptions
     definitions.py   the requirement of a name
@@ -17,5 +19,6 @@ identified by its facts.  What they read is in workspace/inputs.py.
     durations.py, composition.py, budgets.py   how long nodes take when all that is demanded below them holds:
                  `control_budgets` and `nav2_budgets` by rules, which `budget_parts` has the parts of
     spans.py     the node whose time a span is
+    external/    reading the requirements that other tools have written
     resolve.py   `requirements(workspace, path)`: all of a file and what it includes
 """

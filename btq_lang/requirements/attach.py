@@ -159,10 +159,11 @@ def _by_tree(pairs: Iterable[tuple[Facts, T]]) -> dict[Facts, tuple[T, ...]]:
 
 
 def _home(applied: model.Applied) -> Facts | None:
-    """The tree that a subject is in, or that a span begins in."""
-    subject = applied.subject.first.subject if isinstance(applied.subject, model.Interval) else applied.subject
-    node = subject.node if isinstance(subject, model.NodeTarget | model.MissionRun) else None
-    return node.facts if node is not None else None
+    """The tree that a subject is in, or that a span or an event begins in."""
+    subjects = [applied.subject if isinstance(applied.subject, model.NodeTarget | model.MissionRun) else None]
+    for first in model.events_of(applied.subject)[:1]:
+        subjects = [atom.subject for atom in first.atoms]
+    return next((each.node.facts for each in subjects if each is not None and each.node is not None), None)
 
 
 def _order(store: Store[Workspace], viewpoint: str) -> dict[str, int]:

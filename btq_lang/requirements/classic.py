@@ -77,6 +77,8 @@ def _with(reader: Reader, requirement: ResolvedRequirement, constraint: Constrai
 
 def _turned(claim: ResolvedClaim) -> ResolvedClaim | None:
     """The claim that holds where this one does not; None if there is no such clause."""
+    if VERBS[claim.verb].operand == "stretch":
+        return None
     if claim.condition is not None and claim.verb in ("keeps", "never"):
         return replace(claim, verb="never" if claim.verb == "keeps" else "keeps")
     if claim.condition is not None:

@@ -14,6 +14,7 @@ from btq_lang.catalog.units import Dimension, a_dimension
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.diagnostics.model import Place
 from btq_lang.requirements import model, nodes
+from btq_lang.requirements.metadata import metadata_of
 from btq_lang.requirements.pooled import judged_together, on_average
 from btq_lang.requirements.reader import Reader
 from btq_lang.requirements.shares import of_time
@@ -30,8 +31,10 @@ def with_clauses(
     claims: list[model.ResolvedClaim] = []
     unread: list[str] = []
     scopes: list[model.ResolvedScope] = []
+    assumptions: list[model.ResolvedScope] = []
     once: dict[str, object] = {}
     reasons: list[str] = []
+    metadata: list[syntax.Clause] = []
     goals: list[syntax.Goal] = []
 
     def keep(field: str, value: object) -> None:
@@ -50,6 +53,11 @@ def with_clauses(
             if condition is not None:
                 word = "while" if clause.word.raw == "while" else "when"
                 scopes.append(model.ResolvedScope(word, condition, reader.text(clause.start, clause.end)))  # type: ignore[arg-type]  # one of the two
+        elif isinstance(clause, syntax.Assuming):
+            condition = reader.condition(clause.condition)
+            if condition is not None:
+                text = reader.text(clause.start, clause.end)
+                assumptions.append(model.ResolvedScope("assuming", condition, text))
         elif isinstance(clause, syntax.Average):
             keep("average", reader.place(Span(clause.start, clause.end)))
         elif isinstance(clause, syntax.Odds):
@@ -64,8 +72,10 @@ def with_clauses(
             goals.append(clause)
         elif isinstance(clause, syntax.Because) and clause.text is not None:
             reasons.append(clause.text.text)
-        elif isinstance(clause, syntax.How) and clause.method is not None:
-            keep("method", clause.method.raw)
+        elif isinstance(clause, syntax.How) and clause.ways:
+            keep("ways", tuple(_way(way) for way in clause.ways))
+        elif type(clause) in syntax.METADATA:
+            metadata.append(clause)
     if isinstance(share := once.pop("share", None), model.ResolvedOdds):
         claims, not_of_time = of_time(reader, claims, share)
         unread += not_of_time
@@ -76,14 +86,21 @@ def with_clauses(
     unread += not_together
     if goals:
         once["goal"] = reader.bounded(goals[0].value, _of_goal(claims, "odds" in once))
+    if metadata:
+        once |= metadata_of(reader, metadata)
     return replace(
         requirement,
         claims=(*requirement.claims, *claims),
         unread=(*requirement.unread, *unread),
         scopes=(*requirement.scopes, *scopes),
+        assumptions=(*requirement.assumptions, *assumptions),
         reasons=(*requirement.reasons, *reasons),
         **once,
     )
+
+
+def _way(written: syntax.Way) -> model.ResolvedWay:
+    return model.ResolvedWay(written.method.raw, written.id.text if written.id is not None else None)  # type: ignore[arg-type]  # the parser's words
 
 
 def claim_of(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | None:
@@ -106,11 +123,16 @@ def _verb(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | None:
     if operand == "condition":
         condition = reader.condition(written.condition)
         return replace(claim, condition=condition) if condition is not None else None
+    if operand == "stretch":
+        condition, limit = reader.condition(written.condition), _limit(reader, written.bound, DURATION)
+        return replace(claim, condition=condition, limit=limit) if condition is not None and limit is not None else None
     if operand == "event":
         event = _event(reader, written.event)
         return replace(claim, event=event) if event is not None else None
     if operand == "deadline" and written.bound is None:
         return claim
+    if operand == "answer":
+        return _followed(reader, written, claim)
     signal: model.ResolvedSignal | None = None
     wanted: Wanted | None = DURATION if operand in _TIMED or written.every else _COUNTED
     if operand == "use":
@@ -133,6 +155,16 @@ def _verb(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | None:
     if per is None and (written.per is not None or written.form or (operand == "rate" and not written.every)):
         return None
     return claim if per is None else replace(claim, per=per)
+
+
+def _followed(reader: Reader, written: syntax.Claim, claim: model.ResolvedClaim) -> model.ResolvedClaim | None:
+    """What follows an event: another one, or a condition that holds, and by when."""
+    event = _event(reader, written.event)
+    condition = reader.condition(written.condition) if written.condition is not None else None
+    limit = _limit(reader, written.bound, DURATION)
+    if (event is None and condition is None) or (limit is None and written.bound is not None):
+        return None
+    return replace(claim, event=event, condition=condition, limit=limit)
 
 
 def _resource(reader: Reader, word: syntax.Word | None) -> tuple[model.ResolvedSignal | None, Wanted | None]:
@@ -175,7 +207,17 @@ def _per(reader: Reader, written: syntax.Path | syntax.Word | None) -> model.Nod
 _RUN = frozenset(("mission", "run", "execution", "trial", "tree"))
 
 
-def _event(reader: Reader, written: syntax.Event | None) -> model.ResolvedEvent | None:
+def _event(
+    reader: Reader, written: syntax.Event | syntax.AnyEvent | None
+) -> model.ResolvedEvent | model.ResolvedAnyEvent | None:
+    if not isinstance(written, syntax.AnyEvent):
+        return _event_atom(reader, written)
+    atoms = [_event_atom(reader, atom) for atom in written.atoms]
+    understood = tuple(atom for atom in atoms if atom is not None)
+    return model.ResolvedAnyEvent(understood) if len(understood) == len(atoms) else None
+
+
+def _event_atom(reader: Reader, written: syntax.Event | None) -> model.ResolvedEvent | None:
     if written is None:
         return None
     if written.happening == "when":
@@ -198,6 +240,9 @@ def _subject(reader: Reader, written: syntax.Subject) -> model.Subject | None:
     if isinstance(written, syntax.Between):
         first, last = _event(reader, written.first), _event(reader, written.last)
         return model.Interval(first, last) if first is not None and last is not None else None
+    if isinstance(written, syntax.EachEvent):
+        event = _event(reader, written.event)
+        return model.ResolvedEachEvent(event) if event is not None else None
     assert isinstance(written, syntax.Sum), "the last kind of subject"
     targets = [reader.target(path) for path in written.paths]
     nodes_named = tuple(target for target in targets if target is not None)
@@ -212,10 +257,10 @@ def _odds(reader: Reader, written: syntax.Odds) -> model.ResolvedOdds | None:
         message = f"expected a probability above 0 and up to 100 %, found `{written.value.raw}`"
         reader.complain("impossible-odds", written.value.span, message)
         return None
-    of_runs = written.experiments is not None and written.experiments.raw == "runs"
+    experiments = written.experiments.raw if written.experiments is not None else "activations"
     text = reader.text(written.start, written.end)
     place = reader.place(Span(written.start, written.end))
-    return model.ResolvedOdds(written.relation, share.si, "runs" if of_runs else "activations", text, place)
+    return model.ResolvedOdds(written.relation, share.si, experiments, text, place)  # type: ignore[arg-type]  # the parser's words
 
 
 def _confidence(reader: Reader, written: syntax.Confidence) -> float | None:
@@ -272,6 +317,6 @@ def parameter_of(reader: Reader, written: syntax.Parameter) -> model.ResolvedPar
     return replace(parameter, default=default)
 
 
-_TIMED: Final = ("duration", "deadline", "reaction")
+_TIMED: Final = ("duration", "deadline", "reaction", "answer", "stretch")
 _COUNTED: Final = Wanted("a number", (model.NO_DIMENSION, COUNT), None)
 _SHARE: Final = Wanted("a percentage", (PERCENT,), "%")

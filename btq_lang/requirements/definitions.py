@@ -7,6 +7,7 @@ from btq_lang.requirements.clauses import parameter_of, with_clauses
 from btq_lang.requirements.model import ResolvedParameter, ResolvedRequirement
 from btq_lang.requirements.reader import Problems, Reader
 from btq_lang.syntax import tree as syntax
+from btq_lang.util.record import replace
 from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
@@ -33,8 +34,10 @@ def requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Res
     title = written.text.text if written.text is not None else None
     place = reader.place(symbol.span)
     resolved = ResolvedRequirement(name, place, quality, title, False, tuple(parameters.values()), ())
+    if written.further:
+        resolved = replace(resolved, further_qualities=tuple(each.text for each in written.further))
     resolved = with_clauses(reader, resolved, written.clauses)
-    if not written.clauses and written.text is not None:
+    if written.is_text and written.text is not None:
         from btq_lang.requirements.classic import with_constraints  # only requirements without clauses need it
 
         resolved = with_constraints(reader, resolved, written.text)

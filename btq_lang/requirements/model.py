@@ -19,7 +19,7 @@ Relation: TypeAlias = Literal["<=", ">=", "<", ">", "between"]
 Happening: TypeAlias = Literal["starts", "succeeds", "fails", "finishes", "halts", "when"]
 Action: TypeAlias = Literal["fail", "halt", "warn", "log"]
 Method: TypeAlias = Literal["monitor", "analysis", "test", "review"]
-Experiments: TypeAlias = Literal["activations", "runs"]
+Experiments: TypeAlias = Literal["activations", "runs", "occurrences"]
 Behaviour: TypeAlias = Literal["level", "counter", "gauge"]
 Sort: TypeAlias = Literal["number", "bool", "text"]
 
@@ -138,6 +138,12 @@ class Aggregate(Record):
     signal: ResolvedSignal
 
 
+class Age(Record):
+    """`age(position)`: the time since the last sample of a signal; before the first one, since the activation began."""
+
+    signal: ResolvedSignal
+
+
 class Minus(Record):
     """`-x`."""
 
@@ -172,7 +178,7 @@ class ResolvedTable(Record):
 
 Simple: TypeAlias = Quantity | Flag | TextValue | SignalRead | ResolvedParameter
 Bounded: TypeAlias = Simple | ResolvedTable
-Number: TypeAlias = Bounded | Aggregate | Minus | Arithmetic
+Number: TypeAlias = Bounded | Aggregate | Age | Minus | Arithmetic
 
 
 # ---- Conditions -----------------------------------------------------------------------------------------------------
@@ -251,12 +257,34 @@ class ResolvedEvent(Record):
     subject: NodeTarget | MissionRun | None
     condition: Condition | None = None
 
+    @property
+    def atoms(self) -> tuple[ResolvedEvent, ...]:
+        """This one, as of several events."""
+        return (self,)
+
+
+class ResolvedAnyEvent(Record):
+    """Any of several events, of which only the last may be a condition."""
+
+    atoms: tuple[ResolvedEvent, ...]
+
+    @property
+    def condition(self) -> Condition | None:
+        """The condition that is one of them."""
+        return self.atoms[-1].condition
+
 
 class Interval(Record):
     """The time from each `first` to the next `last`."""
 
-    first: ResolvedEvent
-    last: ResolvedEvent
+    first: ResolvedEvent | ResolvedAnyEvent
+    last: ResolvedEvent | ResolvedAnyEvent
+
+
+class ResolvedEachEvent(Record):
+    """Each occurrence of an event."""
+
+    event: ResolvedEvent | ResolvedAnyEvent
 
 
 class DurationSum(Record):
@@ -271,7 +299,7 @@ class EveryNode(Record):
     name: str
 
 
-Subject: TypeAlias = NodeTarget | MissionRun | EveryNode | Interval | DurationSum
+Subject: TypeAlias = NodeTarget | MissionRun | EveryNode | Interval | DurationSum | ResolvedEachEvent
 
 
 class ResolvedClaim(Record):
@@ -280,12 +308,12 @@ class ResolvedClaim(Record):
     Attributes:
         subject: the claim's own; None: what the requirement is attached to.
         verb: the word of its row in `catalog.verbs`.
-        limit: of takes, uses, tries, runs; of `within d` and `runs every d` as `<= d`; of keeps and never the share
-            of time.
-        condition: of needs, keeps, never, leaves.
+        limit: of takes, uses, tries, runs; of `within d`, `runs every d` and `never φ for more than d` as `<= d`; of
+            keeps and never the share of time.
+        condition: of needs, keeps, never, leaves, ends with, never for, and of followed if it is followed by one.
         signal: of uses.
         per: of tries and counts a node (None: the run), of runs a duration.
-        event: of starts, ends, follows.
+        event: of starts, ends, follows, followed.
         every: `runs every d`.
         of: of a failure rate, the node whose time is its exposure; None: the time of the runs.
         text: the clause as typed, blanks folded; with its share of time, or `on average`.
@@ -299,14 +327,20 @@ class ResolvedClaim(Record):
     condition: Condition | None = None
     signal: ResolvedSignal | None = None
     per: NodeTarget | Quantity | None = None
-    event: ResolvedEvent | None = None
+    event: ResolvedEvent | ResolvedAnyEvent | None = None
     every: bool = False
     of: NodeTarget | None = None
 
     @property
-    def word(self) -> str:
-        """The verb as it is written."""
+    def head(self) -> str:
+        """The first word of its verb, which is in its text."""
         return self.verb.partition(" ")[0]
+
+    @property
+    def subject_text(self) -> str:
+        """What is before its verb, as typed."""
+        verb = "is followed" if isinstance(self.subject, ResolvedEachEvent) else self.head
+        return self.text.partition(f" {verb} ")[0]
 
     @property
     def highest(self) -> tuple[float, str] | None:
@@ -332,9 +366,10 @@ def _values(bounded: Bounded) -> list[tuple[float, str]]:
 
 
 class ResolvedScope(Record):
-    """`while φ`: only time (or activations) with φ; `when φ`: only activations with φ at their start."""
+    """`while φ`: only time (or activations) with φ; `when φ`: only activations with φ at their start; `assuming φ`:
+    others than runs, or activations, with φ all along are not applicable."""
 
-    word: Literal["while", "when"]
+    word: Literal["while", "when", "assuming"]
     condition: Condition
     text: str
 
@@ -359,16 +394,46 @@ class ResolvedWindow(Record):
     place: Place
 
 
+class ResolvedWay(Record):
+    """A way to verify a requirement: `test "TC-12"`.  id: of the test case or the report; None if none is named."""
+
+    method: Method
+    id: str | None
+
+    @property
+    def text(self) -> str:
+        return self.method if self.id is None else f'{self.method} "{self.id}"'
+
+
+class ResolvedApproval(Record):
+    """An approval.
+
+    Attributes:
+        on: the date, as written.
+        fingerprint: of the meaning that was approved; None if none is given.
+    """
+
+    by: str
+    on: str
+    fingerprint: str | None
+    place: Place
+
+
 class ResolvedRequirement(Record):
     """A requirement with its clauses resolved; scopes, odds, confidence, window, action and goal apply to all claims.
 
     Attributes:
         place: its name, where it is defined.
         quality: as written, names joined by points; the enclosing one for a classic requirement.
+        further_qualities: those after the first one.
         title: its title, or the classic description.
         classic: whether its claims were read from SuccessIf and FailureIf in its description.
         action: None: not given, so it is monitored.
+        ways: to verify it; none: by monitor.
         unread: the claims, as typed, of which a part was not understood.
+        sources: where it is from.
+        refines: the requirements of which it is a part.
+        mitigates: hazards.
     """
 
     name: str
@@ -385,8 +450,32 @@ class ResolvedRequirement(Record):
     action: Action | None = None
     goal: Bounded | None = None
     reasons: tuple[str, ...] = ()
-    method: Method | None = None
+    ways: tuple[ResolvedWay, ...] = ()
     unread: tuple[str, ...] = ()
+    further_qualities: tuple[str, ...] = ()
+    sources: tuple[str, ...] = ()
+    refines: tuple[str, ...] = ()
+    mitigates: tuple[str, ...] = ()
+    priority: str | None = None
+    approvals: tuple[ResolvedApproval, ...] = ()
+
+    @property
+    def qualities(self) -> tuple[str, ...]:
+        """All its qualities, as written."""
+        return () if self.quality is None else (self.quality, *self.further_qualities)
+
+    @property
+    def method(self) -> Method | None:
+        """The way that counts: `monitor` if it is one of several; None if none is given."""
+        methods = [way.method for way in self.ways]
+        return "monitor" if "monitor" in methods else next(iter(methods), None)
+
+    @property
+    def verification(self) -> str:
+        """The clause about the ways to verify it; empty without any."""
+        return f"verified by {', '.join(way.text for way in self.ways)}" if self.ways else ""
+
+    assumptions: tuple[ResolvedScope, ...] = ()
 
     @property
     def demands_enforcement(self) -> bool:
@@ -403,6 +492,7 @@ class ResolvedRequirement(Record):
         """Whether the engine is to enforce the claims, as far as the requirement itself decides that; a claim or its
         node may still prevent it."""
         is_single = self.odds is None and self.window is None  # else many experiments decide, which the engine forgets
+        is_single = is_single and not self.assumptions  # whether they hold is known only at the end
         return self.demands_enforcement and is_single and not self.is_verified_by_people
 
 
@@ -434,20 +524,20 @@ class Applied(Record):
 
     Attributes:
         requirement: with arguments in place of its parameters, and only the claims that apply to `subject`.
-        subject: a node, the mission, a span or a sum.
+        subject: a node, the mission, a span, a sum, or each occurrence of an event.
         place: of what attached it: the reference at the node, the `apply`, or the claim that names its subject.
         how: `subject`, `satisfies` or `apply`.
     """
 
     requirement: ResolvedRequirement
-    subject: NodeTarget | MissionRun | Interval | DurationSum
+    subject: NodeTarget | MissionRun | Interval | DurationSum | ResolvedEachEvent
     arguments: tuple[ResolvedArgument, ...]
     place: Place
     how: Literal["subject", "satisfies", "apply"]
 
     @property
     def node(self) -> ResolvedNode | None:
-        """The node that it applies to; None for a span, a sum, and an unknown mission."""
+        """The node that it applies to; None for a span, a sum, an event, and an unknown mission."""
         return self.subject.node if isinstance(self.subject, NodeTarget | MissionRun) else None
 
     @property
@@ -463,7 +553,7 @@ class Applied(Record):
         if self.how != "subject" or isinstance(self.subject, MissionRun) or node is None or node.parent is not None:
             return None
         claim = self.requirement.claims[0]
-        last = claim.text.partition(f" {claim.word} ")[0].rpartition("/")[2]
+        last = claim.text.partition(f" {claim.head} ")[0].rpartition("/")[2]
         return node.tree if last == node.tree else None
 
     @property
@@ -478,12 +568,21 @@ class Applied(Record):
 
     @property
     def nodes(self) -> tuple[ResolvedNode, ...]:
-        """The nodes that its subject names; for a span those of its events."""
+        """The nodes that its subject names; for a span, and for an event, those of the events."""
         if isinstance(self.subject, DurationSum):
             return tuple(target.node for target in self.subject.targets)
-        events = (self.subject.first, self.subject.last) if isinstance(self.subject, Interval) else ()
-        parts = [event.subject for event in events] if isinstance(self.subject, Interval) else [self.subject]
+        events = events_of(self.subject)
+        parts: list[NodeTarget | MissionRun | None] = [atom.subject for event in events for atom in event.atoms]
+        if isinstance(self.subject, NodeTarget | MissionRun):
+            parts.append(self.subject)
         return tuple(part.node for part in parts if part is not None and part.node is not None)
+
+
+def events_of(subject: Subject | None) -> tuple[ResolvedEvent | ResolvedAnyEvent, ...]:
+    """The events that a subject names."""
+    if isinstance(subject, Interval):
+        return subject.first, subject.last
+    return (subject.event,) if isinstance(subject, ResolvedEachEvent) else ()
 
 
 class Trace(Record):

@@ -28,7 +28,7 @@ def on_average(
         if f"{claim.verb} on average" in POOLED:
             demanded.append(replace(claim, verb=f"{claim.verb} on average", text=f"{claim.text} on average"))
             continue
-        message = f"`on average` is for `takes` and `uses`, and `{claim.word}` has no mean"
+        message = f"`on average` is for `takes` and `uses`, and `{claim.head}` has no mean"
         notes = ("write it in a requirement with `takes` or `uses`; `mean(force)` is the mean of a signal",)
         reader.complain("impossible-odds", span, message, notes=notes)
         others.append(claim.text)

@@ -20,6 +20,7 @@ from btq_lang.requirements.terms import (
     OF_PYTHON,
     ONE,
     SORTS,
+    TIME,
     Level,
     Term,
     Wanted,
@@ -438,7 +439,21 @@ class Reader(PathReader):
         ok = True
         for operator, left, right in zip(written.operators, understood, understood[1:], strict=False):
             ok = self._comparable(left, right, operator) and ok
+        ok = ok and self._ages_fit(understood)
         return model.Compare(written.operators, tuple(term.value for term in understood)) if ok else None
+
+    def _ages_fit(self, terms: list[Term]) -> bool:
+        """Whether each age is compared with times that do not change meanwhile, so that it is known when it passes
+        them."""
+        ages = [part for term in terms for part in model.parts_in(term.value) if isinstance(part, model.Age)]
+        others = [term for term in terms if not isinstance(term.value, model.Age)]
+        changing = (model.Age, model.SignalRead, model.Aggregate)
+        if not ages or not any(isinstance(part, changing) for term in others for part in _values_in(term.value)):
+            return True
+        name = ages[0].signal.name
+        message = f"an age is compared with a time that does not change: `age({name}) <= 2 s`"
+        self.complain("unit-mismatch", Span(terms[0].span.start, terms[-1].span.end), message)
+        return False
 
     def _is_unknown(self, written: syntax.Condition) -> bool:
         if not isinstance(written, syntax.Operand) or written.word.kind != NAME:
@@ -498,6 +513,8 @@ class Reader(PathReader):
             return term and Term(model.Minus(term.value), term.sort, term.dimension, term.unit, term.span, term.level)
         if isinstance(written, syntax.Call):
             return self._call(written)
+        if isinstance(written, syntax.Choice):
+            return self._choice(written)
         if isinstance(written, syntax.Binary) and written.operator in "+-*/":
             return self._arithmetic(written)
         if self.condition(written) is not None:
@@ -515,6 +532,8 @@ class Reader(PathReader):
             return None
         span = Span(written.start, written.end)
         function = written.function.text
+        if function == "age":
+            return Term(model.Age(signal), "number", TIME, "s", span)
         value = model.Aggregate(function, signal)
         if function == "count":
             return Term(value, "number", model.NO_DIMENSION, None, span)
@@ -526,6 +545,26 @@ class Reader(PathReader):
         if unit is not None and function in ("change", "stddev"):
             return Term(value, "number", unit.dimension, "K" if unit.offset else unit.symbol, span, "difference")
         return term_of(value, signal, span)
+
+    def _choice(self, written: syntax.Choice) -> Term | None:
+        amounts = [*(case.value for case in written.table.cases), written.table.otherwise]
+        conditions = [self.condition(case.condition) for case in written.table.cases]
+        terms = [self._amount(amount, None) for amount in amounts if amount is not None]
+        understood = [term for term in terms if term is not None]
+        if len(understood) < len(amounts) or None in conditions:
+            return None
+        first = understood[0]
+        alike = [self._comparable(first, other, "==") for other in understood[1:]]
+        if not all(alike):
+            return None
+        values = [simple(term.value) for term in understood]
+        cases = [
+            model.ResolvedCase(value, condition)
+            for value, condition in zip(values, (*conditions, None), strict=True)
+            if value is not None
+        ]
+        table = model.ResolvedTable(tuple(cases))
+        return Term(table, first.sort, first.dimension, first.unit, Span(written.start, written.end), first.level)
 
     def _arithmetic(self, written: syntax.Binary) -> Term | None:
         left, right = self._expression(written.left), self._expression(written.right)
@@ -567,6 +606,12 @@ class Reader(PathReader):
         of_right = right.unit if sign == 1 and not any(left.dimension) else None
         unit = left.unit if right.dimension == model.NO_DIMENSION else of_right
         return Term(value, "number", dimension, unit, span)
+
+
+def _values_in(value: model.Number) -> Iterator[object]:
+    """The parts of a value; of a table only its values."""
+    values = [case.value for case in value.cases] if isinstance(value, model.ResolvedTable) else [value]
+    return model.parts_in(tuple(values))
 
 
 _DEEPEST: Final = 50  # nested contexts: a condition is a tree that is walked recursively

@@ -25,7 +25,7 @@ def of_time(
     others: list[str] = []
     for claim in claims:
         if claim.verb not in _OF_TIME:
-            message = f"`of time` is a share of the time in which a condition holds, and `{claim.word}` has none"
+            message = f"`of time` is a share of the time in which a condition holds, and `{claim.head}` has none"
             notes = ("write it in a requirement with `keeps` or `never`; runs and activations have odds of their own",)
             reader.complain("impossible-odds", share.place.span, message, notes=notes)
             others.append(claim.text)

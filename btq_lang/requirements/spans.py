@@ -8,7 +8,7 @@ does its last one.
 from __future__ import annotations
 
 from btq_lang.requirements.budgets import Budgets
-from btq_lang.requirements.model import Interval, NodeTarget, ResolvedEvent
+from btq_lang.requirements.model import Interval, NodeTarget, ResolvedAnyEvent, ResolvedEvent
 from btq_lang.workspace.resolved import ResolvedNode
 
 
@@ -26,8 +26,10 @@ def node_of(span: Interval, budgets: Budgets) -> ResolvedNode | None:
     return None if may_be_skipped else node
 
 
-def _node(event: ResolvedEvent, happenings: tuple[str, ...]) -> ResolvedNode | None:
-    """The node of an event that is one of these, in all of its instances."""
+def _node(event: ResolvedEvent | ResolvedAnyEvent, happenings: tuple[str, ...]) -> ResolvedNode | None:
+    """The node of an event that is one of these, in all of its instances; None of several events."""
+    if isinstance(event, ResolvedAnyEvent):
+        return None
     subject = event.subject
     if event.happening not in happenings or not isinstance(subject, NodeTarget) or subject.through:
         return None

@@ -5,7 +5,7 @@ One invariant: as in `tree`, to which these classes belong, offsets count from t
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 from btq_lang.syntax.tokens import QUANTITY
 from btq_lang.syntax.words import Word
@@ -82,6 +82,17 @@ class Event(Part):
     happening: str
     condition: Condition | None = None
 
+    @property
+    def atoms(self) -> tuple[Event | None, ...]:
+        """This one, as of several events."""
+        return (self,)
+
+
+class AnyEvent(Part):
+    """`Pick fails or Place fails`: any of several events, of which only the last may be a condition."""
+
+    atoms: tuple[Event | None, ...]
+
 
 class Mission(Part):
     """The subject `mission`: the whole run."""
@@ -96,8 +107,8 @@ class Every(Part):
 class Between(Part):
     """The subject `from Pick starts to Place succeeds`."""
 
-    first: Event | None
-    last: Event | None
+    first: Event | AnyEvent | None
+    last: Event | AnyEvent | None
 
 
 class Sum(Part):
@@ -106,19 +117,25 @@ class Sum(Part):
     paths: tuple[Path, ...]
 
 
-Subject: TypeAlias = Path | Mission | Every | Between | Sum
+class EachEvent(Part):
+    """The subject `each Pick fails`: each occurrence of an event."""
+
+    event: Event | AnyEvent | None
+
+
+Subject: TypeAlias = Path | Mission | Every | Between | Sum | EachEvent
 
 
 class Claim(Part):
     """A demand of a requirement: a subject (None: the node it is attached to), a verb and its operands.
 
     Attributes:
-        verb: takes, succeeds, needs, keeps, never, leaves, uses, tries, runs, starts, ends or follows.
-        bound: of takes, uses, tries, runs; for `within d` and `runs every d`, `<= d`.
-        condition: of needs, keeps, never, leaves.
+        verb: takes, succeeds, needs, keeps, never, leaves, uses, tries, runs, starts, ends, follows or followed.
+        bound: of takes, uses, tries, runs; for `within d`, `runs every d` and `never φ for more than d`, `<= d`.
+        condition: of needs, keeps, never, leaves, ends with, and of followed if it is followed by one.
         resource: of uses: the signal.
         per: of tries and counts: the path, or the word `run`; of runs: the quantity.
-        event: of starts, ends, follows.
+        event: of starts, ends, follows, followed.
         every: `runs every d`.
         form: `per` of `succeeds at least 12 per run`, which counts; else empty.
         of: of `fails at most 1 per 200 h of Dock`: the path.
@@ -130,23 +147,34 @@ class Claim(Part):
     condition: Condition | None = None
     resource: Word | None = None
     per: Path | Word | None = None
-    event: Event | None = None
+    event: Event | AnyEvent | None = None
     every: bool = False
     form: str = ""
     of: Path | None = None
 
     @property
     def row(self) -> str:
-        """The verb's row in `catalog.verbs`: of `succeeds at least 12 per run` the one of `succeeds per`."""
-        if self.form and isinstance(self.per, Word) and self.per.kind == QUANTITY:
-            return f"{self.verb.raw} per time"
-        return f"{self.verb.raw} {self.form}".rstrip()
+        """The verb's row in `catalog.verbs`: of `ends with battery_low` the one of `ends with`."""
+        if self.form:
+            is_rate = isinstance(self.per, Word) and self.per.kind == QUANTITY
+            return f"{self.verb.raw} per time" if is_rate else f"{self.verb.raw} {self.form}"
+        if self.condition is None:
+            return self.verb.raw
+        if self.verb.raw == "never" and self.bound is not None:
+            return "never for"
+        return "ends with" if self.verb.raw == "ends" else self.verb.raw
 
 
 class ScopeClause(Part):
     """`while φ` or `when φ`."""
 
     word: Word
+    condition: Condition | None
+
+
+class Assuming(Part):
+    """`assuming φ`: runs, or activations, without φ all along are not applicable."""
+
     condition: Condition | None
 
 
@@ -198,13 +226,78 @@ class Because(Part):
     text: Word | None
 
 
+class Way(Part):
+    """`test "TC-12"` of `verified by`.  method: monitor, analysis, test or review; id: of the test case, the report."""
+
+    method: Word
+    id: Word | None = None
+
+
 class How(Part):
-    """`verified by review`.  method: monitor, analysis, test or review."""
+    """`verified by test "TC-12", review`."""
 
-    method: Word | None
+    ways: tuple[Way, ...]
 
 
-Clause: TypeAlias = Claim | ScopeClause | Average | Odds | Confidence | Window | OnViolation | Goal | Because | How
+class Source(Part):
+    """`source "ISO 13482, 5.10.2"`: where a requirement or a hazard is from."""
+
+    text: Word | None
+
+
+class Refines(Part):
+    """`refines safe_speed, REQ-7`: the requirements of which this one is a part."""
+
+    names: tuple[Word, ...]
+
+
+class Mitigates(Part):
+    """`mitigates H1, H2`: hazards."""
+
+    names: tuple[Word, ...]
+
+
+class Priority(Part):
+    """`priority high`: a free tag."""
+
+    tag: Word | None
+
+
+class Approval(Part):
+    """`approved by "Kim" on "2026-11-29" of "1:0123456789ab"`; `of`: the fingerprint of what was approved."""
+
+    by: Word | None
+    on: Word | None
+    of: Word | None = None
+
+
+class HazardSeverity(Part):
+    """`severity high` of a hazard: a free tag."""
+
+    tag: Word | None
+
+
+Clause: TypeAlias = (
+    Claim
+    | ScopeClause
+    | Assuming
+    | Average
+    | Odds
+    | Confidence
+    | Window
+    | OnViolation
+    | Goal
+    | Because
+    | How
+    | Source
+    | Refines
+    | Mitigates
+    | Priority
+    | Approval
+)
+HazardClause: TypeAlias = Source | Because | HazardSeverity
+# The clauses that demand nothing.
+METADATA: Final = frozenset((Source, Refines, Mitigates, Priority, Approval))
 
 
 # ---- Conditions -----------------------------------------------------------------------------------------------------
@@ -229,6 +322,12 @@ class Call(Part):
 
     function: Word
     signal: Word | None
+
+
+class Choice(Part):
+    """`(0.5 m/s if near else 1 m/s)`: a value for each context."""
+
+    table: Table
 
 
 class NodeRuns(Part):
@@ -264,4 +363,4 @@ class Comparison(Part):
     operands: tuple[Condition, ...]
 
 
-Condition: TypeAlias = Operand | Call | NodeRuns | Negative | Not | Binary | Comparison
+Condition: TypeAlias = Operand | Call | Choice | NodeRuns | Negative | Not | Binary | Comparison

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TypeAlias
 
-from btq_lang.syntax.clauses import Argument, Clause, Parameter
+from btq_lang.syntax.clauses import METADATA, Argument, Clause, Parameter
 from btq_lang.syntax.words import Word
 from btq_lang.util.record import Part, Record
 from btq_lang.util.text import Span
@@ -64,6 +64,7 @@ class Requirement(Part):
     Attributes:
         name: its ID; None if it is missing.
         classic: written `QualityReq ID = … description = …`.
+        further: the qualities after the first one.
         text: its title, or the classic description.
     """
 
@@ -71,8 +72,19 @@ class Requirement(Part):
     classic: bool
     parameters: tuple[Parameter, ...]
     quality: QualityPath | None
+    further: tuple[QualityPath, ...]
     text: Word | None
     clauses: tuple[Clause, ...]
+
+    @property
+    def qualities(self) -> tuple[QualityPath, ...]:
+        """All its qualities."""
+        return () if self.quality is None else (self.quality, *self.further)
+
+    @property
+    def is_text(self) -> bool:
+        """Whether what it demands can only be in its text."""
+        return all(type(clause) in METADATA for clause in self.clauses)
 
     @property
     def is_reference(self) -> bool:

@@ -12,8 +12,12 @@ from itertools import chain
 from typing import TypeAlias
 
 from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.syntax.clauses import METADATA as METADATA
 from btq_lang.syntax.clauses import Amount as Amount
+from btq_lang.syntax.clauses import AnyEvent as AnyEvent
+from btq_lang.syntax.clauses import Approval as Approval
 from btq_lang.syntax.clauses import Argument as Argument
+from btq_lang.syntax.clauses import Assuming as Assuming
 from btq_lang.syntax.clauses import Average as Average
 from btq_lang.syntax.clauses import Because as Because
 from btq_lang.syntax.clauses import Between as Between
@@ -22,16 +26,21 @@ from btq_lang.syntax.clauses import Bound as Bound
 from btq_lang.syntax.clauses import Bounded as Bounded
 from btq_lang.syntax.clauses import Call as Call
 from btq_lang.syntax.clauses import Case as Case
+from btq_lang.syntax.clauses import Choice as Choice
 from btq_lang.syntax.clauses import Claim as Claim
 from btq_lang.syntax.clauses import Clause as Clause
 from btq_lang.syntax.clauses import Comparison as Comparison
 from btq_lang.syntax.clauses import Condition as Condition
 from btq_lang.syntax.clauses import Confidence as Confidence
+from btq_lang.syntax.clauses import EachEvent as EachEvent
 from btq_lang.syntax.clauses import Event as Event
 from btq_lang.syntax.clauses import Every as Every
 from btq_lang.syntax.clauses import Goal as Goal
+from btq_lang.syntax.clauses import HazardClause as HazardClause
+from btq_lang.syntax.clauses import HazardSeverity as HazardSeverity
 from btq_lang.syntax.clauses import How as How
 from btq_lang.syntax.clauses import Mission as Mission
+from btq_lang.syntax.clauses import Mitigates as Mitigates
 from btq_lang.syntax.clauses import Negative as Negative
 from btq_lang.syntax.clauses import NodeRuns as NodeRuns
 from btq_lang.syntax.clauses import Not as Not
@@ -40,10 +49,14 @@ from btq_lang.syntax.clauses import OnViolation as OnViolation
 from btq_lang.syntax.clauses import Operand as Operand
 from btq_lang.syntax.clauses import Parameter as Parameter
 from btq_lang.syntax.clauses import Path as Path
+from btq_lang.syntax.clauses import Priority as Priority
+from btq_lang.syntax.clauses import Refines as Refines
 from btq_lang.syntax.clauses import ScopeClause as ScopeClause
+from btq_lang.syntax.clauses import Source as Source
 from btq_lang.syntax.clauses import Subject as Subject
 from btq_lang.syntax.clauses import Sum as Sum
 from btq_lang.syntax.clauses import Table as Table
+from btq_lang.syntax.clauses import Way as Way
 from btq_lang.syntax.clauses import Window as Window
 from btq_lang.syntax.node_clauses import NodeClause as NodeClause
 from btq_lang.syntax.node_clauses import QualityPath as QualityPath
@@ -156,6 +169,14 @@ class Context(Part):
     condition: Condition | None
 
 
+class Hazard(Part):
+    """`hazard H1 "Collision with a person"`; text: its title."""
+
+    name: Word | None
+    text: Word | None
+    clauses: tuple[HazardClause, ...]
+
+
 class Selector(Part):
     """`every MoveBase under PickPlace`, `every node tagged heavy`, or a path.
 
@@ -223,6 +244,7 @@ Item: TypeAlias = (
     | Context
     | Requirement
     | Apply
+    | Hazard
     | Root
     | Tree
     | Verbatim

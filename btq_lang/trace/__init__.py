@@ -4,13 +4,14 @@ One invariant: every fact is in exactly one row with a key, and the same mission
 
     overview.py    the rows
     collect.py     a workspace as an overview
+    metadata.py    hazards, and what requirements say beside their demands
     ways.py        how clauses are covered
     missions.py    how the built tree covers them, and all of it in one call
     meanings.py    the meaning of quality names
     wording.py     sentences that several writers print
     verdicts.py    verdicts on the page
     run_figure.py  what the nodes of a run did
-    table.py, csv_rows.py, json_document.py, markdown.py, page.py   the writers
+    table.py, csv_rows.py, json_document.py, needs_json.py, markdown.py, page.py   the writers
 """
 
 from __future__ import annotations
@@ -22,8 +23,13 @@ if TYPE_CHECKING:
     from btq_lang.trace.overview import Overview
 
 # The command line needs them for every command, so no writer is imported here.
-FORMATS: Final = ("table", "csv", "json", "markdown", "html")
-_MODULES: Final = {"csv": "csv_rows", "json": "json_document", "html": "page"}  # named otherwise
+FORMATS: Final = ("table", "csv", "json", "markdown", "html", "needs-json")
+_MODULES: Final = {
+    "csv": "csv_rows",
+    "json": "json_document",
+    "html": "page",
+    "needs-json": "needs_json",
+}  # named otherwise
 
 
 def write(overview: Overview, form: str, *, colour: bool = False, width: int = 120) -> str:

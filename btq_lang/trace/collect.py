@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache
+from itertools import chain
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.btcpp.enforceability import way_instead
@@ -16,18 +17,23 @@ from btq_lang.catalog.qualities import Edition, get, qualities
 from btq_lang.diagnostics.model import Place
 from btq_lang.evidence.boxes import measured_by
 from btq_lang.evidence.sentences import result
-from btq_lang.evidence.verdicts import WORST_FIRST, RequirementVerdict
+from btq_lang.evidence.verdicts import WORST_FIRST, RequirementVerdict, worst_of
 from btq_lang.graph.figure import Box, MeasuredClause, Note
 from btq_lang.graph.missions import by_tree, concerns, figure, requirement_note
+from btq_lang.requirements.approval import approval_state
 from btq_lang.requirements.model import Applied, MissionRun, NodeTarget, ResolvedRequirement
 from btq_lang.requirements.resolve import Requirements, requirements
-from btq_lang.syntax.tree import QualityDecl
+from btq_lang.syntax.tree import Hazard, QualityDecl, written
+from btq_lang.trace.chain import chained
 from btq_lang.trace.meanings import Meanings, NameMeaning
+from btq_lang.trace.metadata import hazard_row, metadata_fields, mitigated
 from btq_lang.trace.overview import (
     WAYS,
     AppliedRequirement,
     At,
+    BuildVerdicts,
     ClauseEvidence,
+    HazardRow,
     NodeRow,
     Overview,
     QualityRow,
@@ -43,11 +49,13 @@ from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
+    from btq_lang.evidence.verdicts import Verdict
     from btq_lang.trace.overview import Carries
     from btq_lang.trace.ways import Ways
 
     BoxDetails: TypeAlias = Callable[[ResolvedNode], tuple[tuple[str, ...], str]]
     VerdictsOf: TypeAlias = Callable[[str], Sequence[RequirementVerdict]]
+    BuildsOf: TypeAlias = Callable[[str], Sequence[tuple[str, Sequence[RequirementVerdict]]]]
     _Key: TypeAlias = tuple[int, int]  # where a requirement is defined
 
 
@@ -57,6 +65,7 @@ def collect(
     shown: Callable[[str], str] = str,
     details_of: BoxDetails | None = None,
     verdicts_of: VerdictsOf | None = None,
+    builds_of: BuildsOf | None = None,
 ) -> Overview:
     """The overview of missions.
 
@@ -67,26 +76,34 @@ def collect(
         shown: gives a path as people read it.
         details_of: gives further lines for the box of a node, and its class in the drawing.
         verdicts_of: gives the verdicts on the mission with a path; None: there is no evidence.
+        builds_of: gives them by the labels of builds, in the order of time; None: builds are not known apart.
     """
-    collector = _Collector(ways, shown, details_of, verdicts_of)
+    collector = _Collector(ways, shown, details_of, verdicts_of, builds_of)
     files: list[str] = []
     for workspace, requested in parts:
         included = {path for each in requested for path in workspace.closure(each) if path != each}
         for path in [each for each in requested if each not in included] or requested:
             files.append(shown(path))
             collector.add(workspace, path)
-    return collector.overview(tuple(files))
+    overview = collector.overview(tuple(files))
+    return chained(overview, (workspace.project for workspace, _ in parts), shown)
 
 
 class _Collector:
     """The rows so far, by what they represent, and what is added to them at the end."""
 
     def __init__(
-        self, ways: Ways, shown: Callable[[str], str], details_of: BoxDetails | None, verdicts_of: VerdictsOf | None
+        self,
+        ways: Ways,
+        shown: Callable[[str], str],
+        details_of: BoxDetails | None,
+        verdicts_of: VerdictsOf | None,
+        builds_of: BuildsOf | None,
     ) -> None:
         self._ways = ways
         self._details_of = details_of
         self._verdicts_of = verdicts_of
+        self._builds_of = builds_of
         self._shown = shown
         self._edition: Edition | None = None
         self._nodes: dict[int, NodeRow] = {}  # by `id` of the syntax, which all missions share
@@ -94,11 +111,13 @@ class _Collector:
         self._notes: defaultdict[int, dict[object, Note]] = defaultdict(dict)  # at them, by what they represent
         self._places: dict[int, At] = {}  # of trees
         self._requirements: dict[_Key, RequirementRow] = {}
-        self._meanings: dict[_Key, NameMeaning] = {}  # of their qualities
+        self._meanings: dict[_Key, list[NameMeaning]] = {}  # of their qualities
         self._uses: defaultdict[_Key, dict[AppliedRequirement, None]] = defaultdict(dict)
         self._loose: dict[_Key, list[str]] = {}  # without a node in every mission in which other clauses have one
         self._verdicts: defaultdict[_Key, list[ClauseEvidence]] = defaultdict(list)
+        self._builds: defaultdict[str, defaultdict[_Key, list[Verdict]]] = defaultdict(lambda: defaultdict(list))
         self._qualities: dict[str, QualityRow] = {}
+        self._hazards: dict[int, HazardRow] = {}  # by `id` of the syntax
         self._concerned: defaultdict[str, dict[str, None]] = defaultdict(dict)  # the nodes that satisfice a quality
 
     def add(self, workspace: Workspace, path: str) -> None:
@@ -128,14 +147,16 @@ class _Collector:
         edition = self._edition or "2023"
         measured: defaultdict[str, dict[str, None]] = defaultdict(dict)
         for key, row in self._requirements.items():
-            meaning = self._meanings[key]
-            for id_ in (meaning.id or row.quality or "", *meaning.ancestors):
-                measured[id_][row.key] = None
+            names = (row.quality or "", *row.further_qualities)
+            for name, meaning in zip(names, self._meanings[key], strict=True):
+                for id_ in (meaning.id or name, *meaning.ancestors):
+                    measured[id_][row.key] = None
         rows = tuple(self._linked(key, row, len(files) == 1) for key, row in self._requirements.items())
         quality_rows = tuple(
             replace(row, concerns=tuple(self._concerned[row.key]), requirements=tuple(measured[id_]))
             for id_, row in self._qualities.items()
         )
+        characteristics = [frozenset(one.characteristic for one in each) for each in self._meanings.values()]
         trees = tuple(sorted(self._trees(), key=lambda tree: tree.at.path not in files))  # included trees last
         return Overview(
             edition,
@@ -144,8 +165,15 @@ class _Collector:
             quality_rows,
             tuple(self._nodes.values()),
             trees,
-            _totals(edition, rows, quality_rows, [each.characteristic for each in self._meanings.values()]),
+            _totals(edition, rows, quality_rows, characteristics),
             self._verdicts_of is not None,
+            builds=tuple(
+                BuildVerdicts(
+                    label, tuple((self._requirements[key].key, worst_of(own)) for key, own in verdicts.items())
+                )
+                for label, verdicts in self._builds.items()
+            ),
+            hazards=tuple(mitigated(row, rows) for row in self._hazards.values()),
         )
 
     def _linked(self, key: _Key, row: RequirementRow, is_of_one_mission: bool) -> RequirementRow:
@@ -158,16 +186,20 @@ class _Collector:
         )
 
     def _declared(self, workspace: Workspace, path: str, meanings: Meanings, place: Callable[[Place], At]) -> None:
-        """Add user-defined qualities, whether used or not."""
+        """Add user-defined qualities and hazards, whether used or not."""
         for other in workspace.scope(path).paths:
             for item in workspace.files[other].of_type(QualityDecl):
                 if item.name is not None:
                     self._quality(item.name.text, meanings, place(Place(item.name.span, other, item)))
+            for hazard in workspace.files[other].of_type(Hazard):
+                if hazard.name is not None and id(hazard) not in self._hazards:
+                    key, location = f"h{len(self._hazards) + 1}", place(Place(hazard.name.span, other, hazard))
+                    self._hazards[id(hazard)] = hazard_row(key, hazard.name.text, hazard, location)
 
     def _concerns(self, resolved: Requirements, meanings: Meanings, place: Callable[[Place], At]) -> None:
         for source in resolved.nodes.all:
-            for name, written in concerns(source):
-                location = place(Place(written.span, source.path, source.item))
+            for name, path in concerns(source):
+                location = place(Place(path.span, source.path, source.item))
                 key = self._quality(name, meanings, location)
                 self._concerned[key][self._nodes[id(source.node)].key] = None
                 note = Note("quality", key, name, text=f"satisfices {name}", link=f"#{key}")
@@ -177,8 +209,10 @@ class _Collector:
         for requirement in resolved.all.values():
             key, name, location = _place_of(requirement), requirement.quality, place(requirement.place)
             quality = self._quality(name, meanings, location) if name is not None else None
+            further = [self._quality(each, meanings, location) for each in requirement.further_qualities]
+            approval = resolved.store.ask(approval_state, resolved.viewpoint, requirement.name)
             if key not in self._requirements:
-                self._meanings[key] = meanings.of(name) if name is not None else _NO_MEANING
+                self._meanings[key] = [meanings.of(each) for each in requirement.qualities] or [_NO_MEANING]
                 self._requirements[key] = RequirementRow(
                     f"r{len(self._requirements) + 1}",
                     requirement.name,
@@ -191,6 +225,9 @@ class _Collector:
                     loose=(),
                     is_hard=way_instead(requirement) is None,
                     evidence=(),
+                    further_qualities=requirement.further_qualities,
+                    further_quality_keys=tuple(further),
+                    **metadata_fields(requirement, approval),
                 )
 
     def _evidence(self, path: str, resolved: Requirements) -> None:
@@ -200,6 +237,10 @@ class _Collector:
                     ClauseEvidence(self._shown(path), clause.text, clause.path, clause.verdict, result(clause))
                     for clause in verdicts.clauses
                 ]
+        for label, of_build in self._builds_of(path) if self._builds_of is not None else ():
+            for verdicts in of_build:
+                if (requirement := resolved.all.get(verdicts.id)) is not None:
+                    self._builds[label][_place_of(requirement)].append(verdicts.verdict)
 
     def _quality(self, name: str, meanings: Meanings, location: At) -> str:
         """The key of a quality, which is added if it is new."""
@@ -331,8 +372,7 @@ def _subject(applied: Applied) -> str:
         return "/".join((*subject.through, applied.tree or _name(subject.node)))
     if isinstance(subject, MissionRun):
         return "mission"
-    claim = applied.requirement.claims[0]
-    return claim.text.partition(f" {claim.word} ")[0]
+    return applied.requirement.claims[0].subject_text
 
 
 def _node(key: str, source: ResolvedNode, location: At) -> NodeRow:
@@ -356,7 +396,7 @@ def _note(key: str, applied: Applied, use: AppliedRequirement, measured: tuple[M
 
 def _stated(requirement: ResolvedRequirement) -> Iterator[str]:
     yield from (claim.text for claim in requirement.claims)
-    yield from (scope.text for scope in requirement.scopes)
+    yield from (scope.text for scope in (*requirement.scopes, *requirement.assumptions))
     if requirement.odds is not None:
         yield requirement.odds.text
     if requirement.confidence is not None:
@@ -367,28 +407,42 @@ def _stated(requirement: ResolvedRequirement) -> Iterator[str]:
         yield f"on violation {requirement.action}"
     if requirement.goal is not None:
         yield f"goal {requirement.goal.text}"
-    if requirement.method is not None:
-        yield f"verified by {requirement.method}"
+    if requirement.ways:
+        yield requirement.verification
     yield from (f'because "{" ".join(reason.split())}"' for reason in requirement.reasons)
+    yield from (f'source "{" ".join(source.split())}"' for source in requirement.sources)
+    for head, names in (("refines", requirement.refines), ("mitigates", requirement.mitigates)):
+        if names:
+            yield f"{head} {', '.join(map(written, names))}"
+    if requirement.priority is not None:
+        yield f"priority {written(requirement.priority)}"
+
+
+def totals_of(overview: Overview) -> tuple[TotalRow, ...]:
+    """The totals of the requirements and qualities that an overview has."""
+    characteristics = {quality.key: quality.characteristic for quality in overview.qualities}
+    keys = ((row.quality_key, *row.further_quality_keys) for row in overview.requirements)
+    by_requirement = [frozenset(characteristics.get(key or "") for key in of_row) for of_row in keys]
+    return _totals(overview.edition, overview.requirements, overview.qualities, by_requirement)
 
 
 def _totals(
     edition: Edition,
     rows: Sequence[RequirementRow],
     quality_rows: Sequence[QualityRow],
-    by_requirement: Sequence[str | None],
+    by_requirement: Sequence[frozenset[str | None]],
 ) -> tuple[TotalRow, ...]:
     """A total for each product characteristic, each characteristic in use that is named, and the rest.
 
     Args:
-        by_requirement: the characteristic of each requirement.
+        by_requirement: the characteristics of each requirement, None for a quality that belongs to none.
     """
     characteristics = [each.id for each in qualities(edition) if each.parent is None and each.kind == "product"]
-    named = (*by_requirement, *(each.characteristic for each in quality_rows if each.concerns))
+    named = (*chain.from_iterable(by_requirement), *(each.characteristic for each in quality_rows if each.concerns))
     characteristics += [each for each in dict.fromkeys(named) if each is not None and each not in characteristics]
     totals: list[TotalRow] = []
     for id_ in (*characteristics, None):
-        own = [row for row, characteristic in zip(rows, by_requirement, strict=True) if characteristic == id_]
+        own = [row for row, its_own in zip(rows, by_requirement, strict=True) if id_ in its_own]
         clauses = [clause for row in own for use in row.uses for clause in use.clauses]
         concerns = {key for each in quality_rows if each.characteristic == id_ for key in each.concerns}
         if id_ is None and not own and not concerns:

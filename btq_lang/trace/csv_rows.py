@@ -3,8 +3,10 @@
 The columns, which later versions add to but do not change:
 
     kind            requirement | concern | quality without requirement | requirement without node |
-                    clause without node | hard requirement not enforced | evidence |
-                    node without quality | tree without quality
+                    clause without node | hard requirement not enforced | evidence | build |
+                    node without quality | tree without quality |
+                    hazard | hazard without requirement | external |
+                    requirement without verdict | requirement without source
     requirement, title, quality, characteristic
     holds_for       the subject, or the node that has the concern, or the node or tree of a gap
     tree the tree of its first node
@@ -13,6 +15,11 @@ The columns, which later versions add to but do not change:
     source, line    of what attached it, or of the node or tree
     defined, defined_line   where the requirement or the quality is defined or first named
     verdict, result     of a clause by logs, at the node whose path in the engine is in holds_for
+    build           the label of the runs by which a requirement has the verdict
+    hazard, severity    the hazard that the requirement mitigates; how is then how it is covered, verdict its worst
+    external        the ID in another tool of what the requirement refines or mitigates, likewise
+    refines, mitigates, origin, priority, verified_by, approval     of the requirement; origin: its sources,
+                    approval: open | approved | suspect
 
 A text that a spreadsheet would take for a formula (`-> Work`, `=1+1`) gets an apostrophe prefix, as OWASP advises ("CSV
 Injection"); programs that need the exact texts read the JSON.
@@ -20,11 +27,12 @@ Injection"); programs that need the exact texts read the JSON.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Final
 
 from btq_lang.render.spreadsheet import table
-from btq_lang.trace.overview import At, Clause, Overview, RequirementRow
+from btq_lang.trace.overview import At, Clause, HazardRow, Overview, RequirementRow
+from btq_lang.trace.wording import chain_rows
 
 
 def render(overview: Overview) -> str:
@@ -51,6 +59,11 @@ def _rows(overview: Overview) -> Iterator[dict[str, str | int]]:
             verdict = {"clause": evidence.clause, "verdict": evidence.verdict, "result": evidence.result}
             source = {"source": evidence.mission} if evidence.mission else {}
             yield {"kind": "evidence", **row, "holds_for": evidence.path, **verdict, **source}
+    for requirement, verdicts in overview.by_build:
+        row = _requirement(requirement, characteristics.get(requirement.quality_key or "", ""))
+        for build, of_build in zip(overview.builds, verdicts, strict=True):
+            yield {"kind": "build", **row, "verdict": of_build, "build": build.label}
+    yield from _chain(overview, characteristics)
     for requirement in overview.unenforced:
         row = _requirement(requirement, characteristics.get(requirement.quality_key or "", ""))
         yield {"kind": "hard requirement not enforced", **row}
@@ -68,12 +81,35 @@ def _rows(overview: Overview) -> Iterator[dict[str, str | int]]:
         yield {"kind": "tree without quality", "holds_for": bare.name, "tree": bare.name, **_source(bare.at)}
 
 
+def _chain(overview: Overview, characteristics: Mapping[str, str]) -> Iterator[dict[str, str | int]]:
+    for end, _, mitigating in chain_rows(overview):
+        is_hazard = isinstance(end, HazardRow)
+        own: dict[str, str | int] = {"hazard": end.name} if is_hazard else {"external": end.name}
+        own |= {"severity": end.severity} if isinstance(end, HazardRow) else {}
+        for requirement in mitigating:
+            row = _requirement(requirement, characteristics.get(requirement.quality_key or "", ""))
+            state = {"how": requirement.way, "verdict": requirement.verdict or ""}
+            yield {"kind": "hazard" if is_hazard else "external", **row, **own, **state, **_source(end.at)}
+        if not mitigating:
+            yield {"kind": "hazard without requirement", "title": end.title, **own, **_source(end.at)}
+    gaps = {"requirement without verdict": overview.unjudged, "requirement without source": overview.sourceless}
+    for kind, requirements in gaps.items():
+        for requirement in requirements:
+            yield {"kind": kind, **_requirement(requirement, characteristics.get(requirement.quality_key or "", ""))}
+
+
 def _requirement(requirement: RequirementRow, characteristic: str) -> dict[str, str | int]:
     return {
         "requirement": requirement.name,
         "title": requirement.title,
-        "quality": requirement.quality or "",
+        "quality": " and ".join((requirement.quality or "", *requirement.further_qualities)),
         "characteristic": characteristic,
+        "refines": ", ".join(requirement.refines),
+        "mitigates": ", ".join(requirement.mitigates),
+        "origin": "; ".join(requirement.sources),
+        "priority": requirement.priority,
+        "verified_by": ", ".join(f"{way.method} {way.id}".rstrip() for way in requirement.verification),
+        "approval": requirement.state,
         "defined": requirement.at.path,
         "defined_line": requirement.at.line,
     }
@@ -89,5 +125,6 @@ def _source(place: At) -> dict[str, str | int]:
 
 COLUMNS: Final = (
     *("kind", "requirement", "title", "quality", "characteristic", "holds_for", "tree", "clause", "how", "why"),
-    *("attached_by", "source", "line", "defined", "defined_line", "verdict", "result"),
+    *("attached_by", "source", "line", "defined", "defined_line", "verdict", "result", "build"),
+    *("hazard", "severity", "external", "refines", "mitigates", "origin", "priority", "verified_by", "approval"),
 )

@@ -4,7 +4,13 @@ The document, format 1; a later btq adds keys but changes none without a new num
 
     {"format": 1, "tool": "btq", "version": VERSION, "quality_model": "iso25010-2023", "files": [PATH],
      "requirements": [{"key": KEY, "id": NAME, "title": TEXT, "quality": NAME | null, "quality_key": KEY | null,
+                       "further_qualities": [{"name": NAME, "key": KEY}],
                        "how": TEXT, "clauses": [TEXT], "at": PLACE,
+                       "sources": [TEXT], "refines": [NAME], "refined_by": [KEY], "mitigates": [NAME],
+                       "priority": NAME | null,
+                       "verified_by": [{"method": "monitor" | "analysis" | "test" | "review", "id": TEXT | null}],
+                       "approvals": [{"by": TEXT, "on": TEXT, "of": FINGERPRINT | null}],
+                       "state": "open" | "approved" | "suspect", "fingerprint": FINGERPRINT,
                        "clauses_without_nodes": [TEXT],
                        "evidence": [{"mission": PATH, "clause": TEXT, "path": PATH IN THE ENGINE,
                                      "verdict": "violated" | "unknown" | "undecided" | "satisfied" | "never exercised"
@@ -14,6 +20,10 @@ The document, format 1; a later btq adds keys but changes none without a new num
                                       "attached_by": "subject" | "satisfies" | "apply" | "link",
                                       "clauses": [{"text": TEXT, "why": TEXT,
                                                    "how": "enforced" | "monitored" | "reviewed"}]}]}],
+     "hazards": [{"key": KEY, "id": NAME, "title": TEXT, "severity": NAME | null, "sources": [TEXT], "reasons": [TEXT],
+                  "at": PLACE, "requirements": [KEY]}],
+     "external": [{"key": KEY, "id": NAME, "title": TEXT, "status": TEXT, "url": TEXT, "at": PLACE,
+                   "requirements": [KEY]}],
      "qualities": [{"key": KEY, "name": NAME, "id": NAME | null, "characteristic": NAME | null, "definition": TEXT,
                     "at": PLACE, "concerns": [KEY], "requirements": [KEY]}],
      "nodes": [{"key": KEY, "name": TEXT, "tree": NAME, "category": NAME | null, "skill": BOOL,
@@ -23,14 +33,18 @@ The document, format 1; a later btq adds keys but changes none without a new num
                  "enforced": N, "monitored": N, "reviewed": N}],
      "gaps": {"hard_requirements_not_enforced": [KEY], "qualities_without_requirements": [KEY],
               "requirements_without_nodes": [KEY], "clauses_without_nodes": [{"requirement": KEY, "clause": TEXT}],
-              "nodes_without_qualities": [KEY], "trees_without_qualities": [NAME]},
-     "skills": {"own": N, "above": N, "none": N}}
+              "nodes_without_qualities": [KEY], "trees_without_qualities": [NAME],
+              "hazards_without_requirements": [KEY], "requirements_without_verdicts": [KEY],
+              "requirements_without_sources": [KEY]},
+     "skills": {"own": N, "above": N, "none": N},
+     "builds": [{"label": TEXT, "verdicts": [{"requirement": KEY, "verdict": VERDICT}]}]}
 
     PLACE = {"path": PATH, "line": N, "column": N}, counted from 1, columns in Unicode code points
 
 A `skill` is an action or a condition that is not built in; it `carries` a quality or a requirement itself, through a
 node above it, or not at all.  Keys are valid in this document only.  `mission` is empty in the overview of
-one mission; `evidence` is null where neither logs nor verdicts are given.  The text is ASCII.
+one mission; `evidence` is null where neither logs nor verdicts are given.  A build is the runs in a store that have its
+label.  The text is ASCII.
 """
 
 from __future__ import annotations
@@ -38,7 +52,7 @@ from __future__ import annotations
 import json
 from typing import TypeAlias
 
-from btq_lang.trace.overview import CharacteristicTotals, Overview, RequirementRow
+from btq_lang.trace.overview import CharacteristicTotals, ExternalRow, HazardRow, Overview, RequirementRow
 from btq_lang.util.record import as_dict
 from btq_lang.util.version import __version__
 
@@ -54,6 +68,8 @@ def render(overview: Overview) -> str:
         "quality_model": f"iso25010-{overview.edition}",
         "files": list(overview.files),
         "requirements": [_requirement(each, overview.has_evidence) for each in overview.requirements],
+        "hazards": [_hazard(each) for each in overview.hazards],
+        "external": [_external(each) for each in overview.external],
         "qualities": [{**as_dict(each), "at": as_dict(each.at)} for each in overview.qualities],
         "nodes": [
             {
@@ -79,8 +95,18 @@ def render(overview: Overview) -> str:
             "clauses_without_nodes": [{"requirement": each.key, "clause": clause} for each, clause in overview.loose],
             "nodes_without_qualities": [each.key for each in overview.bare_nodes],
             "trees_without_qualities": [each.name for each in overview.bare_trees],
+            "hazards_without_requirements": [each.key for each in overview.unmitigated],
+            "requirements_without_verdicts": [each.key for each in overview.unjudged],
+            "requirements_without_sources": [each.key for each in overview.sourceless],
         },
         "skills": dict(overview.coverage()),
+        "builds": [
+            {
+                "label": build.label,
+                "verdicts": [{"requirement": key, "verdict": verdict} for key, verdict in build.verdicts],
+            }
+            for build in overview.builds
+        ],
     }
     return json.dumps(document, indent=1) + "\n"
 
@@ -92,9 +118,22 @@ def _requirement(requirement: RequirementRow, has_evidence: bool) -> Json:
         "title": requirement.title,
         "quality": requirement.quality,
         "quality_key": requirement.quality_key,
+        "further_qualities": [
+            {"name": name, "key": key}
+            for name, key in zip(requirement.further_qualities, requirement.further_quality_keys, strict=True)
+        ],
         "how": requirement.way,
         "clauses": list(requirement.clauses),
         "at": as_dict(requirement.at),
+        "sources": list(requirement.sources),
+        "refines": list(requirement.refines),
+        "refined_by": list(requirement.refined_by),
+        "mitigates": list(requirement.mitigates),
+        "priority": requirement.priority or None,
+        "verified_by": [{"method": way.method, "id": way.id or None} for way in requirement.verification],
+        "approvals": [{"by": each.by, "on": each.on, "of": each.of or None} for each in requirement.approvals],
+        "state": requirement.state,
+        "fingerprint": requirement.fingerprint,
         "clauses_without_nodes": list(requirement.loose),
         "evidence": [as_dict(clause) for clause in requirement.evidence] if has_evidence else None,
         "holds_for": [
@@ -108,6 +147,29 @@ def _requirement(requirement: RequirementRow, has_evidence: bool) -> Json:
             }
             for use in requirement.uses
         ],
+    }
+
+
+def _hazard(hazard: HazardRow) -> Json:
+    return {
+        "key": hazard.key,
+        "id": hazard.name,
+        "title": hazard.title,
+        "severity": hazard.severity or None,
+        "sources": list(hazard.sources),
+        "reasons": list(hazard.reasons),
+        "at": as_dict(hazard.at),
+        "requirements": list(hazard.requirements),
+    }
+
+
+def _external(external: ExternalRow) -> Json:
+    fields = as_dict(external)
+    return {
+        **{"key": fields.pop("key"), "id": fields.pop("name")},
+        **fields,
+        "at": as_dict(external.at),
+        "requirements": list(external.requirements),
     }
 
 

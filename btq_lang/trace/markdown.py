@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 
 from btq_lang.render.gfm import code, escaped, table
-from btq_lang.trace.overview import Overview, RequirementRow
-from btq_lang.trace.wording import GAPS, evidence_lines, remarks, shown_quality, summary
+from btq_lang.trace.overview import ExternalRow, HazardRow, Overview, RequirementRow
+from btq_lang.trace.wording import GAPS, NO_LABEL, chain_rows, evidence_lines, remarks, shown_quality, state_of, summary
 
 
 def render(overview: Overview) -> str:
@@ -19,10 +19,19 @@ def _lines(overview: Overview) -> Iterator[str]:
     yield ""
     yield escaped(summary(overview))
     has_evidence = overview.has_evidence
+    chain = [(_end(row, remarks), _mitigating(own)) for row, remarks, own in chain_rows(overview)]
+    if chain:
+        yield ""
+        yield from table(("Hazard or requirement of others", "Mitigated or refined by"), chain)
     if overview.requirements:
         yield ""
+        names = {each.key: each.name for each in overview.requirements}
         heading = ["Requirement", "Quality", "Holds for", "How", *(["Evidence"] if has_evidence else ()), "Defined"]
-        yield from table(heading, (_requirement(each, has_evidence) for each in overview.requirements))
+        yield from table(heading, (_requirement(each, has_evidence, names) for each in overview.requirements))
+    if builds := [(escaped(each.name), *verdicts) for each, verdicts in overview.by_build]:
+        yield from ("", "### By build", "")
+        labels = [escaped(build.label or NO_LABEL) for build in overview.builds]
+        yield from table(("Requirement", *labels), builds)
     nodes = {node.key: node for node in overview.nodes}
     concerns = [quality for quality in overview.qualities if quality.concerns]
     if concerns:
@@ -38,9 +47,22 @@ def _lines(overview: Overview) -> Iterator[str]:
     yield from table(("Characteristic", "Concerns", "Requirements", "Enforced", "Monitored", "Reviewed"), totals, 1)
 
 
-def _requirement(requirement: RequirementRow, has_evidence: bool) -> tuple[str, ...]:
+def _end(row: HazardRow | ExternalRow, remarks: Sequence[str]) -> str:
+    """A hazard or a requirement of another tool, and what is known of it."""
+    lines = (f"**{escaped(row.name)}** ({escaped(str(row.at))})", escaped(row.title), *map(escaped, remarks))
+    return "<br>".join(filter(None, lines))
+
+
+def _mitigating(requirements: Sequence[RequirementRow]) -> str:
+    return "<br>".join(f"**{escaped(each.name)}** {state_of(each)}" for each in requirements) or "nothing"
+
+
+def _requirement(requirement: RequirementRow, has_evidence: bool, names: Mapping[str, str]) -> tuple[str, ...]:
     cell = [f"**{escaped(requirement.name)}**", *([escaped(requirement.title)] if requirement.title else [])]
     cell += [code(clause) for clause in requirement.clauses]
+    refining = ", ".join(escaped(names[key]) for key in requirement.refined_by)
+    cell += [f"refined by {refining}"] if refining else []
+    cell += ["approval outdated"] if requirement.state == "suspect" else []
     subjects = [
         ", ".join((_node(use.subject + use.arguments, use.at), *remarks(requirement, use))) for use in requirement.uses
     ]
@@ -48,7 +70,7 @@ def _requirement(requirement: RequirementRow, has_evidence: bool) -> tuple[str, 
     evidence = "<br>".join(f"**{verdict}** {escaped(text)}" for verdict, text in evidence_lines(requirement)) or "none"
     return (
         "<br>".join(cell),
-        escaped(requirement.quality or ""),
+        escaped(" and ".join((requirement.quality or "", *requirement.further_qualities))),
         "<br>".join(subjects) or "nothing",
         how,
         *((evidence,) if has_evidence else ()),
@@ -58,9 +80,12 @@ def _requirement(requirement: RequirementRow, has_evidence: bool) -> tuple[str, 
 
 def _gaps(overview: Overview) -> Iterator[str]:
     gaps = {
+        "unmitigated": [f"{escaped(each.name)} ({each.at})" for each in overview.unmitigated],
         "unenforced": [f"{escaped(each.name)} ({each.at})" for each in overview.unenforced],
         "unmeasured": [f"{escaped(shown_quality(each))} ({each.at})" for each in overview.unmeasured],
         "unattached": [f"{escaped(each.name)} ({each.at})" for each in overview.unattached],
+        "unjudged": [f"{escaped(each.name)} ({each.at})" for each in overview.unjudged],
+        "sourceless": [f"{escaped(each.name)} ({each.at})" for each in overview.sourceless],
         "loose": [f"{escaped(each.name)} ({each.at}): {code(clause)}" for each, clause in overview.loose],
         "bare_trees": [_node(each.name, each.at) for each in overview.bare_trees],
         "bare_nodes": [_node(each.name, each.at) for each in overview.bare_nodes],

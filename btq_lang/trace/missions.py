@@ -19,7 +19,7 @@ from btq_lang.workspace.loader import shown
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
-    from btq_lang.trace.collect import BoxDetails, VerdictsOf
+    from btq_lang.trace.collect import BoxDetails, BuildsOf, VerdictsOf
 
 
 class TraceTable(Record):
@@ -40,7 +40,7 @@ class TraceTable(Record):
         """Write the table as text.
 
         Args:
-            form: `table`, `csv`, `json`, `markdown` or `html`.
+            form: `table`, `csv`, `json`, `markdown`, `html` or `needs-json`.
             colour: ANSI colours, for `table`.
             width: the columns of the terminal, for `table`.
 
@@ -74,13 +74,14 @@ def trace_tables(
     bundled: bool = False,
     details_of: BoxDetails | None = None,
     verdicts_of: VerdictsOf | None = None,
+    builds_of: BuildsOf | None = None,
 ) -> TraceTable:
     """The table of missions of several workspaces.
 
     Args:
         parts: workspaces, each with the requested paths in it.
         bundled: they are built with all their includes.
-        details_of, verdicts_of: as in `collect`.
+        details_of, verdicts_of, builds_of: as in `collect`.
     """
     errors = {path: number for workspace, requested in parts for path, number in _errors(workspace, requested)}
     broken = frozenset(path for path, number in errors.items() if number)
@@ -91,7 +92,7 @@ def trace_tables(
         is_built = is_mission(workspace, path)
         return built_ways(workspace, path, resolved, bundled) if is_built else declared_ways(workspace, path, resolved)
 
-    overview = collect(parts, ways, shown, details_of, verdicts_of)
+    overview = collect(parts, ways, shown, details_of, verdicts_of, builds_of)
     return TraceTable(replace(overview, errors=sum(errors.values())))
 
 

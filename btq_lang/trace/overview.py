@@ -1,19 +1,24 @@
 """The contents of an overview: small frozen records that writers print without looking anything up.
 
-One invariant: rows refer to each other by keys (`n3` a node, `r1` a requirement, `q2` a quality), which are the same
-for the same missions.  Lines and columns count from 1.
+One invariant: rows refer to each other by keys (`n3` a node, `r1` a requirement, `q2` a quality, `h1` a hazard), which
+are the same for the same missions.  Lines and columns count from 1.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
+from btq_lang.evidence.verdicts import NEVER, OPEN
 from btq_lang.graph.figure import Figure
+from btq_lang.util.reach import reached
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from btq_lang.btcpp.enforceability import Way
+    from btq_lang.catalog.qualities import Edition
     from btq_lang.evidence.verdicts import Verdict
+    from btq_lang.requirements.approval import State
 
     # Whether a node carries a quality or a requirement: itself, through a node above it, or not at all.
     Carries: TypeAlias = Literal["own", "above", "none"]
@@ -86,6 +91,26 @@ class ClauseEvidence(Record):
     result: str
 
 
+class ApprovalRow(Record):
+    """An approval of a requirement.
+
+    Attributes:
+        on: the date, as written.
+        of: the fingerprint of what was approved; empty if none is given.
+    """
+
+    by: str
+    on: str
+    of: str
+
+
+class VerificationRow(Record):
+    """A way to verify a requirement; id: of the test case or the report, empty if none is named."""
+
+    method: str
+    id: str
+
+
 class RequirementRow(Record):
     """A requirement.
 
@@ -97,6 +122,13 @@ class RequirementRow(Record):
         loose: the clauses without a node, if other clauses have one.
         is_hard: the engine must enforce it.
         evidence: what logs show of its clauses, the worst verdict first.
+        further_qualities: as written, after the first one; `further_quality_keys`: of their rows.
+        sources: where it is from.
+        refines: the IDs of the requirements of which it is a part; `mitigates`: those of hazards.
+        priority: empty without one.
+        verification: the ways to verify it; empty: by monitor.
+        refined_by: the keys of those that refine it.
+        state: of its approval; `fingerprint`: of what it means now.
     """
 
     key: str
@@ -110,6 +142,27 @@ class RequirementRow(Record):
     loose: tuple[str, ...]
     is_hard: bool
     evidence: tuple[ClauseEvidence, ...]
+    further_qualities: tuple[str, ...] = ()
+    further_quality_keys: tuple[str, ...] = ()
+    sources: tuple[str, ...] = ()
+    refines: tuple[str, ...] = ()
+    mitigates: tuple[str, ...] = ()
+    priority: str = ""
+    verification: tuple[VerificationRow, ...] = ()
+    approvals: tuple[ApprovalRow, ...] = ()
+    refined_by: tuple[str, ...] = ()
+    state: State = "open"
+    fingerprint: str = ""
+
+    @property
+    def verdict(self) -> Verdict | None:
+        """The worst by logs; None without any."""
+        return self.evidence[0].verdict if self.evidence else None
+
+    @property
+    def is_judged(self) -> bool:
+        """Whether logs show how it is kept, or it names the test or the report that does."""
+        return self.verdict not in (None, NEVER, OPEN) or any(way.id for way in self.verification)
 
     @property
     def way(self) -> str:
@@ -127,6 +180,41 @@ class RequirementRow(Record):
             clause.why for use in self.uses for clause in use.clauses if clause.way == "monitored" and clause.why
         ]
         return tuple(dict.fromkeys((*reasons, *(f"`{clause}` applies to no node" for clause in self.loose))))
+
+
+class HazardRow(Record):
+    """A hazard.
+
+    Attributes:
+        title, severity: empty without one.
+        requirements: the keys of those that mitigate it.
+    """
+
+    key: str
+    name: str
+    title: str
+    severity: str
+    sources: tuple[str, ...]
+    reasons: tuple[str, ...]
+    at: At
+    requirements: tuple[str, ...]
+
+
+class ExternalRow(Record):
+    """A requirement or a hazard that another tool keeps.
+
+    Attributes:
+        title, status, url: empty without one.
+        requirements: the keys of those that refine or mitigate it.
+    """
+
+    key: str
+    name: str
+    title: str
+    status: str
+    url: str
+    at: At
+    requirements: tuple[str, ...]
 
 
 class QualityRow(Record):
@@ -198,6 +286,18 @@ class CharacteristicTotals(Record):
         return self.concerns, self.requirements, self.enforced, self.monitored, self.reviewed
 
 
+class BuildVerdicts(Record):
+    """What the logs of a build show.
+
+    Attributes:
+        label: of its runs in the store; empty if they have none.
+        verdicts: on requirements, by the keys of their rows.
+    """
+
+    label: str
+    verdicts: tuple[tuple[str, Verdict], ...]
+
+
 class Overview(Record):
     """The whole overview.
 
@@ -207,9 +307,13 @@ class Overview(Record):
         totals: of each characteristic of the edition, including unused ones.
         has_evidence: whether logs, or verdicts on them, were given.
         errors: how many errors the missions have; with any, rows may be missing.
+        builds: in the order of their first runs; empty unless the evidence is a store with labels.
+        external: what requirements refine or mitigate and other tools keep.
+        wants_sources: whether a requirement without a source is a gap.
+        is_selection: whether it has some requirements only, so that what others concern is not a gap.
     """
 
-    edition: str
+    edition: Edition
     files: tuple[str, ...]
     requirements: tuple[RequirementRow, ...]
     qualities: tuple[QualityRow, ...]
@@ -218,16 +322,56 @@ class Overview(Record):
     totals: tuple[CharacteristicTotals, ...]
     has_evidence: bool = False
     errors: int = 0
+    builds: tuple[BuildVerdicts, ...] = ()
+    hazards: tuple[HazardRow, ...] = ()
+    external: tuple[ExternalRow, ...] = ()
+    wants_sources: bool = False
+    is_selection: bool = False
+
+    @property
+    def by_build(self) -> Iterator[tuple[RequirementRow, tuple[str, ...]]]:
+        """The requirements that logs of any build judge, each with its verdict of every build; empty without one."""
+        of_builds = [dict(build.verdicts) for build in self.builds]
+        for requirement in self.requirements:
+            verdicts = tuple(of_build.get(requirement.key, "") for of_build in of_builds)
+            if any(verdicts):
+                yield requirement, verdicts
 
     @property
     def unmeasured(self) -> tuple[QualityRow, ...]:
         """Qualities without a requirement."""
-        return tuple(quality for quality in self.qualities if not quality.requirements)
+        return tuple(quality for quality in self.qualities if not (quality.requirements or self.is_selection))
+
+    @property
+    def unmitigated(self) -> tuple[HazardRow, ...]:
+        """Hazards without a requirement."""
+        return tuple(hazard for hazard in self.hazards if not hazard.requirements)
+
+    @property
+    def unjudged(self) -> tuple[RequirementRow, ...]:
+        """Requirements that are not judged, nor any that refines them, though there is evidence."""
+        return self._lacking(lambda row: row.is_judged) if self.has_evidence else ()
+
+    @property
+    def sourceless(self) -> tuple[RequirementRow, ...]:
+        """Requirements that have no source and refine none, in projects that ask for sources."""
+        rows = self.requirements if self.wants_sources else ()
+        return tuple(row for row in rows if not (row.sources or row.refines))
 
     @property
     def unattached(self) -> tuple[RequirementRow, ...]:
-        """Requirements without a node or another subject."""
-        return tuple(requirement for requirement in self.requirements if not requirement.uses)
+        """Requirements without a node or another subject, also through those that refine them."""
+        return self._lacking(lambda row: bool(row.uses))
+
+    def _lacking(self, has_it: Callable[[RequirementRow], bool]) -> tuple[RequirementRow, ...]:
+        """The requirements that lack something that none of those that refine them has either."""
+        refined_by = {row.key: row.refined_by for row in self.requirements}
+        having = {row.key for row in self.requirements if has_it(row)}
+        lacking: list[RequirementRow] = []
+        for row in self.requirements:
+            refining: Iterator[str] = reached([row.key], lambda key: refined_by[key])
+            lacking += [row] if having.isdisjoint(refining) else []
+        return tuple(lacking)
 
     @property
     def loose(self) -> tuple[tuple[RequirementRow, str], ...]:
@@ -249,12 +393,13 @@ class Overview(Record):
     @property
     def bare_nodes(self) -> tuple[NodeRow, ...]:
         """Skills that neither carry anything themselves nor are below a node that does."""
-        return tuple(node for node in self.nodes if node.is_skill and node.carries == "none")
+        nodes = () if self.is_selection else self.nodes
+        return tuple(node for node in nodes if node.is_skill and node.carries == "none")
 
     @property
     def bare_trees(self) -> tuple[TreeRow, ...]:
         """Trees without a node that carries anything itself."""
-        return tuple(tree for tree in self.trees if tree.is_bare)
+        return tuple(tree for tree in self.trees if tree.is_bare and not self.is_selection)
 
     def coverage(self) -> dict[str, int]:
         """How many skills carry something themselves, through a node above them, or not at all."""

@@ -14,9 +14,19 @@ from btq_lang.evidence.verdicts import MissionVerdicts
 from btq_lang.graph.placing import Drawing, place
 from btq_lang.graph.svg import STYLE, colours, part
 from btq_lang.render.pages import PageData, page
-from btq_lang.trace.overview import WAYS, At, Overview, QualityRow, RequirementRow, TreeRow
+from btq_lang.trace.overview import WAYS, At, ExternalRow, HazardRow, Overview, QualityRow, RequirementRow, TreeRow
 from btq_lang.trace.verdicts import verdicts
-from btq_lang.trace.wording import GAPS, evidence_lines, incomplete, remarks, shown_quality, summary
+from btq_lang.trace.wording import (
+    GAPS,
+    NO_LABEL,
+    chain_rows,
+    evidence_lines,
+    incomplete,
+    remarks,
+    shown_quality,
+    state_of,
+    summary,
+)
 from btq_lang.util.text import counted
 
 
@@ -38,10 +48,15 @@ def render(overview: Overview, missions: Sequence[MissionVerdicts] = ()) -> str:
         has_evidence=overview.has_evidence,
         verdicts=verdicts(missions, {each.name: each.key for each in overview.requirements}),
         layout="below" if any(each.width > _BESIDE for each in drawings) else "beside",
+        chain=[(row, isinstance(row, ExternalRow), *more) for row, *more in chain_rows(overview)],
+        names={each.key: each.name for each in overview.requirements},
+        state_of=state_of,
         requirement_heads=("Requirement", "Holds for", "How", *(("Evidence",) if overview.has_evidence else ())),
         requirements=[
             _requirement(each, characteristics.get(each.quality_key or "") or "-") for each in overview.requirements
         ],
+        build_heads=("Requirement", *(build.label or NO_LABEL for build in overview.builds)),
+        by_build=list(overview.by_build),
         qualities=_qualities(overview),
         gaps=_gaps(overview),
         edition=overview.edition,
@@ -70,6 +85,8 @@ def _requirement(row: RequirementRow, characteristic: str) -> PageData:
         "uses": [(use, next(iter(use.nodes), ""), ", ".join(remarks(row, use))) for use in row.uses],
         "ways": [*dict.fromkeys(ways), *loose] if ways else [],
         "evidence": list(evidence_lines(row)),
+        "further_qualities": list(zip(row.further_quality_keys, row.further_qualities, strict=True)),
+        "is_suspect": row.state == "suspect",
     }
 
 
@@ -91,13 +108,16 @@ def _qualities(overview: Overview) -> list[PageData]:
 def _gaps(overview: Overview) -> list[tuple[str, list[tuple[str, str, At, str]]]]:
     """The headings of all gaps with their lines: the key of a row or a node, its name, its place, and a clause."""
 
-    def lines(rows: Sequence[RequirementRow | QualityRow]) -> list[tuple[str, str, At, str]]:
+    def lines(rows: Sequence[RequirementRow | QualityRow | HazardRow]) -> list[tuple[str, str, At, str]]:
         return [(row.key, shown_quality(row) if isinstance(row, QualityRow) else row.name, row.at, "") for row in rows]
 
     gaps = {
+        "unmitigated": lines(overview.unmitigated),
         "unenforced": lines(overview.unenforced),
         "unmeasured": lines(overview.unmeasured),
         "unattached": lines(overview.unattached),
+        "unjudged": lines(overview.unjudged),
+        "sourceless": lines(overview.sourceless),
         "loose": [(row.key, row.name, row.at, clause) for row, clause in overview.loose],
         "bare_trees": [(tree.nodes[0], tree.name, tree.at, "") for tree in overview.bare_trees],
         "bare_nodes": [(node.key, node.name, node.at, "") for node in overview.bare_nodes],

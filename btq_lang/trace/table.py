@@ -6,15 +6,15 @@ One invariant: no line is wider than the terminal, down to 60 columns, and no pr
 from __future__ import annotations
 
 import os.path
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import zip_longest
 from typing import Final
 
 from btq_lang.evidence.table import VERDICT_STYLES
 from btq_lang.render.cells import broken, cells_of, cut, narrowed, printable
 from btq_lang.render.colour import Paint, painter
-from btq_lang.trace.overview import At, Overview, RequirementRow
-from btq_lang.trace.wording import GAPS, evidence_lines, remarks, shown_quality, summary
+from btq_lang.trace.overview import At, ExternalRow, HazardRow, Overview, RequirementRow
+from btq_lang.trace.wording import GAPS, NO_LABEL, chain_rows, evidence_lines, remarks, shown_quality, state_of, summary
 
 
 def render(overview: Overview, colour: bool = False, width: int = 120) -> str:
@@ -26,13 +26,23 @@ def _lines(overview: Overview, paint: Paint, width: int) -> Iterator[str]:
     folder = _folder(overview)
     if folder:
         yield from (f"in {cut(printable(folder), 0, width - 4)}", "")
+    chain = [(_end(row, remarks, folder), _mitigating(own)) for row, remarks, own in chain_rows(overview)]
+    if chain:
+        yield from _table(("Hazard or requirement of others", "Mitigated or refined by"), chain, paint, width)
+        yield ""
     if overview.requirements:
-        rows = [_requirement(each, folder) for each in overview.requirements]
+        names = {each.key: each.name for each in overview.requirements}
+        rows = [_requirement(each, folder, names) for each in overview.requirements]
         heading = ["Requirement", "Holds for", "How"]
         if overview.has_evidence:
             heading.append("Evidence")
             rows = [(*row, _evidence(each)) for row, each in zip(rows, overview.requirements, strict=True)]
         yield from _table(heading, rows, paint, width)
+        yield ""
+    builds = [((each.name,), *((verdict,) for verdict in verdicts[-_BUILDS:])) for each, verdicts in overview.by_build]
+    if builds:
+        labels = [build.label or NO_LABEL for build in overview.builds[-_BUILDS:]]
+        yield from _table(("By build", *labels), builds, paint, width)
         yield ""
     nodes = {node.key: node for node in overview.nodes}
     concerns = [
@@ -44,9 +54,12 @@ def _lines(overview: Overview, paint: Paint, width: int) -> Iterator[str]:
         yield from _table(("Concern", "Nodes"), concerns, paint, width)
         yield ""
     gaps = {
+        "unmitigated": [f"{each.name}, {_place(each.at, folder)}" for each in overview.unmitigated],
         "unenforced": [f"{each.name}, {_place(each.at, folder)}" for each in overview.unenforced],
         "unmeasured": [f"{shown_quality(each)}, {_place(each.at, folder)}" for each in overview.unmeasured],
         "unattached": [f"{each.name}, {_place(each.at, folder)}" for each in overview.unattached],
+        "unjudged": [f"{each.name}, {_place(each.at, folder)}" for each in overview.unjudged],
+        "sourceless": [f"{each.name}, {_place(each.at, folder)}" for each in overview.sourceless],
         "loose": [f"{each.name}, {_place(each.at, folder)}: {clause}" for each, clause in overview.loose],
         "bare_trees": [f"{each.name}, {_place(each.at, folder)}" for each in overview.bare_trees],
         "bare_nodes": [f"{each.name}, {_place(each.at, folder)}" for each in overview.bare_nodes],
@@ -77,7 +90,16 @@ def _place(place: At, folder: str) -> str:
     return str(place).removeprefix(f"{folder}/") if folder else str(place)
 
 
-def _requirement(requirement: RequirementRow, folder: str) -> tuple[Sequence[str], ...]:
+def _end(row: HazardRow | ExternalRow, remarks: Sequence[str], folder: str) -> Sequence[str]:
+    """A hazard or a requirement of another tool, and what is known of it."""
+    return f"{row.name}, {_place(row.at, folder)}", *(f"  {line}" for line in (row.title, *remarks) if line)
+
+
+def _mitigating(requirements: Sequence[RequirementRow]) -> Sequence[str]:
+    return [f"{each.name}: {state_of(each)}" for each in requirements] or ("nothing",)
+
+
+def _requirement(requirement: RequirementRow, folder: str, names: Mapping[str, str]) -> tuple[Sequence[str], ...]:
     subjects = [
         ", ".join((f"{use.subject}{use.arguments}", _place(use.at, folder), *remarks(requirement, use)))
         for use in requirement.uses
@@ -87,7 +109,11 @@ def _requirement(requirement: RequirementRow, folder: str) -> tuple[Sequence[str
         *([requirement.title] if requirement.title else []),
         *requirement.clauses,
     ]
-    lines += [f"for {requirement.quality}"] if requirement.quality else []
+    qualities = " and ".join((requirement.quality, *requirement.further_qualities)) if requirement.quality else ""
+    lines += [f"for {qualities}"] if qualities else []
+    refining = ", ".join(names[key] for key in requirement.refined_by)
+    lines += [f"refined by {refining}"] if refining else []
+    lines += ["approval outdated"] if requirement.state == "suspect" else []
     lines[1:] = [f"  {line}" for line in lines[1:]]
     return lines, subjects or ("nothing",), (*requirement.way.split(", "), *requirement.whys)
 
@@ -132,6 +158,7 @@ def _row(cells: Sequence[str], widths: Sequence[int], numbers_from: int, paint: 
 
 
 _LEAST: Final = 60
+_BUILDS: Final = 5  # the last ones
 _BETWEEN: Final = 2  # blanks between columns
 _WAYS: Final = {
     **{"enforced": "hint", "monitored": "info", "reviewed": "warning", "not attached": "error"},

@@ -5,7 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.trace.overview import WAYS, AppliedRequirement, Overview, QualityRow, RequirementRow
+from btq_lang.trace.overview import (
+    WAYS,
+    AppliedRequirement,
+    ExternalRow,
+    HazardRow,
+    Overview,
+    QualityRow,
+    RequirementRow,
+)
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
@@ -20,7 +28,8 @@ def incomplete(overview: Overview) -> str:
 
 def summary(overview: Overview) -> str:
     """All counts, in a sentence."""
-    ways: dict[str, int] = {way: sum(getattr(total, way) for total in overview.totals) for way in WAYS}
+    clauses = [clause.way for row in overview.requirements for use in row.uses for clause in use.clauses]
+    ways: dict[str, int] = {way: clauses.count(way) for way in WAYS}
     ways["without a node"] = len(overview.loose)
     covered = ", ".join(f"{number} {way}" for way, number in ways.items() if number)
     sentence = f"{counted(len(overview.requirements), 'requirement')}"
@@ -70,12 +79,38 @@ def remarks(requirement: RequirementRow, use: AppliedRequirement) -> Iterator[st
         yield from dict.fromkeys(clause.way for clause in use.clauses)
 
 
+def chain_rows(overview: Overview) -> Iterator[tuple[HazardRow | ExternalRow, list[str], list[RequirementRow]]]:
+    """Hazards, and what other tools keep, each with what is known of it and with the requirements that mitigate or
+    refine it.
+    """
+    rows = {row.key: row for row in overview.requirements}
+    for hazard in overview.hazards:
+        remarks = [f"severity {hazard.severity}"] if hazard.severity else []
+        remarks += [f'source "{source}"' for source in hazard.sources]
+        remarks += [f'because "{reason}"' for reason in hazard.reasons]
+        yield hazard, remarks, [rows[key] for key in hazard.requirements]
+    for external in overview.external:
+        remarks = [external.status] if external.status else []
+        yield external, remarks, [rows[key] for key in external.requirements]
+
+
+def state_of(requirement: RequirementRow) -> str:
+    """How a requirement is covered, its verdict, and whether its approval is outdated."""
+    is_suspect = requirement.state == "suspect"
+    parts = (requirement.way, requirement.verdict, "approval outdated" if is_suspect else None)
+    return "; ".join(part for part in parts if part is not None)
+
+
 GAPS: Final = {
+    "unmitigated": "Hazards without a requirement",
     "unenforced": "Hard requirements that are not enforced everywhere",
     "unmeasured": "Qualities without a requirement",
     "unattached": "Requirements without a node",
+    "unjudged": "Requirements without a verdict",
+    "sourceless": "Requirements without a source",
     "loose": "Clauses without a node",
     "bare_trees": "Trees without any quality",
     "bare_nodes": "Custom leaf nodes without any quality",
 }
+NO_LABEL: Final = "(none)"
 _ATTACHED: Final = {"apply": "by apply", "link": "a link only"}

@@ -21,6 +21,7 @@ from btq_lang.workspace.overrides import KEYS as OVERRIDE_KEYS
 from btq_lang.workspace.overrides import Override, severities_at
 
 if TYPE_CHECKING:
+    from btq_lang.workspace.external_requirements import ExternalRequirements, RequirementSettings
     from btq_lang.workspace.factories import Factory
     from btq_lang.workspace.project_evidence import EvidenceSettings
 
@@ -49,6 +50,8 @@ class Project(Record):
         pools: folders in which an XML file finds the trees and models that it lacks; the loader finds them.
         created: the trees of XML that C++ in the pools names, and probably creates.
         evidence: its table about logs, if it has one.
+        requirements: its table about requirements, if it has one.
+        external_requirements: those that the files of this table have; None without any.
         factories: what each of its programs registers.
         node_files: files whose models count in all files: files of btq, and C++ sources that were read.
         cpp: patterns of C++ sources whose nodes count in all files.
@@ -77,6 +80,8 @@ class Project(Record):
     pools: tuple[str, ...] = ()
     created: frozenset[str] = frozenset()
     evidence: EvidenceSettings | None = None
+    requirements: RequirementSettings | None = None
+    external_requirements: ExternalRequirements | None = None
     factories: tuple[Factory, ...] = ()
     node_files: tuple[str, ...] = ()
     cpp: tuple[str, ...] = ()
@@ -98,6 +103,11 @@ class Project(Record):
         """The innermost of the pools that contain a file, with a `/` at its end."""
         pools = (f"{pool.rstrip('/')}/" for pool in self.pools)
         return max((pool for pool in pools if path.startswith(pool)), key=len, default=None)
+
+    @property
+    def imports(self) -> tuple[str, ...]:
+        """The paths of the files of external requirements."""
+        return tuple(_joined(self.root, name) for name in self.requirements.imports) if self.requirements else ()
 
     @property
     def cpp_patterns(self) -> tuple[str, ...]:
@@ -348,6 +358,13 @@ def _evidence(key: str, value: object) -> _Read:
     return settings, [_Complaint(message, below) for message, below in complaints]
 
 
+def _requirements(key: str, value: object) -> _Read:
+    from btq_lang.workspace.external_requirements import read_requirements  # few projects have this table
+
+    settings, complaints = read_requirements(value)
+    return settings, [_Complaint(message, below, named) for message, below, named in complaints]
+
+
 def _factories(key: str, value: object) -> _Read:
     from btq_lang.workspace.factories import read_factories  # few projects have any
 
@@ -391,6 +408,7 @@ KEYS = {
     "rules": ("severities", _severities, "severities", "the severities of rules"),
     "overrides": ("overrides", _overrides, "overrides", "severities of rules in some files"),
     "evidence": ("evidence", _evidence, "evidence", "logs of what robots did, which btq verify reads"),
+    "requirements": ("requirements", _requirements, "requirements", "requirements that other tools keep"),
     "factory": ("factories", _factories, "factories", "what one program registers before it creates a tree"),
 }
 

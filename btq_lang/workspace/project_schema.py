@@ -13,14 +13,20 @@ from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.catalog.versions import PRODUCTS, VERSION_3, targets
 from btq_lang.diagnostics.rules import RULES
 from btq_lang.workspace.config import KEYS, SEVERITIES
+from btq_lang.workspace.external_requirements import DEMANDS, IMPORTED_SUFFIXES
+from btq_lang.workspace.external_requirements import KEYS as REQUIREMENT_KEYS
 from btq_lang.workspace.factories import KEYS as FACTORY_KEYS
 from btq_lang.workspace.file import CPP_SUFFIXES
 from btq_lang.workspace.overrides import KEYS as OVERRIDE_KEYS
 from btq_lang.workspace.project_evidence import KEYS as EVIDENCE_KEYS
 from btq_lang.workspace.project_evidence import NUMBERS, OF_A_FILE, OF_A_TOPIC, SOURCE_KEYS, TEXTS
 
-_CPP = rf"\.({'|'.join(suffix.removeprefix('.') for suffix in CPP_SUFFIXES)})$"
 Json: TypeAlias = "dict[str, Any]"
+
+
+def _ending(suffixes: tuple[str, ...]) -> str:
+    """A pattern of the names that end in one of some suffixes."""
+    return rf"\.({'|'.join(suffix.removeprefix('.') for suffix in suffixes)})$"
 
 
 def project_schema() -> Json:
@@ -35,7 +41,7 @@ def project_schema() -> Json:
             "engines": {"anyOf": [_form("engine"), _list(_form("engine"), minItems=1)]},
             "edition": {"enum": [*EDITIONS]},
             "strings": _list({"type": "string"}),
-            "nodes": _list({"anyOf": [{"enum": [*PACKAGED]}, {"type": "string", "pattern": _CPP}]}),
+            "nodes": _list({"anyOf": [{"enum": [*PACKAGED]}, {"type": "string", "pattern": _ending(CPP_SUFFIXES)}]}),
             "rule": {"enum": [*RULES]},
             "rules": _list(_form("rule")),
             "severity": {"enum": [*SEVERITIES]},
@@ -47,6 +53,7 @@ def project_schema() -> Json:
             "number": {"type": "number"},
             "evidence": _evidence(),
             "signal": _signal(),
+            "requirements": _requirements(),
             "factories": _list(_factory()),
         },
     }
@@ -64,6 +71,12 @@ def _evidence() -> Json:
         "signals": {"type": "object", "additionalProperties": _form("signal")},
     }
     return _table({key: {"description": doc, "allOf": [forms[key]]} for key, doc in EVIDENCE_KEYS.items()})
+
+
+def _requirements() -> Json:
+    imports = _list({"type": "string", "pattern": _ending(IMPORTED_SUFFIXES)})
+    forms = {"import": imports, **{key: {"enum": [*DEMANDS]} for key in ("approval", "source")}}
+    return _table({key: {"description": doc, "allOf": [forms[key]]} for key, doc in REQUIREMENT_KEYS.items()})
 
 
 def _signal() -> Json:

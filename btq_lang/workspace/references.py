@@ -38,6 +38,7 @@ class What(Enum):
     SIGNAL = "signal"
     CONTEXT = "context"
     QUALITY = "quality"
+    HAZARD = "hazard"
     PARAMETER = "parameter"
     VALUE = "value"  # in a condition: a context, a signal, a parameter, else a node
     PLACE = "place"  # in a path: a tree, a node or an instance name
@@ -65,7 +66,8 @@ class Mention(Record):
         word: that contains it, to see whether it is quoted.
         defines: whether the name is defined here, and not used.
         node: the node that has it, or that it replaces.
-        owner: the requirement of a parameter, the model of a port or of its own name, the tree of a key; else None.
+        owner: the requirement of a parameter, or the one that refines or mitigates what is named, the model of a port
+            or of its own name, the tree of a key; else None.
         pair: the attribute with a port or a key.
         writes: whether it is a key that a script assigns.
         root: whether it is a key of the root blackboard: `{@key}`.
@@ -128,6 +130,8 @@ def report(item: syntax.Item, to: ReferenceListener) -> None:
     elif isinstance(item, syntax.QualityDecl):
         to.word(What.QUALITY, item.name, defines=True)
         _quality(item.parent, None, to)
+    elif isinstance(item, syntax.Hazard):
+        to.word(What.HAZARD, item.name, defines=True)
     elif isinstance(item, syntax.Qualities):
         to.word(What.EDITION, item.edition)
     elif isinstance(item, syntax.Apply):
@@ -401,7 +405,8 @@ def _requirement(
 ) -> None:
     refers = attached and requirement.is_reference
     to.word(What.REQUIREMENT, requirement.name, defines=not refers, node=node, owner=requirement)
-    _quality(requirement.quality, node, to)
+    for quality in requirement.qualities:
+        _quality(quality, node, to)
     if requirement.text is not None:
         to.value(requirement.text)
     for parameter in requirement.parameters:
@@ -409,7 +414,12 @@ def _requirement(
         to.word(What.UNIT, parameter.unit)
         _values(parameter.default, requirement, to)
     for clause in requirement.clauses:
-        _values(clause, requirement, to)
+        if isinstance(clause, syntax.Refines | syntax.Mitigates):
+            what = What.REQUIREMENT if isinstance(clause, syntax.Refines) else What.HAZARD
+            for name in clause.names:
+                to.word(what, name, owner=requirement)
+        else:
+            _values(clause, requirement, to)
 
 
 def _quality(path: syntax.QualityPath | None, node: syntax.Node | None, to: ReferenceListener) -> None:
@@ -461,5 +471,6 @@ KIND_OF: Final = {  # of what is looked up by its name
     What.SIGNAL: Kind.SIGNAL,
     What.CONTEXT: Kind.CONTEXT,
     What.QUALITY: Kind.QUALITY,
+    What.HAZARD: Kind.HAZARD,
 }
 _NOTHING: Final = Summary((), ())

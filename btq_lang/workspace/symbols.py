@@ -18,7 +18,13 @@ from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 
 Target: TypeAlias = (
-    syntax.Tree | syntax.Model | syntax.Requirement | syntax.Signal | syntax.Context | syntax.QualityDecl
+    syntax.Tree
+    | syntax.Model
+    | syntax.Requirement
+    | syntax.Signal
+    | syntax.Context
+    | syntax.QualityDecl
+    | syntax.Hazard
 )
 
 
@@ -95,7 +101,7 @@ def claiming(summary: Summary) -> frozenset[str]:
 
 
 def _may_claim(requirement: syntax.Requirement) -> bool:
-    if not requirement.clauses:
+    if requirement.is_text:
         return requirement.text is not None and "if" in requirement.text.text.lower()
     return names_subject(requirement)
 
@@ -165,7 +171,7 @@ def may_be_one_type(one: syntax.Word | None, other: syntax.Word | None) -> bool:
 
 def _asked_by(requirement: syntax.Requirement) -> frozenset[str]:
     """The names in a requirement's clauses; without any, its text may hold some after `FailureIf`."""
-    if requirement.clauses or requirement.text is None:
+    if not requirement.is_text or requirement.text is None:
         return _words_in((requirement.parameters, requirement.clauses))
     return frozenset(_WORDS.findall(requirement.text.text) if "if" in requirement.text.text.lower() else ())
 
@@ -179,7 +185,8 @@ def _words_in(part: object) -> frozenset[str]:
 
 def _content(requirement: syntax.Requirement) -> object:
     text = " ".join(requirement.text.text.split()) if requirement.text else None
-    return text, syntax.shape((requirement.quality, requirement.parameters, requirement.clauses))
+    clauses = tuple([clause for clause in requirement.clauses if not isinstance(clause, syntax.Approval)])
+    return text, syntax.shape((requirement.qualities, requirement.parameters, clauses))
 
 
 _WORDS: Final = re.compile(r"\w+")

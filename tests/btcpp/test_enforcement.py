@@ -233,6 +233,7 @@ TOO_LONG = "its script would be longer than 10000 characters; compute it in a no
         ("runs every 1 s", "BehaviorTree.CPP has no node that makes another one start in time"),
         ("starts within 1 s after Rest starts", "BehaviorTree.CPP has no node that makes another one start in time"),
         ("follows when on", "the engine runs no script at this event"),
+        ("follows Rest fails or when on", "the engine runs no script at this event"),
     ],
 )
 def test_reasons(clauses: str, why: str) -> None:

@@ -28,11 +28,13 @@ CLAUSES = {
     ),
     "succeeds": ("succeeds", "succeeds within 30 s"),
     "needs": ("needs battery > 15 %", "needs low"),
-    "keeps": ("keeps battery > 15 %",),
+    "keeps": ("keeps battery > 15 %", "keeps age(battery) <= 1 s"),
     "never": ("never low and door",),
     "keeps of time": ("keeps battery > 15 % in at least 95 % of time",),
     "never of time": ("never low in at least 95 % of time",),
+    "never for": ("never low for more than 30 s",),
     "leaves": ("leaves battery > 3 %",),
+    "ends with": ("ends with battery > 3 %",),
     "uses": ("uses at most 20 % of battery", "uses at least 1 % of battery", "uses at most 3 of load"),
     "takes on average": ("takes at most 30 s on average",),
     "uses on average": ("uses at most 20 % of battery on average",),
@@ -48,7 +50,13 @@ CLAUSES = {
     "follows": (
         *(f"follows Other {happening}" for happening in ("starts", "succeeds", "fails", "finishes", "halts")),
         "follows mission starts",
+        "follows Other succeeds or Other starts",
+        "follows Other succeeds or when door",
         "follows when door",
+    ),
+    "followed": (
+        "each Other fails is followed by Work starts within 2 s",
+        "each Other fails or when door is followed by battery > 15 %",
     ),
 }
 QUALIFIERS = {
@@ -58,6 +66,7 @@ QUALIFIERS = {
     "while": "while door",
     "when": "when door",
     "context": "when night",
+    "assuming": "assuming door",
     "review": "verified by review",
 }
 # What the clause is about, as it is named in it.
@@ -127,8 +136,8 @@ def matrix() -> Iterator[str]:
         for clause in clauses:
             for qualifier, written in QUALIFIERS.items() if clause is clauses[0] else [("", "")]:
                 for action in ("fail", "halt") if not qualifier else ("fail",):
-                    for kind, subject in SUBJECTS.items():
-                        comes_of_it = outcome(f"{subject} {clause}", written, action)
+                    for kind, subject in {"event": ""}.items() if clause.startswith("each ") else SUBJECTS.items():
+                        comes_of_it = outcome(f"{subject} {clause}".strip(), written, action)
                         yield f"{kind} {clause}; {qualifier or 'always'}; {action}: {comes_of_it}"
 
 

@@ -222,7 +222,7 @@ def test_side_files_of_missions_made_up_keep_the_schema_and_lead_back(spelling: 
     assert (again.text, again.is_whole) == (text, True)
 
 
-@pytest.mark.parametrize("example", ["classic", "hospital", "laboratory", "navigation", "pick-and-place"])
+@pytest.mark.parametrize("example", ["classic", "hospital", "inspection", "laboratory", "navigation", "pick-and-place"])
 def test_an_example_is_built_and_imported(btq: Btq, capsys: Capsys, example: str) -> None:
     shutil.copytree(ROOT / "examples" / example, btq.folder / "there")
     assert btq.build("there", "-o", "out")[0] == 0

@@ -11,7 +11,8 @@ from btq_lang.catalog.language import PHRASES, Phrase, beginning, phrase_at, phr
 from btq_lang.catalog.verbs import COUNTING
 from btq_lang.grammar.claims import HAPPENINGS, VERB_WORDS
 from btq_lang.grammar.clauses import ACTIONS, AVERAGE, EXPERIMENTS, METHODS, TIME
-from btq_lang.grammar.conditions import FUNCTIONS, HEADS
+from btq_lang.grammar.conditions import FUNCTIONS, HEADS, METADATA_HEADS
+from btq_lang.grammar.hazards import HAZARD_HEADS
 from btq_lang.grammar.item_words import ITEM_WORDS
 from btq_lang.parser import parse
 from btq_lang.syntax.tokens import NODE_CLAUSES
@@ -21,6 +22,7 @@ FORMS = {
     "part of a model": "Action X\n    {}\n",
     "clause of a node": "BehaviorTree X\n    A {}\n",
     "attribute of a node": "BehaviorTree X\n    {}\n",
+    "clause of a hazard": "hazard x\n    {}\n",
     "event": "QualityReq x\n    {}\n",
     **dict.fromkeys(("item", "part of a signal", "selector", "attribute of the file", "classic form"), "{}\n"),
 }
@@ -31,14 +33,14 @@ def words_of(*parts: str) -> set[str]:
 
 
 def test_no_word_of_the_grammar_is_left_out() -> None:
-    others = {"every", "of", "time", "at", "least", "most", "per", "on", AVERAGE}
+    others = {"every", "is", "followed", "by", "with", "for", "of", "time", "at", "least", "most", "per", "on", AVERAGE}
     assert words_of("claim") - others == VERB_WORDS | COUNTING
-    assert words_of("event") - {"when"} == HAPPENINGS
+    assert words_of("event") - {"when", "or"} == HAPPENINGS
     assert words_of("action") == set(ACTIONS)
     assert words_of("method") == set(METHODS)
     assert words_of("item") == set(ITEM_WORDS)
     assert words_of("clause of a node") - {"parameters"} == set(NODE_CLAUSES)
-    assert words_of() >= HEADS | FUNCTIONS | EXPERIMENTS | {TIME}
+    assert words_of() >= HEADS | METADATA_HEADS | FUNCTIONS | EXPERIMENTS | {*HAZARD_HEADS, TIME}
 
 
 @pytest.mark.parametrize("phrase", PHRASES, ids=lambda phrase: f"{phrase.words}, {phrase.part}")
@@ -55,7 +57,7 @@ def test_a_form_can_be_written(phrase: Phrase) -> None:
 
 def test_the_page_says_the_same() -> None:
     """Of claims and clauses; `with probability` stands in the rows of others."""
-    left_out = {("clause", words) for words in ("with probability", "activations", "runs")}
+    left_out = {("clause", words) for words in ("with probability", "activations", "runs", "occurrences")}
     rows = [
         f"| `{phrase.form}` | {phrase.meaning} |"
         for phrase in PHRASES

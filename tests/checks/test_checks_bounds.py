@@ -79,6 +79,14 @@ NAMED = "name the node that is meant: `Dock starts within 2 s after Batch succee
             for clause in ("starts within 2 s after", "ends within 2 s after", "follows")
             for end in ("succeeds", "fails", "finishes", "halts")
         ),
+        ("X follows Y fails or {} finishes", "nothing happens in a run after `{} finishes`", SINGLE_RUN),
+        (
+            "from X fails or {} succeeds to X starts takes at most 2 s",
+            "nothing happens in a run after `{} succeeds`",
+            SINGLE_RUN,
+        ),
+        ("each {} fails is followed by X starts", "nothing happens in a run after `{} fails`", SINGLE_RUN),
+        ("each X fails is followed by {} starts", "nothing happens in a run before `{} starts`", SINGLE_RUN),
         ("every X follows {} finishes", "nothing happens in a run after `{} finishes`", SINGLE_RUN),
         ("{} ends within 2 s after {} fails", "nothing happens in a run after `{} fails`", SINGLE_RUN),
         ("from {} succeeds to X starts takes at most 2 s", "nothing happens in a run after `{} succeeds`", SINGLE_RUN),

@@ -79,6 +79,15 @@ def test_a_new_file_in_front_of_an_included_one(folder: Path) -> None:
     assert found(folder, "lib/a.btq") == ["lib/a.btq"]
 
 
+def test_imported_requirements_concern_all(folder: Path) -> None:
+    (folder / "btq.toml").write_text('[requirements]\nimport = ["reqs.csv"]\n')
+    (folder / "reqs.csv").write_text("id\nR1\n")
+    commit(folder)
+    assert found(folder) == []
+    (folder / "reqs.csv").write_text("id\nR2\n")
+    assert found(folder) == ["low.btq", "main.btq", "mid.btq", "other.btq"]
+
+
 def test_the_project_file_concerns_all(folder: Path) -> None:
     (folder / "btq.toml").write_text("ignore = []\n")
     assert found(folder) == ["low.btq", "main.btq", "mid.btq", "other.btq"]

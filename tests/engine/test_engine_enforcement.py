@@ -166,6 +166,12 @@ CASES: dict[str, tuple[str, str, Parts, Parts]] = {
         {"Move": [step("RUNNING", people=0.0), step("RUNNING", speed=1.0), "RUNNING", "SUCCESS"]},
         {"First": [step("SUCCESS", people=0.0)], "Move": [step("RUNNING", people=1.0, speed=1.0), "SUCCESS"]},
     ),
+    "keeps_choice": (
+        SPEED + PEOPLE,
+        "keeps speed <= (900 m/h if near else 1 m/s)",
+        {"Move": [step("RUNNING", speed=1.0), step("RUNNING", people=2.0), "RUNNING", "SUCCESS"]},
+        {"Move": [step("RUNNING", speed=1.0), step("RUNNING", people=1.0, speed=0.25), "RUNNING", "SUCCESS"]},
+    ),
     "keeps_other_units": (
         "signal heat : degC from {heat} initially 20 degC\nsignal limit : K from {limit} initially 300 K\n",
         "keeps heat < limit",
@@ -193,6 +199,12 @@ CASES: dict[str, tuple[str, str, Parts, Parts]] = {
     "leaves": (
         BATTERY,
         "leaves battery >= 3 %",
+        {"Move": [step("RUNNING", battery=2.0), "SUCCESS"]},
+        {"Move": [step("RUNNING", battery=2.0), step("SUCCESS", battery=3.0)]},
+    ),
+    "ends_with": (
+        BATTERY,
+        "ends with battery >= 3 %",
         {"Move": [step("RUNNING", battery=2.0), "SUCCESS"]},
         {"Move": [step("RUNNING", battery=2.0), step("SUCCESS", battery=3.0)]},
     ),
@@ -294,6 +306,14 @@ def test_who_must_succeed_and_fails_halts_the_mission(engine: Engine) -> None:
         text = f"QualityReq rq1\n    Move {clause}\n    on violation halt\n{SWALLOWED}"
         assert_fails(engine, text, {"Move": ["RUNNING", "FAILURE"]})
         assert_unchanged(engine, text, QUICK)
+
+
+@pytest.mark.parametrize(("battery", "status"), [(3.0, "SUCCESS"), (2.0, "FAILURE")])
+def test_what_a_failure_ends_with_halts_the_mission(engine: Engine, battery: float, status: str) -> None:
+    text = f"{BATTERY}QualityReq r\n    Move ends with battery >= 3 %\n    on violation halt\n{SWALLOWED}"
+    parts = {"Move": ["RUNNING", step("FAILURE", battery=battery)]}
+    before, after = without_and_with(engine, text, parts, 1)
+    assert (before.status, after.status) == ("SUCCESS", status)
 
 
 def test_a_bound_on_the_mission(engine: Engine) -> None:
@@ -423,6 +443,9 @@ def test_tries_are_counted_anew_for_each_activation(engine: Engine) -> None:
         ("Look fails", {"Look": ["SUCCESS"]}, {"Look": ["RUNNING", "FAILURE"]}),
         ("Look finishes", {"Pick": ["SUCCESS"]}, {"Pick": ["FAILURE"]}),
         ("Look starts", {"Pick": ["SUCCESS"]}, {"Pick": ["FAILURE"]}),
+        ("Look fails or Pick succeeds", {"Look": ["SUCCESS"]}, {"Look": ["FAILURE"]}),
+        ("Look fails or Look succeeds", {"Pick": ["SUCCESS"]}, {"Look": ["RUNNING", "SUCCESS"]}),
+        ("Look fails or Look starts", {"Pick": ["SUCCESS"]}, {}),
     ],
 )
 def test_order(engine: Engine, action: str, event: str, broken: Parts, kept: Parts) -> None:

@@ -58,6 +58,16 @@ ROWS: Final[Mapping[str, Row]] = {
         (1, 1),
         (1, 0),
     ),
+    "ends_with": (
+        BATTERY,
+        "ends with battery >= 3 %",
+        ONCE,
+        {"Move": ["RUNNING", step("SUCCESS", battery=2.0)]},
+        QUICK,
+        UNKNOWN,
+        (1, 1),
+        (1, 0),
+    ),
     "uses_at_the_end": (
         ENERGY,
         "uses at most 20 Wh of energy",

@@ -19,7 +19,7 @@ from btq_lang.evidence.model import ENOUGH, ROOT
 from btq_lang.evidence.odds import lower_limit, upper_limit
 from btq_lang.evidence.poisson import lower_number, upper_number
 from btq_lang.evidence.student import quantile
-from btq_lang.requirements.model import DurationSum, Interval, MissionRun, NodeTarget, Quantity
+from btq_lang.requirements.model import DurationSum, Interval, MissionRun, NodeTarget, Quantity, ResolvedEachEvent
 
 if TYPE_CHECKING:
     from literal_log import Truth
@@ -83,12 +83,29 @@ class Session:
         self.activations = self.late.activations
 
     def judged(self, applied: Applied, claim: ResolvedClaim) -> list[Judged]:
-        """What a claim comes to."""
+        """What a claim comes to; of a run, if it is applicable."""
+        found = self.anyhow(applied, claim)
+        if claim.verb not in OVER_RUNS and not isinstance(applied.subject, Interval | DurationSum):
+            return found
+        return [each for one in found if (each := self.in_run(one, applied.requirement)).verdict != OUT]
+
+    def in_run(self, one: Judged, requirement: ResolvedRequirement) -> Judged:
+        """A part of a run, which is not applicable unless each assumption holds all along in the run."""
+        runs = [replace(world.runs[one.run], uid=one.uid) for world in self.worlds]
+        verdicts = [
+            world.applicable(run, one.verdict, requirement) for world, run in zip(self.worlds, runs, strict=True)
+        ]
+        return replace(one, verdict=alike(*verdicts))
+
+    def anyhow(self, applied: Applied, claim: ResolvedClaim) -> list[Judged]:
+        """What a claim comes to; of a run, also if that is not applicable."""
         if isinstance(applied.subject, Interval):
             found = self.spent(
                 claim, [world.spans(applied.subject, claim, applied.requirement) for world in self.worlds]
             )
             return [each for each in found if each.verdict != OUT]
+        if isinstance(applied.subject, ResolvedEachEvent):
+            return self.followed(applied.subject, claim, applied.requirement)
         if isinstance(applied.subject, DurationSum):
             return self.total(applied.subject, claim, applied.requirement)
         found = self.at_both_ends(applied, claim)
@@ -114,9 +131,17 @@ class Session:
             found.append((Judged(run.run, uids[0], True if added[3] else OUT, run.end), added))
         return found
 
+    def followed(self, each: ResolvedEachEvent, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Judged]:
+        """each e is followed by f: what both ends of the begins say of each e."""
+        early, late = (world.followed(each, claim, requirement) for world in self.worlds)
+        return [each for each in self.both_ends(early, late) if each.verdict != OUT]
+
     def at_both_ends(self, applied: Applied, claim: ResolvedClaim, part: Part = None) -> list[Judged]:
         """What it comes to, for each instance of the node and run, if the ends of the begins agree."""
-        early, late = (world.judged(applied, claim, part) for world in self.worlds)
+        return self.both_ends(*(world.judged(applied, claim, part) for world in self.worlds))
+
+    def both_ends(self, early: Sequence[Judged], late: Sequence[Judged]) -> list[Judged]:
+        """What both say, for each instance of a node and run."""
         found = []
         for run, uid in dict.fromkeys((each.run, each.uid) for each in [*late, *early]):
             ones, others = ([each for each in judged if (each.run, each.uid) == (run, uid)] for judged in (early, late))
@@ -190,6 +215,9 @@ class Session:
             for spent in times
             for world, at in ((self.early, one), (self.late, other))
         }
+
+
+OVER_RUNS = ("tries", "runs", "follows", "starts", "ends")
 
 
 def alike(one: Verdict, other: Verdict) -> Verdict:

@@ -24,7 +24,19 @@ from btq_lang.evidence.evaluate import MissionEvaluation
 from btq_lang.evidence.model import LogSession
 from btq_lang.evidence.odds import lower_limit, upper_limit
 from btq_lang.evidence.verdicts import ClauseVerdict
-from btq_lang.requirements.model import Applied, DurationSum, Interval, NodeTarget, ResolvedClaim, ResolvedRequirement
+from btq_lang.requirements.model import (
+    Age,
+    Applied,
+    Compare,
+    DurationSum,
+    Interval,
+    NodeTarget,
+    Quantity,
+    ResolvedClaim,
+    ResolvedEachEvent,
+    ResolvedRequirement,
+    parts_in,
+)
 
 NOT_JUDGED = ("the clause applies to no node", "it has a mistake; run btq check")
 WORST_FIRST = ("violated", "unknown", "undecided", "satisfied", "never exercised")
@@ -78,7 +90,9 @@ class Hunt:
         judged = literal.clause(applied, claim)
         what = {Interval: "from … to", DurationSum: "sum of"}.get(type(applied.subject), claim.verb)
         self.compared[f"{what}: {judged.verdict}"] += 1
-        has_path = streamed.unit != "runs" and not isinstance(applied.subject, Interval | DurationSum)
+        has_path = streamed.unit != "runs" and not isinstance(
+            applied.subject, Interval | DurationSum | ResolvedEachEvent
+        )
         expected, got = expected_of(made, applied.requirement, judged, has_path), got_of(streamed, has_path)
         if expected != got:
             of_node = [f"{each}" for each in literal.activations if each.uid in {one.uid for one in judged.judged}]
@@ -111,7 +125,14 @@ def literal_of(made: Case) -> Literal:
     def instances(target: NodeTarget) -> list[int]:
         return [uid for _, uid in made.joined.instances(target) if uid is not None]
 
-    of_tree, known = (made.joined.tree, made.subtrees, made.delays), (samples, signals, instances, made.guards)
+    ages: dict[str, set[int]] = {}
+    for compare in parts_in((made.mission.requirements.applied, (*made.mission.requirements.contexts.values(),))):
+        numbers = compare.operands if isinstance(compare, Compare) else ()
+        for age in numbers:
+            if isinstance(age, Age):
+                times = [round(each.si * 1e6) for each in parts_in(numbers) if isinstance(each, Quantity)]
+                ages.setdefault(age.signal.name, set()).update(times)
+    of_tree, known = (made.joined.tree, made.subtrees, made.delays), (samples, signals, instances, made.guards, ages)
     return Literal([literal.Session(*of_tree, rows, *known) for rows in made.sessions])
 
 

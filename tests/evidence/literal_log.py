@@ -6,7 +6,7 @@ Truth is three-valued: None is unknown.  Nothing of `btq_lang.evidence` is used 
 from __future__ import annotations
 
 import statistics
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
@@ -15,6 +15,7 @@ from literal_runs import Activation, activations
 
 from btq_lang.evidence.model import ROOT, LoggedTree
 from btq_lang.requirements.model import (
+    Age,
     Aggregate,
     All,
     Any,
@@ -54,6 +55,7 @@ class Log:
         signals: all of the mission, by name.
         instances: the uids of the instances of a written node.
         guards: the nodes that a build has put around others, with the requirement of each.
+        ages: with which times, in µs, the age of each signal is compared.
 
     Attributes:
         changes: the moments at which anything changes: rows, samples, and samples that grow too old.
@@ -70,7 +72,9 @@ class Log:
         signals: Mapping[str, ResolvedSignal],
         instances: Callable[[NodeTarget], list[int]],
         guards: Mapping[int, str],
+        ages: Mapping[str, Collection[int]],
     ) -> None:
+        self.ages = ages
         self.tree = tree
         self.subtrees = subtrees
         self.samples = samples
@@ -86,12 +90,18 @@ class Log:
         self.changes |= {just_after(each.stop) for each in self.activations}
         for name, series in samples.items():
             self.changes.update((time, -1) for time, _ in series)
+            self.changes.update((time + age, -1) for time, _ in series for age in self.passed(name))
             if (fresh := signals[name].fresh) is not None:
                 self.changes.update((time + micros(fresh) + 1, -1) for time, _ in series)
 
     def moments(self, a: Activation) -> list[Moment]:
         """Those of an activation at which something may change: rows, samples, and samples that grow too old."""
-        return sorted({a.start, *(each for each in self.changes if a.start < each <= a.stop)})
+        old = {(a.begin + age, -1) for name in self.ages for age in self.passed(name)}
+        return sorted({a.start, *(each for each in self.changes | old if a.start < each <= a.stop)})
+
+    def passed(self, name: str) -> set[int]:
+        """The ages of a signal at which it has reached, and passed, what it is compared with."""
+        return {age + more for age in self.ages.get(name, ()) for more in (0, 1)}
 
     def holds(self, condition: Condition | None, moment: Moment, a: Activation, *, initially: bool = False) -> Truth:
         """Whether a condition holds at a time of an activation; initially: see `sample`.
@@ -156,6 +166,10 @@ class Log:
                         return None
                     if holds:
                         return self.number(case.value, moment, a, initially=True)
+            case Age(signal):
+                series = [time for time, _ in self.samples.get(signal.name, ())]
+                since = max((time for time in series if time <= moment[0]), default=a.begin)
+                return (moment[0] - since) / 1e6 if series else None
             case Aggregate(function, signal):
                 return self.aggregate(function, signal, a)
         raise AssertionError(number)

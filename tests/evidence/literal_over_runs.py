@@ -24,7 +24,9 @@ if TYPE_CHECKING:
         Condition,
         DurationSum,
         Interval,
+        ResolvedAnyEvent,
         ResolvedClaim,
+        ResolvedEachEvent,
         ResolvedEvent,
         ResolvedRequirement,
     )
@@ -330,7 +332,7 @@ class OverRuns(OfActivations):
 
     def spans(self, span: Interval, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Spent]:
         """from e1 to e2: each e1 opens one, the next e2 closes all that are open."""
-        firsts = self.uids(span.first.subject) if span.first.condition is None else [ROOT]
+        firsts = self.places(span.first)
         by_rows = span.first.condition is None and span.last.condition is None
         found = []
         for run in self.runs:
@@ -356,6 +358,76 @@ class OverRuns(OfActivations):
                         )
                     )
         return found
+
+    def followed(self, each: ResolvedEachEvent, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Judged]:
+        """each e is followed by f: after each e the next f, or the first moment from then on at which f is true."""
+        by_rows = each.event.condition is None and claim.condition is None
+        by_rows = by_rows and (claim.event is None or claim.event.condition is None)
+        found = []
+        for run in self.runs:
+            for uid in self.places(each.event):
+                here = replace(run, uid=uid)
+                for e in self.events(each.event, here, only=True, by_rows=by_rows):
+                    verdict, decided = self.answered(e, each, claim, requirement, here)
+                    found.append(Judged(run.run, uid, verdict, run.end, decided))
+        return found
+
+    def answered(
+        self,
+        e: Happening,
+        each: ResolvedEachEvent,
+        claim: ResolvedClaim,
+        requirement: ResolvedRequirement,
+        run: Activation,
+    ) -> Decided:
+        """What one e comes to: the times to f, at the least and at the most, and what may have been f before."""
+        at = between(run, run.uid, e.moment, run.stop)
+        end, times = run.stop, e.times
+        is_answered = False
+        if claim.event is not None:
+            is_later = each.event == claim.event or (has_node(each.event) and has_node(claim.event))
+            by_rows = each.event.condition is None and claim.event.condition is None
+            events = self.events(claim.event, run, by_rows=by_rows)
+            later = [one for one in events if one.after >= e.after and not (is_later and one.by == e.after)]
+            certain = [one for one in later if one.has_happened]
+            f = min(certain, key=lambda one: one.by, default=None)
+            by, end = (f.by, f.moment) if f is not None else (run.stop, run.stop)
+            maybe = [one.after[0] for one in events if not one.is_sure and one.by >= e.after and one.after <= by]
+            until, is_answered = (f.times, True) if f is not None else ((run.end, run.end), False)
+        else:
+            times = e.moment[0], e.moment[0]
+            moments = self.moments(at)
+            held = [self.holds(claim.condition, moment, run) for moment in moments]
+            is_answered = True in held
+            end = moments[held.index(True)] if is_answered else run.stop
+            maybe = [moment[0] for moment, now in zip(moments, held, strict=True) if now is None and moment <= end]
+            until = end[0], end[0]
+        least, most = spent(times, until)
+        limit = claim.limit
+        bound = self.amount(limit.value, at.start, at) if limit is not None else None
+        deadline = end if bound is None else min(end, (at.begin + micros(bound), end[1]))
+        if not e.is_sure:
+            return None, deadline[0]
+        counts = self.counts(between(run, run.uid, at.start, deadline), requirement)
+        kept: list[Truth] = [True, True]
+        if limit is not None:
+            kept = [self.within(time / 1e6, limit, at)[0] for time in (least, most)]
+            since = times[1]
+            maybe = [time for time in maybe if self.within(max(time - since, 0) / 1e6, limit, at)[0]]
+        if counts is False:
+            return OUT, deadline[0]
+        if None in kept:
+            return None, deadline[0]
+        if maybe and not (is_answered and kept[1]):
+            return None, deadline[0]
+        if is_answered:
+            verdict: Verdict = kept[0] if kept[0] is kept[1] else None
+            return counted(counts, verdict), end[0]
+        if kept[0] and run.outcome == "O":
+            return (OPEN if kept[1] else None), deadline[0]
+        if bound is not None and claim.condition is not None and least / 1e6 < bound:
+            return counted(counts, OUT if kept[1] else None), deadline[0]
+        return counted(counts, False), deadline[0]
 
     def written_above(self, uid: int) -> int:
         """The nearest node above another that is no guard: around it stands what enforces a span of its children."""
@@ -388,9 +460,25 @@ class OverRuns(OfActivations):
             found.append((between(run, run.uid, moments[index], end), now is True))
         return found
 
+    def places(self, event: ResolvedEvent | ResolvedAnyEvent) -> list[int]:
+        """The instances of the nodes of an event; the root for a condition."""
+        uids = [
+            uid for each in event.atoms for uid in ([ROOT] if each.condition is not None else self.uids(each.subject))
+        ]
+        return [*dict.fromkeys(uids)]
+
     def events(
-        self, event: ResolvedEvent, run: Activation, *, only: bool = False, by_rows: bool = True
+        self, event: ResolvedEvent | ResolvedAnyEvent, run: Activation, *, only: bool = False, by_rows: bool = True
     ) -> list[Happening]:
+        """Those of any of several events, in order, each once."""
+        by_rows = by_rows and event.condition is None
+        found: list[Happening] = []
+        for each in event.atoms:
+            if not only or run.uid in self.places(each):
+                found += [one for one in self.event(each, run, only=only, by_rows=by_rows) if one not in found]
+        return sorted(found, key=lambda one: one.after)
+
+    def event(self, event: ResolvedEvent, run: Activation, *, only: bool, by_rows: bool) -> list[Happening]:
         """An event in a run: of its nodes, those in the same use of a subtree as the run's uid; only: of this alone;
         by_rows: see `placed`."""
         if event.condition is not None:
@@ -433,6 +521,11 @@ def between(run: Activation, uid: int, start: Moment, stop: Moment) -> Activatio
 def spent(since: tuple[int, int], until: tuple[int, int]) -> tuple[int, int]:
     """The shortest and the longest time from one moment to another, of which only limits are known."""
     return max(until[0] - since[1], 0), until[1] - since[0]
+
+
+def has_node(event: ResolvedEvent | ResolvedAnyEvent) -> bool:
+    """Whether something that a node does is among several events."""
+    return any(each.condition is None for each in event.atoms)
 
 
 def all_of(verdicts: Sequence[Verdict]) -> Verdict:

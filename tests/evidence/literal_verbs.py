@@ -53,17 +53,30 @@ class OfActivations(Log):
         Args:
             part: the only end of `between` that counts.
         """
-        return [
+        found = [
             judged(each, False)  # what the requirement's own guard stops, or finds wrong at the end, is violated
             if self.is_stopped(each, claim, requirement) or self.is_refuted(each, claim, requirement)
             else judged(each, self.keeps(each, claim, requirement))
             if claim.verb in ("keeps", "never")
+            else judged(each, self.never_for(each, claim, requirement))
+            if claim.verb == "never for"
             else replace(
                 judged(each, self.scoped(each, self.whole(each, claim, part), requirement)),
                 measures=(self.measured(claim, each) or 0.0,) * 2 if claim.verb.endswith(" on average") else (0.0, 0.0),
             )
             for each in self.of(uid)
         ]
+        return [
+            replace(each, verdict=self.applicable(a, each.verdict, requirement))
+            for a, each in zip(self.of(uid), found, strict=True)
+        ]
+
+    def applicable(self, a: Activation, verdict: Verdict, requirement: ResolvedRequirement) -> Verdict:
+        """What an activation, or a run, comes to that is not applicable unless each assumption holds all along."""
+        first, *later = (self.holds_all("assuming", requirement, moment, a) for moment in self.moments(a))
+        if not a.is_exact:  # it may have ended right after its start
+            later = [None if each is False else each for each in later]
+        return counted(both(first, *later), verdict)
 
     def is_stopped(self, a: Activation, claim: ResolvedClaim, requirement: ResolvedRequirement) -> bool:
         """Whether the guard around the node for this clause has halted it: the nearest one above it that was not halted
@@ -93,7 +106,13 @@ class OfActivations(Log):
         """The starts of a node that guards around it have refused: each is a case of the clause that its guard
         enforces, unless that is judged by the run, and of `succeeds`, whosever guard it is."""
         return [
-            Judged(check.run, uid, False, check.end, check.end, True)
+            Judged(
+                check.run,
+                uid,
+                self.applicable(replace(check, start=check.stop), False, requirement),
+                *2 * (check.end,),
+                True,
+            )
             for verb, guard, check in self.refusals(uid)
             if claim.verb == "succeeds"
             or (
@@ -124,7 +143,8 @@ class OfActivations(Log):
                 if not guards or guards[-1].last < check.first:  # the log is cut off before the only row of the guard
                     guards.append(replace(check, uid=above, first=guards[-1].last + 1 if guards else 0))
                 word = self.tree.nodes[above].path.rpartition("_")[2]
-                found.append(({"used": "uses", "starts": "starts per"}.get(word, word), guards[-1], check))
+                words = {"used": "uses", "ends": "ends with", "starts": "starts per"}
+                found.append((words.get(word, word), guards[-1], check))
         return found
 
     def held(self, uid: int, guard: Activation, check: Activation) -> list[Activation]:
@@ -146,7 +166,8 @@ class OfActivations(Log):
             written = [each for each in self.of(uid) if each.run == run.run]
             a = replace(written[-1] if written else replace(run, uid=uid), outcome=run.outcome, is_exact=run.is_exact)
             is_stopped = any(self.is_stopped(each, claim, requirement) for each in written)
-            found.append(judged(a, False if is_stopped else self.scoped(a, self.whole(a, claim), requirement)))
+            verdict = False if is_stopped else self.scoped(a, self.whole(a, claim), requirement)
+            found.append(judged(a, self.applicable(a, verdict, requirement)))
         return found
 
     def whole(self, a: Activation, claim: ResolvedClaim, part: Part = None) -> Verdict:
@@ -168,6 +189,9 @@ class OfActivations(Log):
         if claim.verb == "leaves":
             holds = self.holds(claim.condition, a.stop, a)
             return holds if a.outcome == "S" else OPEN if a.outcome == "O" else OUT
+        if claim.verb == "ends with":
+            holds = self.holds(claim.condition, a.stop, a)
+            return holds if a.outcome in ("S", "F") else OPEN if a.outcome == "O" else OUT
         assert claim.verb == "uses"
         return self.bounded(a, self.used(claim, a), claim.limit, part)
 
@@ -215,6 +239,27 @@ class OfActivations(Log):
         kept = both(*(either(negated(counts, True), holds) for counts, holds in moments))
         return counted(counts, OPEN if kept and a.outcome == "O" else kept)
 
+    def never_for(self, a: Activation, claim: ResolvedClaim, requirement: ResolvedRequirement) -> Verdict:
+        """never φ for more than d: each part of the activation in which φ (and C) holds; what is unknown may hold."""
+        moments = self.moments(a)
+        in_scope = [self.holds_all("while", requirement, moment, a) for moment in moments]
+        held = [
+            both(counts, self.holds(claim.condition, moment, a))
+            for counts, moment in zip(in_scope, moments, strict=True)
+        ]
+        times = [*(time for time, _ in moments), a.end]
+        kept: list[Truth] = []
+        for first in range(len(held)):
+            for last in range(first, len(held)):
+                holds = both(*held[first : last + 1])
+                if holds is not False:
+                    is_short = self.within((times[last + 1] - times[first]) / 1e6, claim.limit, a)[0]
+                    kept.append(is_short if is_short is None or is_short or holds else None)
+        verdict: Verdict = both(*kept, True if False in kept or {*held} != {None} else None)
+        verdict = None if verdict is False and not a.is_exact else verdict
+        counts = both(self.holds_all("when", requirement, a.start, a), either(*in_scope))
+        return counted(counts, OPEN if verdict and a.outcome == "O" else verdict)
+
     def bounded(self, a: Activation, measured: float | None, limit: Limit | None, part: Part = None) -> Verdict:
         """A measure that grows while the activation lasts, against its bound."""
         not_above, not_below = self.within(measured, limit, a)
@@ -251,7 +296,8 @@ class OfActivations(Log):
 
     def holds_all(self, word: str, requirement: ResolvedRequirement, moment: Moment, a: Activation) -> Truth:
         """The conditions of `while`, or of `when`, at a moment."""
-        conditions = [each.condition for each in requirement.scopes if each.word == word]
+        scopes = (*requirement.scopes, *requirement.assumptions)
+        conditions = [each.condition for each in scopes if each.word == word]
         return both(*(self.holds(each, moment, a, initially=True) for each in conditions))
 
 

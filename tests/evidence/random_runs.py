@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import engine_simulator as engine
 from check_asserts import workspace_of
 from random_guards import Guarded
+from random_states import of_states
 from requirement_problems import problems_of
 
 from btq_lang.btcpp.marks import MARK
@@ -125,7 +126,11 @@ def mission(chance: random.Random) -> str:
     main = [f"BehaviorTree {name}\n" + "\n".join(lines) for name, lines in tree.all().items()]
     labels = [*tree.labels, *tree.labels[: len(tree.labels) // 2 + 1]]  # what comes first runs more often
     demands = [requirement(chance, f"r{number}", labels) for number in range(chance.randint(2, 6))]
-    return "\n".join(["Root Main", *declarations(chance), *demands, *main]) + "\n"
+    known = declarations(chance)
+    apart = random.Random(repr(chance.getstate()))
+    draws = lambda drawn: condition(drawn, labels), lambda drawn: claim(drawn, labels)
+    demands += of_states(apart, labels, *draws)
+    return "\n".join(["Root Main", *known, *demands, *main]) + "\n"
 
 
 class Trees:
@@ -268,9 +273,13 @@ _HEADS = ("while", "when", "in", "with", "confidence", "over", "on")
 def claim(chance: random.Random, labels: list[str]) -> str:
     """A subject and a verb."""
     subject = chance.choice([*labels, *labels, "mission", "Part", *(f"every {action}" for action in ACTIONS)])
-    verb = chance.choice([*_VERBS, *_VERBS, "span", "sum" if len({*labels}) > 1 else "span"])
+    verb = chance.choice([*_VERBS, *_VERBS, "span", "each", "sum" if len({*labels}) > 1 else "span"])
     if verb == "span":
         return f"from {event(chance, labels)} to {event(chance, labels)} takes at most {seconds(chance)}"
+    if verb == "each":
+        answer = event(chance, labels) if chance.random() < 0.6 else condition(chance, labels)
+        within = f" within {value(chance, labels, lambda: seconds(chance))}" if chance.random() < 0.7 else ""
+        return f"each {event(chance, labels)} is followed by {answer}{within}"
     if verb == "sum":
         return f"sum of {', '.join(chance.sample(sorted({*labels}), 2))} takes at most {seconds(chance)}"
     operand = {
@@ -327,6 +336,8 @@ def seconds(chance: random.Random) -> str:
 def event(chance: random.Random, labels: list[str]) -> str:
     if chance.random() < 0.2:
         return f"when {condition(chance, labels)}"
+    if chance.random() < 0.2:
+        return f"{chance.choice(labels)} {chance.choice(_HAPPENINGS)} or {event(chance, labels)}"
     return f"{chance.choice(labels)} {chance.choice(_HAPPENINGS)}"
 
 

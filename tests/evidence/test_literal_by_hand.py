@@ -77,6 +77,8 @@ LATE = [(20.0, 0.5)]
         ("a never speed > 1 m/s", LATE, "unknown 0/0 ?1"),
         ("a leaves speed <= 1 m/s", None, "unknown 0/0 ?1"),
         ("a leaves speed <= 1 m/s", LATE, "satisfied 0/1"),
+        ("a ends with speed <= 1 m/s", None, "unknown 0/0 ?1"),
+        ("a ends with speed <= 1 m/s", LATE, "satisfied 0/1"),
         ("a needs max(speed) <= 1 m/s", None, "unknown 0/0 ?1"),
         ("a leaves max(speed) <= 1 m/s", LATE, "satisfied 0/1"),
         ("a leaves min(speed) <= 0 m/s", LATE, "violated 1/1"),  # though it began with `initially 0 m/s`

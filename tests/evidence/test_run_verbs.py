@@ -182,6 +182,9 @@ def test_runs_per(demand: str, runs: str, expected: str, verify: Verify) -> None
         ("Pick starts within 24 ms after when low", TWICE, "violated 2/2"),
         ("Alarm starts within 9 ms after when low", "0 1R 11R 10 5I 5S 42 5I 5S 50 1S", "satisfied 0/2"),
         ("Pick starts within 5 ms after when node Pick", TWICE, "satisfied 0/1"),
+        ("Pick starts within 20 ms after Move fails or Move succeeds", TWICE, "satisfied 0/2"),
+        ("Pick starts within 20 ms after Move succeeds or Move finishes", TWICE, "satisfied 0/2"),  # not three
+        ("Pick starts within 19 ms after Alarm starts or Move fails or when low", TWICE, "violated 3/3"),
         ("Pick ends within 20 ms after Move succeeds", TWICE, "never exercised 0/0"),  # it did not run then
         ("Pick ends within 20 ms after Pick starts", TWICE, "satisfied 0/1"),
         ("Pick ends within 19 ms after Pick starts", TWICE, "violated 1/1"),
@@ -225,10 +228,104 @@ def test_starts_and_ends(demand: str, runs: str, expected: str, verify: Verify) 
         ("Pick follows Move succeeds", CUT, "never exercised 0/0 |1"),
         ("Pick follows Alarm succeeds", CUT, "violated 1/1"),
         ("Pick follows Alarm succeeds\nwhen not low", TWICE, "violated 1/1"),
+        # Any of several events is enough.
+        ("Pick follows Alarm succeeds or Move succeeds", TWICE, "satisfied 0/1"),
+        ("Pick follows Alarm succeeds or Move halts", TWICE, "violated 1/1"),
+        ("Move follows mission starts or Move fails", TWICE, "satisfied 0/2"),
+        ("Move follows Alarm starts or when low", TWICE, "violated 1/2"),
+        ("Put follows Alarm succeeds or Grip succeeds", "0 1R 8S 9S 13S 10 1S", "violated 1/2"),
     ],
 )
 def test_follows(demand: str, runs: str, expected: str, verify: Verify) -> None:
     assert come_to(verify, demand, runs, samples("battery", {-1: 50, 5: 10, 25: 50})) == expected
+
+
+@pytest.mark.parametrize(
+    ("demand", "runs", "expected"),
+    [
+        ("each Move fails is followed by Pick starts within 20 ms", TWICE, "satisfied 0/1"),
+        ("each Move fails is followed by Pick starts within 19 ms", TWICE, "violated 1/1"),
+        ("each Move finishes is followed by Pick starts within 0 ms if low else 20 ms", TWICE, "violated 1/2"),
+        ("each Move halts is followed by Pick starts", TWICE, "never exercised 0/0"),
+        # One answer is enough for all events before it, in the order of the rows.
+        ("each Move starts is followed by Pick starts", TWICE, "satisfied 0/2"),
+        ("each Move succeeds is followed by Pick starts within 0 ms", TWICE, "satisfied 0/1"),
+        ("each Pick starts is followed by Move succeeds within 1 s", TWICE, "violated 1/1"),
+        ("each Move finishes is followed by Move succeeds", TWICE, "violated 1/2"),
+        ("each Move fails is followed by Move finishes within 20 ms", TWICE, "satisfied 0/1"),
+        ("each Move starts is followed by Move starts", TWICE, "violated 1/2"),
+        (
+            "each Move fails or Pick starts is followed by Pick succeeds or Move starts within 20 ms",
+            TWICE,
+            "satisfied 0/2",
+        ),
+        # Without an answer the run's end breaks it, and the log's end leaves it out.
+        ("each Move fails is followed by Alarm starts", TWICE, "violated 1/1"),
+        ("each Move fails is followed by Alarm starts within 1 min", TWICE, "violated 1/1"),
+        ("each Move fails is followed by Alarm starts within 40 ms", CUT, "never exercised 0/0 |1"),
+        ("each Move fails is followed by Alarm starts within 39 ms", CUT, "violated 1/1"),
+        ("each Move fails is followed by Alarm starts", CUT, "never exercised 0/0 |1"),
+        ("each Move starts is followed by Pick halts", UNWRITTEN, "violated 2/2"),
+        ("each Move starts is followed by Move halts within 29 ms", UNWRITTEN, "unknown 0/0 ?2"),
+        ("each Move starts is followed by Move halts within 50 ms", UNWRITTEN, "satisfied 0/2"),
+        ("each Move fails is followed by Pick starts within 20 ms", BACK, "never exercised 0/0"),
+        ("each Move starts is followed by Pick starts within 20 ms", BACK, "unknown 0/0 ?1"),
+        # Nodes of two uses of a subtree.
+        ("each Grip succeeds is followed by Put succeeds", "0 1R 8S 12S 10 9S 20 1S", "violated 1/2"),
+        ("each Grip succeeds is followed by Pick succeeds", "0 1R 8S 12S 10 4S 20 1S", "satisfied 0/2"),
+        # A condition: low from 5 to 25.
+        ("each Move starts is followed by low within 5 ms", TWICE, "satisfied 0/2"),
+        ("each Move starts is followed by low within 4 ms", TWICE, "violated 1/2"),
+        ("each Move starts is followed by when low within 5 ms", TWICE, "violated 1/2"),  # it is low already at 20
+        ("each Move finishes is followed by not low within 0 ms", TWICE, "violated 1/2"),
+        ("each Pick starts is followed by low within 20 ms", TWICE, "violated 1/1"),
+        ("each Pick starts is followed by low within 21 ms", TWICE, "never exercised 0/0"),  # the run ends before
+        ("each Pick starts is followed by low", TWICE, "violated 1/1"),
+        ("each Pick starts is followed by low", CUT, "never exercised 0/0 |1"),
+        ("each mission finishes is followed by not low", TWICE, "satisfied 0/1"),
+        ("each when low is followed by node Pick within 25 ms", TWICE, "satisfied 0/1"),
+        ("each when low is followed by Pick starts within 24 ms", TWICE, "violated 1/1"),
+        ("each Move starts is followed by Pick starts within 15 ms\nwhen low", TWICE, "satisfied 0/1"),
+        ("each Move starts is followed by Pick starts\nwhile low", TWICE, "never exercised 0/0"),
+        ("each Move fails is followed by Pick starts\nin at least 50 % of runs", TWICE, "satisfied 0/1"),
+        (
+            "each Move starts is followed by Pick starts within 20 ms\nin at least 50 % of occurrences",
+            TWICE,
+            "satisfied 1/2",
+        ),
+        (
+            "each Move starts is followed by Pick starts within 20 ms\nin at least 51 % of occurrences",
+            TWICE,
+            "violated 1/2",
+        ),
+    ],
+)
+def test_followed(demand: str, runs: str, expected: str, verify: Verify) -> None:
+    assert come_to(verify, demand, runs, samples("battery", {-1: 50, 5: 10, 25: 50})) == expected
+
+
+def test_what_is_counted_are_occurrences(verify: Verify) -> None:
+    found = clause(verify, "each Move starts is followed by Pick starts within 20 ms", TWICE)
+    assert (found["unit"], found["path"], found["counted"]) == ("occurrences", "Move::3, Pick::4", 2)
+    printed = verify.text("run.btlog", "--mission", "main.btq")
+    assert "1 of 2 occurrences" in printed
+
+
+@pytest.mark.parametrize(
+    ("csv", "expected", "why"),
+    [
+        ({}, "unknown 0/0 ?2", "no samples of `battery`"),
+        ({15: 50}, "violated 1/1 ?1", ""),  # unknown from 0 to 9
+        ({-1: 10, 15: 50}, "violated 1/2", ""),
+        ({-1: 10}, "satisfied 0/2", ""),
+        ({-1: 50}, "violated 2/2", ""),
+    ],
+)
+def test_a_condition_that_follows_is_measured(csv: dict[float, float], expected: str, why: str, verify: Verify) -> None:
+    level = f"{LEVEL} initially 10 %\ncontext low : battery < 20 %"
+    demand = "each Move starts is followed by battery < 20 % within 9 ms"
+    found = clause(verify, demand, TWICE, samples("battery", csv) if csv else None, level)
+    assert (count(found), found["why"]) == (expected, why)
 
 
 @pytest.mark.parametrize(
@@ -258,6 +355,19 @@ def test_follows(demand: str, runs: str, expected: str, verify: Verify) -> None:
         ("from Grip starts to Put succeeds takes at most 20 ms", "0 1R 8S 12S 10 9S 20 13S 1S", "satisfied 0/2"),
         ("from Grip starts to Pick succeeds takes at most 9 ms", "0 1R 8S 5 12I 12S 10 4I 4S 20 1S", "violated 1/2"),
         ("from Alarm starts to Grip succeeds takes at most 5 ms", "0 1R 5S 5 12S 10 8S 20 1S", "satisfied 0/1"),
+        ("from Move starts or Pick starts to Move fails or Pick succeeds takes at most 30 ms", TWICE, "satisfied 0/3"),
+        ("from Move starts or Pick starts to Move fails or Pick succeeds takes at most 29 ms", TWICE, "violated 1/3"),
+        ("from Pick starts or when low to Pick succeeds takes at most 20 ms", TWICE, "violated 1/2"),
+        (
+            "from Grip starts to Alarm starts or Put succeeds takes at most 10 ms",
+            "0 1R 8S 12S 10 9S 20 13S 1S",
+            "violated 1/2",
+        ),
+        (
+            "from Pick starts or Grip starts to Put succeeds takes at most 9 ms",
+            "0 1R 4R 8S 10 9S 20 13S 4S 1S",
+            "violated 2/2",
+        ),
         ("from when low to Pick succeeds takes at most 45 ms", TWICE, "satisfied 0/1"),
         ("from when low to when not low takes at most 19 ms", TWICE, "violated 1/1"),
         ("from Move starts to Pick succeeds takes at most 29 ms\nwhen low", TWICE, "violated 1/1"),

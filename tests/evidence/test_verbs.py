@@ -117,6 +117,14 @@ SAMPLES = {-5: 50, 10: 30, 20: 5, 25: 30, 31: 1}
         ("Move leaves battery >= 31 %", FAILED, "never exercised 0/0"),
         ("Move leaves battery >= 31 %", HALTED, "never exercised 0/0"),
         ("Move leaves battery >= 31 %", OPEN, "never exercised 0/0 |1"),
+        ("Move ends with battery >= 30 %", LONG, "satisfied 0/1"),
+        ("Move ends with battery >= 31 %", LONG, "violated 1/1"),
+        ("Move ends with battery >= 31 %", FAILED, "violated 1/1"),
+        ("Move ends with battery >= 30 %", FAILED, "satisfied 0/1"),
+        ("Move ends with battery >= 31 %", HALTED, "never exercised 0/0"),
+        ("Move ends with battery >= 31 %", UNWRITTEN, "never exercised 0/0"),
+        ("Move ends with battery >= 31 %", OPEN, "never exercised 0/0 |1"),
+        ("mission ends with battery >= 31 %", FAILED, "violated 1/1"),
         ("Move keeps battery >= 5 %", LONG, "satisfied 0/1"),
         ("Move keeps battery >= 6 %", LONG, "violated 1/1"),
         ("Move keeps battery >= 6 %", HALTED, "violated 1/1"),
@@ -124,8 +132,21 @@ SAMPLES = {-5: 50, 10: 30, 20: 5, 25: 30, 31: 1}
         ("Move keeps battery >= 6 %", OPEN, "violated 1/1"),
         ("Move keeps battery >= 5 %", OPEN, "never exercised 0/0 |1"),
         ("Move keeps battery < 50 %", LONG, "violated 1/1"),
+        ("Move keeps battery >= (40 % if battery > 45 % else 5 %)", LONG, "satisfied 0/1"),
+        ("Move keeps battery >= (40 % if battery > 20 % else 5 %)", LONG, "violated 1/1"),
         ("Move never battery < 5 %", LONG, "satisfied 0/1"),
         ("Move never battery < 6 %", LONG, "violated 1/1"),
+        ("Move never battery < 40 % for more than 20 ms", LONG, "satisfied 0/1"),
+        ("Move never battery < 40 % for more than 19 ms", LONG, "violated 1/1"),
+        ("Move never battery < 20 % for more than 5 ms", LONG, "satisfied 0/1"),
+        ("Move never battery < 20 % for more than 4 ms", LONG, "violated 1/1"),
+        ("Move never battery < 40 % for more than 19 ms", HALTED, "violated 1/1"),
+        ("Move never battery < 40 % for more than 20 ms", HALTED, "satisfied 0/1"),
+        ("Move never battery < 40 % for more than 19 ms", UNWRITTEN, "unknown 0/0 ?1"),
+        ("Move never battery < 40 % for more than 19 ms", OPEN, "violated 1/1"),
+        ("Move never battery < 40 % for more than 20 ms", OPEN, "never exercised 0/0 |1"),
+        ("Move never battery < 40 % for more than 15 ms\n while battery > 20 %", LONG, "satisfied 0/1"),
+        ("Move never battery < 40 % for more than 9 ms if battery < 10 % else 25 ms", LONG, "satisfied 0/1"),
         ("Move takes at most 29 ms if battery < 40 % else 31 ms", LONG, "satisfied 0/1"),
         ("Move takes at most 29 ms if battery > 40 % else 31 ms", LONG, "violated 1/1"),
     ],
@@ -596,19 +617,107 @@ def test_the_example_of_a_verb_is_a_clause_with_it(word: str) -> None:
     assert clause.row == word.removesuffix(" of time").removesuffix(" on average")
 
 
+@pytest.mark.parametrize(
+    ("bound", "expected"), [("19 ms", "violated 1/1"), ("25 ms", "unknown 0/0 ?1"), ("30 ms", "satisfied 0/1")]
+)
+def test_a_stretch_that_is_unknown_between(bound: str, expected: str, verify: Verify) -> None:
+    """It held from the start to 5 ms and from 10 ms to 30 ms; between, the sample is too old."""
+    demand = f"Move never battery < 60 % for more than {bound}"
+    assert count(verify.clause(demand, LONG, samples("battery", SAMPLES), before=FRESH)) == expected
+
+
+@pytest.mark.parametrize(
+    ("demand", "given", "runs", "expected", "why"),
+    [
+        ("keeps age(battery) <= 15 ms", SAMPLES, LONG, "satisfied 0/1", ""),
+        ("keeps age(battery) <= 9 ms", SAMPLES, LONG, "violated 1/1", "`age(battery)` was 15 ms"),
+        ("keeps age(battery) <= 9 ms", {-1: 50}, LONG, "violated 1/1", "`age(battery)` was 31 ms"),
+        ("keeps age(battery) <= 29 ms", {31: 50}, LONG, "violated 1/1", "`age(battery)` was 30 ms"),
+        ("keeps age(battery) <= 30 ms", {31: 50}, LONG, "satisfied 0/1", ""),
+        ("keeps age(battery) <= 9 ms", SAMPLES, OPEN, "violated 1/1", "`age(battery)` was 15 ms"),
+        ("keeps age(battery) <= 20 ms", SAMPLES, OPEN, "never exercised 0/0 |1", ""),
+        ("keeps age(battery) <= 9 ms", SAMPLES, UNWRITTEN, "unknown 0/0 ?1", ""),
+        ("needs age(battery) <= 4 ms", SAMPLES, LONG, "violated 1/1", "`age(battery)` was 5 ms at the start"),
+        ("ends with age(battery) < 6 ms", SAMPLES, LONG, "satisfied 0/1", ""),
+        (
+            "never age(battery) > 5 ms for more than 4 ms",
+            SAMPLES,
+            LONG,
+            "violated 1/1",
+            "`age(battery) > 5 ms` held for 10 ms",
+        ),
+        ("keeps age(battery) <= 10 ms\n while battery < 40 %", SAMPLES, LONG, "satisfied 0/1", ""),
+    ],
+)
+def test_ages(demand: str, given: dict[int, int], runs: str, expected: str, why: str, verify: Verify) -> None:
+    found = verify.clause(f"Move {demand}", runs, samples("battery", given), before=LEVEL)
+    assert (count(found), [each["why"] for each in found["violations"]]) == (expected, [why] if why else [])
+
+
+def test_the_age_of_a_signal_without_samples_is_unknown(verify: Verify) -> None:
+    found = verify.clause("Move keeps age(battery) <= 9 ms", LONG, before=LEVEL)
+    assert (found["verdict"], found["why"]) == ("unknown", "no samples of `battery`")
+
+
+@pytest.mark.parametrize(
+    ("demand", "runs", "expected", "not_applicable"),
+    [
+        ("Move takes at most 29 ms\n assuming battery >= 5 %", LONG, "violated 1/1", 0),
+        ("Move takes at most 29 ms\n assuming battery > 5 %", LONG, "never exercised 0/0", 1),
+        ("Move takes at most 29 ms\n assuming battery > 5 %", OPEN, "never exercised 0/0", 1),
+        ("Move takes at most 29 ms\n assuming battery > 5 %", UNWRITTEN, "unknown 0/0 ?1", 0),
+        ("Move takes at most 90 ms\n assuming battery > 40 %", f"{LONG} 50 1R 2R 90 2S 1S", "never exercised 0/0", 2),
+        ("Move takes at most 29 ms\n assuming battery >= 5 %\n in at least 50 % of runs", LONG, "violated 1/1", 0),
+        ("Move needs battery >= 5 %\n when battery > 60 %\n assuming battery > 5 %", LONG, "never exercised 0/0", 0),
+        ("mission succeeds\n assuming battery >= 5 %", FAILED, "violated 1/1", 0),
+        ("mission succeeds\n assuming battery > 5 %", FAILED, "never exercised 0/0", 1),
+        ("Move tries at most 0\n assuming battery >= 5 %", LONG, "violated 1/1", 0),
+        ("Move tries at most 0\n assuming battery > 5 %", LONG, "never exercised 0/0", 1),
+        (
+            "from Move starts to Pick succeeds takes at most 9 ms\n assuming battery > 5 %",
+            LONG,
+            "never exercised 0/0",
+            1,
+        ),
+    ],
+)
+def test_assumptions(demand: str, runs: str, expected: str, not_applicable: int, verify: Verify) -> None:
+    given = samples("battery", {-5: 50, 10: 30, 20: 5, 25: 30})
+    found = verify.clause(demand, runs, given, before=LEVEL)
+    assert (count(found), found.get("not_applicable")) == (expected, not_applicable)
+    if not_applicable:
+        assert found["why"] == f"its assumption did not hold ({not_applicable} time{'s' * (not_applicable > 1)})"
+
+
+def test_what_is_not_applicable_is_counted_apart(verify: Verify) -> None:
+    runs = f"{LONG} 50 1R 2R 90 2S 3S 1S"
+    given = samples("battery", {-5: 5, 40: 30})
+    verify.clause("Move takes at most 90 ms\n assuming battery > 5 %", runs, given, before=LEVEL)
+    output = verify.text("run.btlog", "--mission", "main.btq", "--signals", "samples.csv")
+    assert "held so far in 1 activation, worst 40 ms in run 2, 1 not applicable" in output
+
+
+def test_an_unknown_assumption_is_unknown(verify: Verify) -> None:
+    found = verify.clause("Move takes at most 29 ms\n assuming battery > 5 %", LONG, before=LEVEL)
+    assert (found["verdict"], found["why"]) == ("unknown", "no samples of `battery`")
+
+
 TOO_SHORT = "the run ended before the time was over"
 SIGNALS = (
     "signal battery : % from {battery}\nsignal energy : Wh from {energy} counter\nsignal speed : m/s from {speed}\n"
     "signal rear_is_clear : bool from {rear_is_clear}\nsignal lamp_on : bool from {lamp_on}\n"
-    "signal humans_near : bool from {humans_near}\n"
+    "signal humans_near : bool from {humans_near}\nsignal gripper_empty : bool from {gripper_empty}\n"
 )
 
 
 @pytest.mark.parametrize("word", VERBS)
 def test_every_verb_is_judged(word: str, verify: Verify) -> None:
-    example = re.sub("Batch|PickTray|SlotFree|Dock", "Pick", VERBS[word].example)
-    found = verify.clause(f"Move {example}", LONG, samples("battery", {-1: 50}), before=SIGNALS)
+    example = re.sub("Batch|PickTray|SlotFree|Recover|Dock", "Pick", VERBS[word].example)
+    demand = example if VERBS[word].operand == "answer" else f"Move {example}"
+    found = verify.clause(demand, LONG, samples("battery", {-1: 50}), before=SIGNALS)
     lacks = {"needs": "no samples of `rear_is_clear`", "never": "no samples of `lamp_on`"}
+    lacks["never for"] = "no samples of `lamp_on`"
+    lacks["ends with"] = "no samples of `gripper_empty`"
     lacks["uses on average"] = "no samples of `energy`"
     lacks["never of time"] = "no samples of `humans_near`"
     lacks["uses"] = "no samples of `energy`"

@@ -69,10 +69,23 @@ LINES: list[tuple[str, str, str, str]] = [  # verb, demand, runs, line
         "Pick::4: `low` did not hold in 75 % of the time, bound 90 %; Pick::4 ran 20 ms of it",
     ),
     (
+        "never for",
+        "Pick never battery < 20 % for more than 4 ms",
+        TWICE,
+        "Pick::4: `battery < 20 %` held for 5 ms, bound 4 ms;"
+        " sampled just before, while Pick::4 ran; Move::3 had failed before in this run",
+    ),
+    (
         "leaves",
         "Move leaves battery >= 60 %",
         TWICE,
         "Move::3: `battery` was 50 % at the end, bound 60 %; sampled 31 ms before",
+    ),
+    (
+        "ends with",
+        "Move ends with battery >= 60 %",
+        TWICE,
+        "Move::3: `battery` was 50 % at the end, bound 60 %; sampled 11 ms before",
     ),
     (
         "uses",
@@ -199,6 +212,38 @@ LINES: list[tuple[str, str, str, str]] = [  # verb, demand, runs, line
         "Pick follows when low",
         TWICE,
         "Pick::4: `when low` did not happen before it in the run; `battery` was sampled 31 ms before",
+    ),
+    (
+        "followed",
+        "each Move fails is followed by Pick starts within 9 ms",
+        TWICE,
+        "each Move fails: was followed after 20 ms, bound 9 ms; Move::3 ran 10 ms of it",
+    ),
+    (
+        "followed",
+        "each Pick starts is followed by Move starts",
+        TWICE,
+        "each Pick starts: had not been followed when the run ended; Move::3 had succeeded 20 ms before",
+    ),
+    (
+        "followed",
+        "each Pick starts is followed by Alarm starts or Move fails within 1 s",
+        TWICE,
+        "each Pick starts: had not been followed when the run ended; Alarm::5 had not started in the run",
+    ),
+    (
+        "followed",
+        "each Move starts is followed by low within 30 ms",
+        TWICE,
+        "each Move starts: was followed after 45 ms, bound 30 ms; "
+        "Move::3 ran 20 ms of it in 2 starts, 1 of them failed",
+    ),
+    (
+        "followed",
+        "each Move starts is followed by battery > 60 %",
+        TWICE,
+        "each Move starts: had not been followed when the run ended;"
+        " `battery` was sampled 5 ms before, while Pick::4 ran",
     ),
     (
         "from",

@@ -632,8 +632,8 @@ FROM_OTHER_LANGUAGES: list[tuple[str, str, str | None]] = [
         requirement("takes at most 3 s", "# status approved"),
     ),
     (
-        requirement("takes at most 3 s", "priority must"),
-        "5:5 error syntax-error «priority» `priority` is not in btq; nearest is `on violation` with what happens then",
+        requirement("takes at most 3 s", "importance must"),
+        "5:5 error syntax-error «importance» `importance` is not in btq; nearest is `priority` with a word",
         None,
     ),
     (

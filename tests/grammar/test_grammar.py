@@ -16,7 +16,8 @@ from seeds import seeds
 from btq_lang import grammar as productions
 from btq_lang.grammar.claims import HAPPENINGS, VERB_WORDS
 from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS
-from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS, HEADS
+from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS, HEADS, METADATA_HEADS
+from btq_lang.grammar.hazards import HAZARD_HEADS
 from btq_lang.grammar.item_words import ITEM_WORDS
 from btq_lang.parser import parse
 from btq_lang.syntax.tokens import DIRECTIONS, NODE_CLAUSES, SYMBOLS
@@ -41,6 +42,7 @@ WITHOUT_A_FUNCTION = {  # productions, and why
     "ReqHead": "of two forms, which `parse_requirement` and `parse_classic_requirement` read with their clauses",
     "Name": "a word of two kinds, which `Cursor.name` takes",
     "Cmp": "a set of words",
+    "Counted": "a set of words",
     "Func": "a set of words",
 }
 
@@ -101,6 +103,8 @@ def sentence(chance: random.Random) -> str:
             lines.append("    " * level + line.strip())
             line = ""
         else:
+            if word == "(":  # what is before it is no unit
+                line = re.sub(r"(?<=\d) (?:s|%|m/s)$", "", line)
             line += word if word == "::" or line.endswith("::") else f" {word}"
     return "\n".join(lines) + "\n"
 
@@ -159,6 +163,8 @@ def test_no_word_of_the_parser_is_left_out() -> None:
         *DIRECTIONS,
         *VERB_WORDS,
         *HEADS,
+        *METADATA_HEADS,
+        *HAZARD_HEADS,
         *HAPPENINGS,
         *EXPERIMENTS,
         *ACTIONS,

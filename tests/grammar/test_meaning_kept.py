@@ -12,7 +12,7 @@ from pathlib import Path
 
 from btq_lang.btcpp.importing import import_xml
 from btq_lang.parser import parse
-from btq_lang.syntax.tree import Word
+from btq_lang.syntax.tree import How, Word
 from btq_lang.util.record import fields_of
 
 HERE = Path(__file__).resolve().parent
@@ -128,6 +128,8 @@ def meaning(part: object) -> object:
         return [meaning(element) for element in part]
     if isinstance(part, str | int | None):
         return part
+    if isinstance(part, How) and len(part.ways) == 1 and part.ways[0].id is None:
+        return ["How", {"method": meaning(part.ways[0].method)}]  # 1.0 had one
     values = {name: getattr(part, name) for name in fields_of(part) if name not in ("start", "end")}
     return [
         type(part).__name__,

@@ -372,7 +372,6 @@ A_TIME = "expected a unit of time: ms, s, min, h"
 TITLE = "a title goes in quotes"
 ITEM = "expected an item: BehaviorTree, QualityReq, include, signal, …, found "
 A_FILE = "expected a file in quotes, found "
-TWO_QUALITIES = "write a second requirement for the other one, or choose the one that matters most"
 A_PORT = "expected a port (input, output or inout), metadata or xml, found "
 
 
@@ -458,7 +457,7 @@ A_PORT = "expected a port (input, output or inout), metadata or xml, found "
         ("QualityReq r\n    because people are near  # yes\n", "expected the reason in quotes, found `people`", None,
          'QualityReq r\n    because "people are near"  # yes\n'),
         ("QualityReq r\n    keeps avg(a) < 3\n",
-         "expected a function (change, count, max, mean, min, p95, stddev), found `avg`", None,
+         "expected a function (age, change, count, max, mean, min, p95, stddev), found `avg`", None,
          "QualityReq r\n    keeps mean(a) < 3\n"),
         ("signal a : m fresh 200 ms\n", "expected `within`, found `200 ms`", None,
          "signal a : m fresh within 200 ms\n"),
@@ -479,8 +478,9 @@ A_PORT = "expected a port (input, output or inout), metadata or xml, found "
         ("tree T\n    A\n", "unknown word `tree`; did you mean `BehaviorTree`?", None, "BehaviorTree T\n    A\n"),
         ('QualityReq REQ.001 : safety "t"\n', "this ID needs quotes", None, 'QualityReq "REQ.001" : safety "t"\n'),
         ("QualityReq 4711 : safety\n", "this ID needs quotes", None, 'QualityReq "4711" : safety\n'),
-        ("QualityReq r : safety, usability\n", "a requirement has one quality", TWO_QUALITIES, None),
-        ("QualityReq r : safety and usability\n", "a requirement has one quality", TWO_QUALITIES, None),
+        ("QualityReq r : safety, usability\n", "qualities are joined by `and`, not by `,`", None,
+         "QualityReq r : safety and usability\n"),
+        ("QualityReq r : safety and\n", "expected a quality, found the end of the line", None, None),
         ('QualityReq r "t" : safety\n', "a requirement's quality goes before its title", None, None),
         ("QualityReq r (x = 3 m)\n", "expected `:` and the parameter's unit, found `=`",
          "write its unit after `:`, and its default after that: `limit : m = 3 m`", None),
@@ -615,7 +615,7 @@ A_PORT = "expected a port (input, output or inout), metadata or xml, found "
         ("BehaviorTree t\n    A;\n", "unexpected `;`",
          "a line needs no sign at its end; comments begin with `#`", None),
         ("QualityReq r\n    keeps maen(a) < 3\n",
-         "expected a function (change, count, max, mean, min, p95, stddev), found `maen`", None,
+         "expected a function (age, change, count, max, mean, min, p95, stddev), found `maen`", None,
          "QualityReq r\n    keeps mean(a) < 3\n"),
         ("signal a : m conter\n", "expected the end of the line, found `conter`",
          "the order is: signal x : % from {x} level fresh within 5 s initially 100 %", "signal a : m counter\n"),

@@ -189,6 +189,12 @@ def test_broken_requirement(text: str, tree: str, problem: str) -> None:
         ("follows when a", "follows when a"),
         ("follows 'mission' halts", "follows 'mission' halts"),
         ("follows mission finishes", "follows (mission) finishes"),
+        ("follows a/b fails or c fails", "follows a/b fails or c fails"),
+        ("follows or succeeds or 'or' fails", "follows or succeeds or 'or' fails"),
+        (
+            "starts within 2 s after mission starts or a fails or when b or c",
+            "starts <= 2s after (mission) starts or a fails or when (or b c)",
+        ),
     ],
 )
 def test_verb(clause: str, shown: str) -> None:
@@ -211,6 +217,7 @@ def test_verb(clause: str, shown: str) -> None:
         ("every 'node'", "every 'node'"),
         ("from a starts to b succeeds", "from a starts to b succeeds"),
         ("from when a > 3 to mission finishes", "from when (a > 3) to (mission) finishes"),
+        ("from a starts or b starts to c fails or when d", "from a starts or b starts to c fails or when d"),
         ("sum of a, b/c, d", "sum of a, b/c, d"),
         ("at", "at"),
         ("'on'", "'on'"),
@@ -221,6 +228,44 @@ def test_verb(clause: str, shown: str) -> None:
 def test_subject(subject: str, shown: str) -> None:
     assert_clause(f"{subject} takes at most 3 s", f"<{shown}> takes <= 3s")
     assert_clause(f"{subject} keeps a", f"<{shown}> keeps a")
+
+
+@pytest.mark.parametrize(
+    ("clause", "shown"),
+    [
+        ("each a fails is followed by b starts", "<each a fails> followed b starts"),
+        ("each a/b fails is followed by 'c d'/e starts within 2 s", "<each a/b fails> followed <= 2s 'c d'/e starts"),
+        (
+            "each a fails or b fails is followed by c starts or when d",
+            "<each a fails or b fails> followed c starts or when d",
+        ),
+        ("each when a > 3 is followed by b within 2 s", "<each when (a > 3)> followed <= 2s b"),
+        ("each when a is followed by when b < 3 m within 2 s", "<each when a> followed <= 2s when (b < 3m)"),
+        (
+            "each mission starts is followed by a < 3 m and (b or node c) within 2 s if d else 3 s goal 1 s",
+            "<each (mission) starts> followed <= [2s if d, 3s else] (and (a < 3m) (or b (node c)))\n  goal 1",
+        ),
+        ("each a fails is followed by b on violation warn", "<each a fails> followed b\n  on violation warn"),
+        ("each a fails is followed by b starts takes at most 3 s", "<each a fails> followed b starts\n  takes <= 3s"),
+        # The verb of another clause, and no event.
+        (
+            "each a fails is followed by b starts within 2 s after c succeeds",
+            "<each a fails> followed b\n  starts <= 2s after c succeeds",
+        ),
+        ("each each starts is followed by followed starts", "<each each starts> followed followed starts"),
+        ("each 'is' starts is followed by is within 3 s", "<each 'is' starts> followed <= 3s is"),
+    ],
+)
+def test_what_follows_an_event(clause: str, shown: str) -> None:
+    assert_clause(clause, shown.replace("goal 1", "goal 1s"))
+
+
+@pytest.mark.parametrize("word", ["each", "is", "followed", "occurrences"])
+def test_words_of_later_versions_are_names(word: str) -> None:
+    assert_clause(f"{word} takes at most 3 s", f"<{word}> takes <= 3s")
+    assert_clause(f"follows {word} succeeds", f"follows {word} succeeds")
+    assert_clause(f"keeps {word}", f"keeps {word}")
+    assert_parse(f"BehaviorTree {word}\n  {word}", f"tree {word}\n  {word}")
 
 
 @pytest.mark.parametrize("verb", ["starts", "succeeds", "keeps", "takes"])
@@ -313,6 +358,68 @@ def test_a_verb_is_no_subject_without_quotes(verb: str) -> None:
             "follows a begins",
             "follows MISSING",
             "1:11 syntax-error «begins» expected starts, succeeds, fails, finishes or halts, found `begins`",
+        ),
+        (
+            "follows a or b fails",
+            "follows MISSING",
+            "1:11 syntax-error «or» expected starts, succeeds, fails, finishes or halts, found `or`",
+        ),
+        (
+            "follows a fails or",
+            "follows a fails or MISSING",
+            f"1:19 syntax-error «» expected an event: a node and what happens to it, {END}",
+        ),
+        (
+            "follows a fails || b fails",
+            "follows a fails or b fails",
+            "1:17 syntax-error «||» in conditions `||` is written `or`",
+        ),
+        (
+            "every a fails is followed by b starts",
+            "<each a fails> followed b starts",
+            "1:1 syntax-error «every» all occurrences of an event are written `each …`",
+        ),
+        (
+            "a fails is followed by b starts",
+            "",
+            "1:3 syntax-error «fails» expected `each` before `a fails`",
+        ),
+        (
+            "each a fails must be followed by b starts",
+            "<each a fails> followed b starts",
+            "1:14 syntax-error «must be followed by» this is written `is followed by`",
+        ),
+        (
+            "each a fails followed by b starts",
+            "<each a fails> followed b starts",
+            "1:14 syntax-error «followed by» this is written `is followed by`",
+        ),
+        (
+            "each a is followed by b starts",
+            "<each MISSING> followed b starts",
+            "1:8 syntax-error «is» expected starts, succeeds, fails, finishes or halts, found `is`",
+        ),
+        (
+            "each a fails is followed by",
+            "<each a fails> followed",
+            f"1:28 syntax-error «» expected {A_CONDITION}, {END}",
+        ),
+        (
+            "each a fails is followed by b within",
+            "<each a fails> followed <= MISSING b",
+            f"1:37 syntax-error «» expected {A_VALUE}, {END}",
+        ),
+        (
+            "whenever a fails, b starts",
+            "",
+            "1:1 syntax-error «whenever a fails, b starts» this clause is written "
+            "`each a fails is followed by b starts`",
+        ),
+        (
+            "after a succeeds then b starts within 3 s",
+            "",
+            "1:1 syntax-error «after a succeeds then b starts within 3 s» this clause is written "
+            "`each a succeeds is followed by b star…`",
         ),
         ("X", "", f"1:2 syntax-error «» expected a verb after `X` (takes, succeeds, needs, keeps, …), {END}"),
         ("X/", "", f"1:3 syntax-error «» expected a node, {END}"),
@@ -434,7 +541,7 @@ def test_clause(clause: str, shown: str) -> None:
         (
             "in at least 98 % of times",
             "odds >= 98%",
-            "1:21 syntax-error «times» expected activations, runs or time, found `times`",
+            "1:21 syntax-error «times» expected activations, runs, occurrences or time, found `times`",
         ),
         (
             "with probability 98 %",

@@ -50,7 +50,7 @@ BehaviorTree Far
 MAIN, LIB = FILES.split("//- lib.btq\n")
 
 
-FUNCTIONS = ("max()", "min()", "mean()", "p95()")
+FUNCTIONS = ("max()", "min()", "mean()", "p95()", "age()")
 CONDITION = ("low", "battery", "not", "node", *FUNCTIONS)
 SPEEDS = ("m/s", "kmh", "mph")
 DURATIONS = ("s", "ns", "us", "ms", "min", "h", "d", "week")
@@ -107,8 +107,17 @@ def typed(line: str) -> str:
         ('QualityReq a "t"\n    on violation $0', ("fail", "halt", "warn", "log")),
         ('QualityReq a "t"\n    verified by $0', ("monitor", "analysis", "test", "review")),
         ('QualityReq a "t"\n    uses at most 3 Wh of $0', ("battery",)),
-        ('QualityReq a "t"\n    keeps $0', ("low", "battery", "not", "node", "max()", "min()", "mean()", "p95()")),
+        ('QualityReq a "t"\n    keeps $0', ("low", "battery", "not", "node", *FUNCTIONS)),
         ('QualityReq a "t"\n    starts within 1 s after Dock $0', ("fails", "finishes", "halts", "starts", "succeeds")),
+        (
+            'QualityReq a "t"\n    starts within 1 s after Wait fails or Dock $0',
+            ("fails", "finishes", "halts", "starts", "succeeds"),
+        ),
+        ('QualityReq a "t"\n    from Wait fails or Dock starts $0', ("to", "or")),
+        ('QualityReq a "t"\n    each Wait fails $0', ("is followed by", "or")),
+        ('QualityReq a "t"\n    each Wait $0', ("fails", "finishes", "halts", "starts", "succeeds")),
+        ('QualityReq a "t"\n    each Wait fails is $0', ("followed by",)),
+        ('QualityReq a "t"\n    each Wait fails is followed $0', ("by",)),
         # In the brackets of a condition, closed or not: its parts, and no clause, for what is open goes on.
         ('QualityReq a "t"\n    keeps ($0', CONDITION),
         ('QualityReq a "t"\n    keeps low and (not ($0)', CONDITION),
@@ -231,6 +240,26 @@ def test_all_that_may_stand_here(line: str, labels: tuple[str, ...]) -> None:
         ('QualityReq a "t"\n    keeps (low) $0', ("and", "or", "takes at most"), ("battery", "not")),
         ("signal a : m/s $0", ("from {}", "level", "fresh within"), ("m",)),
         ('QualityReq a "t"\n    from $0', ("mission", "when", "Main", "MoveBase", "ToWard"), ("Sequence",)),
+        (
+            'QualityReq a "t"\n    follows Wait fails or $0',
+            ("mission", "when", "Main", "MoveBase", "ToWard"),
+            ("battery",),
+        ),
+        ('QualityReq a "t"\n    follows Wait fails $0', ("or", "while"), ("to", "battery")),
+        ('QualityReq a "t"\n    from Wait fails to Dock starts $0', ("or", "takes at most"), ("to",)),
+        ('QualityReq a "t"\n    each $0', ("mission", "when", "Main", "MoveBase", "ToWard"), ("battery",)),
+        (
+            'QualityReq a "t"\n    each Wait fails is followed by $0',
+            ("mission", "when", "low", "battery", "Main"),
+            ("to",),
+        ),
+        (
+            'QualityReq a "t"\n    each Wait fails is followed by Dock starts $0',
+            ("or", "within", "while"),
+            ("to", "by"),
+        ),
+        ('QualityReq a "t"\n    each Wait fails is followed by low $0', ("and", "or", "within", "while"), ("to", "by")),
+        ('QualityReq a "t"\n    each Wait fails is followed by Dock starts within $0', (), ("to", "by", "while")),
         ("BehaviorTree X\n    MoveBase  # btq: ignore[$0", ("syntax-error", "unknown-node"), ()),
         ("BehaviorTree X\n    MoveBase  # btq: ignore[unknown-node, unk$0]", ("unknown-port",), ()),
     ],

@@ -14,6 +14,7 @@ from btq_lang.checks import check
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.formatter import format_text
 from btq_lang.parser import parse
+from btq_lang.projects.external_files import ExternalFiles
 from btq_lang.workspace.file import File
 from btq_lang.workspace.loader import find_project, load
 from btq_lang.workspace.workspace import Workspace
@@ -47,6 +48,7 @@ def test_examples_are_found() -> None:
     assert [folder.name for folder in FOLDERS] == [
         "classic",
         "hospital",
+        "inspection",
         "laboratory",
         "navigation",
         "paper",
@@ -68,6 +70,8 @@ def test_parses(text: str) -> None:
 def test_checks_clean(folder: Path) -> None:
     """No finding at all; in classic files hints may say what the short form says better."""
     found = find_project(str(folder))
+    if found.project.imports:
+        found = ExternalFiles({}).read(found)
     loaded = load([str(folder)], found.project, includes)
     assert (found.problems, loaded.problems, loaded.damaged) == ((), (), ())
     workspace = Workspace.of(loaded.texts, found.project)

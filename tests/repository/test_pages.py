@@ -26,6 +26,7 @@ WRITERS = {
     "graph/mermaid.py": "Mermaid, in which only HTML ends a line",
     "graph/svg.py": "SVG, its links, its style sheet and the titles of boxes",
     "render/chart.py": "SVG, the titles of values and marks",
+    "simulator/nav2.py": "XML, in a message of Nav2",
     "trace/markdown.py": "Markdown, in which only HTML ends a line of a table",
     "trace/verdicts.py": "SVG, the titles of bars",
 }

@@ -89,7 +89,8 @@ def test_the_worked_examples_mean_what_they_say() -> None:
     assert rq5.goal.si == 54000.0
     span = one(found, "rq6").subject
     assert isinstance(span, Interval)
-    assert (span.first.happening, span.last.happening) == ("starts", "succeeds")
+    (first,), (last,) = span.first.atoms, span.last.atoms
+    assert (first.happening, last.happening) == ("starts", "succeeds")
     slow = applied(found, "slow")[1].requirement
     humans_near = found.contexts["humans_near"]
     assert humans_near is not None

@@ -266,6 +266,9 @@ def test_csv() -> None:
         "defined_line": "4",
         "verdict": "",
         "result": "",
+        "build": "",
+        **dict.fromkeys(("hazard", "severity", "external", "refines", "mitigates"), ""),
+        **{"origin": "", "priority": "", "verified_by": "", "approval": "open"},
     }
 
 
@@ -295,6 +298,9 @@ def test_json() -> None:
         "clauses_without_nodes": [],
         "nodes_without_qualities": ["n6", "n9"],
         "trees_without_qualities": ["Pause", "Bare"],
+        "hazards_without_requirements": [],
+        "requirements_without_verdicts": [],
+        "requirements_without_sources": [],
     }
     assert document["skills"] == {"own": 2, "above": 1, "none": 2}
     keys = {row["key"] for part in ("requirements", "qualities", "nodes") for row in document[part]}
@@ -561,7 +567,10 @@ def test_it_says_of_each_node_where_they_are_not_held_alike(tmp_path: Path, capf
         assert (out.count(monitored), out.count(enforced)) == (1, 1)
 
 
-CASES = [*(f"examples/{name}" for name in ("laboratory", "hospital", "navigation", "pick-and-place")), "worked"]
+CASES = [
+    *(f"examples/{name}" for name in ("laboratory", "hospital", "inspection", "navigation", "pick-and-place")),
+    "worked",
+]
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -698,7 +707,7 @@ BehaviorTree Main
             "csv",
             (
                 "requirement,r5,Heat safely,safety,safety,Heat,Main,Heat takes at most 40 s,enforced,,subject,",
-                "clause without node,r5,Heat safely,safety,safety,,,never force >= 50 N,,,,,,m.btq,2,,\n",
+                "clause without node,r5,Heat safely,safety,safety,,,never force >= 50 N,,,,,,m.btq,2,,,,,,,,,,,,open\n",
                 "hard requirement not enforced,r5,",
             ),
         ),

@@ -209,3 +209,59 @@ def test_evidence_that_cannot_be_read(folder: Path, capsys: pytest.CaptureFixtur
         "btq trace: kept: no verdicts are kept there; keep some with btq verify LOG --store kept",
         "btq trace: gone.btlog: cannot be read: No such file or directory",
     ]
+
+
+# ---- by build -------------------------------------------------------------------------------------------------------
+
+SLOW = "0 1R 2R 20 2S 3R 60 3F 1F"
+FAST = "0 1R 2R 20 2S 3R 30 3S 1S"
+
+
+@pytest.fixture
+def builds(folder: Path, capsys: pytest.CaptureFixture[str]) -> Path:
+    """The folder with a store of three builds: one violates `quick` and `alike`, one nothing, one has no label."""
+    for place, (label, runs) in enumerate({"v2": SLOW, "v1": FAST, "": FAST}.items()):
+        (folder / f"{place}.btlog").write_bytes(btlog(MAIN_XML, rows(runs), 1_700_000_000_000_000 - place * 10**10))
+        labelled = ("--label", label) if label else ()
+        main(["verify", f"{place}.btlog", "--store", "kept", *labelled])
+    capsys.readouterr()
+    return folder
+
+
+def test_a_store_with_labels_has_a_matrix(builds: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    document = json.loads(trace(capsys, "--evidence", "kept", "--format", "json"))
+    names = {each["key"]: each["id"] for each in document["requirements"]}
+    assert [
+        (build["label"], [(names[each["requirement"]], each["verdict"]) for each in build["verdicts"]])
+        for build in document["builds"]
+    ] == [
+        ("", [("quick", "satisfied"), ("alike", "satisfied"), ("looked_at", "open")]),
+        ("v1", [("quick", "satisfied"), ("alike", "satisfied"), ("looked_at", "open")]),
+        ("v2", [("quick", "violated"), ("alike", "violated"), ("looked_at", "open")]),
+    ]
+    lines = trace(capsys, "--evidence", "kept").splitlines()
+    start = next(index for index, line in enumerate(lines) if line.startswith("By build"))
+    assert [line.split() for line in lines[start : start + 5]] == [
+        ["By", "build", "(none)", "v1", "v2"],
+        ["---------", "---------", "---------", "--------"],
+        ["quick", "satisfied", "satisfied", "violated"],
+        ["alike", "satisfied", "satisfied", "violated"],
+        ["looked_at", "open", "open", "open"],
+    ]
+    markdown = trace(capsys, "--evidence", "kept", "--format", "markdown")
+    assert "| Requirement | (none) | v1 | v2 |" in markdown
+    assert "| quick | satisfied | satisfied | violated |" in markdown
+    written = csv.DictReader(io.StringIO(trace(capsys, "--evidence", "kept", "--format", "csv")))
+    assert [(row["requirement"], row["build"], row["verdict"]) for row in written if row["kind"] == "build"][:3] == [
+        ("quick", "", "satisfied"),
+        ("quick", "v1", "satisfied"),
+        ("quick", "v2", "violated"),
+    ]
+    page = trace(capsys, "--evidence", "kept", "--format", "html")
+    assert '<h2 id="h-builds">Requirements by build</h2>' in page
+
+
+def test_without_labels_there_is_none(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main(["verify", "run.btlog", "--store", "kept"])
+    assert json.loads(trace(capsys, "--evidence", "kept", "--format", "json"))["builds"] == []
+    assert "By build" not in trace(capsys, "--evidence", "kept")

@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 import test_config
+import test_external_requirements
 import test_factory_tables
 import test_project_evidence
 from hypothesis import given
@@ -18,6 +19,7 @@ from json_schema import violations
 
 from btq_lang.commands.init import FILES
 from btq_lang.workspace.config import KEYS, parse_project
+from btq_lang.workspace.external_requirements import KEYS as REQUIREMENT_KEYS
 from btq_lang.workspace.overrides import KEYS as OVERRIDE_KEYS
 from btq_lang.workspace.project_evidence import KEYS as EVIDENCE_KEYS
 from btq_lang.workspace.project_evidence import SOURCE_KEYS
@@ -81,6 +83,7 @@ def test_it_has_every_key_of_the_reader_with_a_line() -> None:
         (SCHEMA, KEYS),
         (definitions["evidence"], EVIDENCE_KEYS),
         (definitions["signal"], SOURCE_KEYS),
+        (definitions["requirements"], REQUIREMENT_KEYS),
         (definitions["overrides"]["items"], OVERRIDE_KEYS),
     ]
     for table, keys in tables:
@@ -105,7 +108,7 @@ def test_it_accepts_the_files_of_this_repository() -> None:
 
 def cases() -> Iterator[str]:
     """The files of the reader's own tests, right and wrong ones."""
-    for module in (test_config, test_factory_tables, test_project_evidence):
+    for module in (test_config, test_external_requirements, test_factory_tables, test_project_evidence):
         yield module.WHOLE
         yield from (text for text, _ in module.test_problems_and_their_places.pytestmark[0].args[1])
 

@@ -1,0 +1,78 @@
+"""Whether a requirement is approved as it is now.
+
+One invariant: of each person the last approval counts, and one without a fingerprint is for whatever the requirement
+means.
+"""
+
+from __future__ import annotations
+
+from typing import Literal, TypeAlias
+
+from btq_lang.catalog.name_kinds import Kind
+from btq_lang.requirements.definitions import requirement
+from btq_lang.requirements.fingerprint import added_since, fingerprint
+from btq_lang.requirements.model import ResolvedApproval, ResolvedRequirement
+from btq_lang.util.record import Record
+from btq_lang.workspace import inputs
+from btq_lang.workspace.queries import Store, on_circle
+from btq_lang.workspace.workspace import Workspace
+
+# open: not approved; suspect: what it means, or what it refines, has changed since.
+State: TypeAlias = Literal["open", "approved", "suspect"]
+
+
+class ApprovalState(Record):
+    """The state of a requirement.
+
+    Attributes:
+        fingerprint: of what it means now.
+        outdated: the approvals of something else.
+        changed: the requirements that it refines and that are suspect.
+    """
+
+    state: State
+    fingerprint: str = ""
+    outdated: tuple[ResolvedApproval, ...] = ()
+    changed: tuple[str, ...] = ()
+
+
+def approval_state(store: Store[Workspace], viewpoint: str, name: str) -> ApprovalState:
+    """The state of a requirement; open if it is not defined."""
+    resolved, _ = store.ask(requirement, viewpoint, name)
+    current = _fingerprint(store, viewpoint, resolved)
+    if resolved is None or not resolved.approvals:
+        return ApprovalState("open", current)
+    outdated = _outdated(resolved, current)
+    changed = tuple(other for other in resolved.refines if store.ask(is_suspect, viewpoint, other))
+    return ApprovalState("suspect" if outdated or changed else "approved", current, outdated, changed)
+
+
+@on_circle(False)
+def is_suspect(store: Store[Workspace], viewpoint: str, name: str) -> bool:
+    """Whether a requirement is approved, and what it means, or what it refines, has changed since."""
+    resolved, _ = store.ask(requirement, viewpoint, name)
+    if resolved is None or not resolved.approvals:
+        return False
+    is_outdated = bool(_outdated(resolved, _fingerprint(store, viewpoint, resolved)))
+    return is_outdated or any(store.ask(is_suspect, viewpoint, other) for other in resolved.refines)
+
+
+def _fingerprint(store: Store[Workspace], viewpoint: str, resolved: ResolvedRequirement | None) -> str:
+    definition = store.ask(inputs.definition, viewpoint, Kind.REQUIREMENT, resolved.name) if resolved else None
+    return fingerprint(store, definition[0], resolved) if definition is not None and resolved is not None else ""
+
+
+def _outdated(resolved: ResolvedRequirement, current: str) -> tuple[ResolvedApproval, ...]:
+    last = {approval.by: approval for approval in resolved.approvals}
+    return tuple(each for each in last.values() if each.fingerprint not in (None, current))
+
+
+def added_since_approval(store: Store[Workspace], viewpoint: str, name: str) -> str:
+    """The clause or the `apply` that is new since the first outdated approval of a requirement; empty if that is not
+    the difference."""
+    resolved, _ = store.ask(requirement, viewpoint, name)
+    definition = store.ask(inputs.definition, viewpoint, Kind.REQUIREMENT, name)
+    outdated = store.ask(approval_state, viewpoint, name).outdated
+    if resolved is None or definition is None or not outdated:
+        return ""
+    return added_since(store, definition[0], resolved, outdated[0].fingerprint or "")

@@ -1,0 +1,78 @@
+"""How a program ticks its tree, and how time passes between two ticks.
+
+Nothing happens between ticks that nothing awaits.  So once a tick has left everything as it was, those after it would
+do the same until a timer goes off or the world changes, and time jumps there.
+"""
+
+from __future__ import annotations
+
+from btq_lang.simulator.nodes import FAILURE, RUNNING, SUCCESS, Machine
+from btq_lang.simulator.ticking import execute_tick, halt_node, reset_status
+from btq_lang.simulator.timers import NEVER, advance, next_due, next_passing
+
+
+def tick_exactly_once(machine: Machine) -> int:
+    """Tick the tree; its result.
+
+    Raises:
+        EngineError: as in the engine; nothing is reset then.
+    """
+    result = execute_tick(machine, machine.root)
+    if result in (SUCCESS, FAILURE):
+        reset_status(machine, machine.root)
+    return result
+
+
+def tick_once(machine: Machine) -> int:
+    """Tick the tree, and again at once while it runs and a node asks for that; its result.
+
+    Raises:
+        EngineError: as in the engine; nothing is reset then.
+    """
+    result = execute_tick(machine, machine.root)
+    while result == RUNNING and machine.is_woken:
+        machine.is_woken = False
+        result = execute_tick(machine, machine.root)
+    if result in (SUCCESS, FAILURE):
+        reset_status(machine, machine.root)
+    return result
+
+
+def halt_tree(machine: Machine) -> None:
+    """Halt the root, and then each node, running or not."""
+    for node in (machine.root, *machine.nodes):
+        halt_node(machine, node)
+        if machine.dialect.is_old:
+            reset_status(machine, node)
+    reset_status(machine, machine.root)
+
+
+def tick_while_running(machine: Machine, limit: int, period: int = 10) -> int:
+    """Tick the tree until it has ended; its result, or RUNNING if it never ends, or not within a limit.
+
+    Args:
+        limit: in milliseconds.
+        period: the most that the program sleeps between two ticks, in milliseconds; a timer of the tree wakes it up.
+
+    Raises:
+        EngineError: as in the engine.
+    """
+    before: object = None
+    while (result := tick_once(machine)) == RUNNING and machine.now < limit:
+        after = machine.state()
+        wakes = next_due(machine)
+        changes = min(
+            [time for time in (machine.program.next_change(machine.now), next_passing(machine)) if time != NEVER],
+            default=NEVER,
+        )
+        if after != before:
+            before = after
+            step = machine.now + period
+            advance(machine, min(step, wakes) if wakes != NEVER else step)
+            continue
+        if wakes == changes == NEVER:
+            return RUNNING
+        due = machine.now - (machine.now - changes) // period * period if changes != NEVER else NEVER
+        advance(machine, min(time for time in (wakes, due) if time != NEVER))
+        before = None
+    return result

@@ -1,0 +1,58 @@
+"""What skills do: results, durations, answers and writes, one activation after another."""
+
+from __future__ import annotations
+
+import pytest
+
+from btq_lang.btcpp.reader import read
+from btq_lang.simulator.blackboard import STRING
+from btq_lang.simulator.drivers import tick_while_running
+from btq_lang.simulator.loading import load
+from btq_lang.simulator.nodes import FAILURE, RUNNING, SUCCESS, Machine
+from btq_lang.simulator.skills import Behavior, Given, Skills, Unanswered, Write
+from btq_lang.simulator.versions import Dialect
+
+DELIVER = (
+    '<Sequence><Cond name="ready"/><RetryUntilSuccessful num_attempts="3"><Act name="go"/></RetryUntilSuccessful>'
+    "<ScriptCondition code=\"place == 'B'\"/></Sequence>"
+)
+READY, GO = frozenset({2}), frozenset({4})
+
+
+def run(*givens: Given) -> tuple[int, Machine, Skills]:
+    document = read(f'<root BTCPP_format="4"><BehaviorTree ID="Main">{DELIVER}</BehaviorTree></root>').document
+    assert document is not None
+    skills = Skills(givens, ("Cond",))
+    machine = load([document], "Main", Dialect("4.10"), skills, lambda *_: None, stateful=("Act",))
+    skills.machine = machine
+    return tick_while_running(machine, 60_000), machine, skills
+
+
+def test_a_failure_and_then_a_success_that_writes() -> None:
+    fails, arrives = Behavior(FAILURE, 2_000, times=1), Behavior(SUCCESS, 3_000, (Write("place", "B", STRING),))
+    result, machine, skills = run(Given(GO, 1, (fails, arrives)), Given(READY, 1, answers=(True,)))
+    assert (result, machine.now, skills.assumed) == (SUCCESS, 5_000, set())
+
+
+def test_aspects_come_from_the_most_specific() -> None:
+    every, own = Given(GO, 0, (Behavior(FAILURE, 1_000),)), Given(GO, 1, (Behavior(takes=500),))
+    result, machine, _ = run(every, own, Given(READY, 1, answers=(True,)))
+    assert (result, machine.now) == (FAILURE, 1_500)
+
+
+def test_one_that_does_not_end() -> None:
+    result, machine, _ = run(Given(GO, 1, (Behavior(RUNNING),)), Given(READY, 1, answers=(True,)))
+    assert (result, machine.now) == (RUNNING, 10)
+
+
+def test_a_condition_is_never_assumed() -> None:
+    with pytest.raises(Unanswered) as raised:
+        run()
+    assert (raised.value.node.name, raised.value.at) == ("ready", 0)
+
+
+def test_an_action_is_assumed_and_listed() -> None:
+    *_, skills = run(Given(READY, 1, answers=(False, True)))
+    assert skills.assumed == set()
+    with pytest.raises(Exception, match="Variable not found: place"):
+        run(Given(READY, 1, answers=(True,)))

@@ -1,0 +1,112 @@
+"""What an overview has of hazards, and of where requirements are from, what they belong to and who approved them."""
+
+from __future__ import annotations
+
+import json
+
+from btq_lang.trace import write
+from btq_lang.trace.collect import collect
+from btq_lang.trace.overview import Overview
+from btq_lang.workspace.workspace import Workspace
+
+MISSION = """\
+hazard H1 "Collision  with a person"
+    source "FMEA-12"
+    severity high
+    because "people walk there"
+hazard H2
+QualityReq top "Top"
+QualityReq slow : safety and reliability.availability "Slow"
+    mission takes at most 1 h
+    source "ISO 13482, 5.10.2"
+    refines top, REQ-7
+    mitigates H1
+    priority must
+    verified by test "TC-12", monitor
+    approved by "Kim" on "2026-11-29" of "1:0123456789ab"
+    approved by "Lee" on "2026-11-30"
+BehaviorTree Main
+    A
+"""
+
+
+def overview(text: str = MISSION) -> Overview:
+    return collect([(Workspace.of({"main.btq": text}), ["main.btq"])])
+
+
+def test_requirements_and_hazards_in_json() -> None:
+    document = json.loads(write(overview(), "json"))
+    assert document["hazards"] == [
+        {
+            "key": "h1",
+            "id": "H1",
+            "title": "Collision with a person",
+            "severity": "high",
+            "sources": ["FMEA-12"],
+            "reasons": ["people walk there"],
+            "at": {"path": "main.btq", "line": 1, "column": 8},
+            "requirements": ["r2"],
+        },
+        {
+            "key": "h2",
+            "id": "H2",
+            "title": "",
+            "severity": None,
+            "sources": [],
+            "reasons": [],
+            "at": {"path": "main.btq", "line": 5, "column": 8},
+            "requirements": [],
+        },
+    ]
+    top, slow = document["requirements"]
+    names = ("sources", "refines", "mitigates", "priority", "verified_by", "approvals", "state")
+    assert {name: slow[name] for name in names} == {
+        "sources": ["ISO 13482, 5.10.2"],
+        "refines": ["top", "REQ-7"],
+        "mitigates": ["H1"],
+        "priority": "must",
+        "verified_by": [{"method": "test", "id": "TC-12"}, {"method": "monitor", "id": None}],
+        "approvals": [
+            {"by": "Kim", "on": "2026-11-29", "of": "1:0123456789ab"},
+            {"by": "Lee", "on": "2026-11-30", "of": None},
+        ],
+        "state": "suspect",
+    }
+    assert (top["state"], top["priority"], top["verified_by"]) == ("open", None, [])
+    assert slow["further_qualities"] == [{"name": "reliability.availability", "key": "q2"}]
+
+
+def test_clauses_as_typed() -> None:
+    assert overview().requirements[1].clauses == (
+        "mission takes at most 1 h",
+        'verified by test "TC-12", monitor',
+        'source "ISO 13482, 5.10.2"',
+        "refines top, REQ-7",
+        "mitigates H1",
+        "priority must",
+    )
+
+
+def test_a_requirement_counts_for_each_of_its_qualities_and_once_in_all() -> None:
+    document = overview()
+    counted = {total.id: (total.requirements, total.monitored) for total in document.totals if total.requirements}
+    assert counted == {"safety": (1, 1), "reliability": (1, 1), "": (1, 0)}
+    assert [(row.name, row.requirements) for row in document.qualities] == [
+        ("safety", ("r2",)),
+        ("reliability.availability", ("r2",)),
+    ]
+    assert "2 requirements (1 clause: 1 monitored)" in write(document, "table")
+
+
+def test_one_way_by_a_tool_is_enough_to_monitor() -> None:
+    ways = {
+        'test "TC-12", monitor': "monitored",
+        'test "TC-12", review': "reviewed",
+        "review": "reviewed",
+        "monitor": "monitored",
+    }
+    for written, way in ways.items():
+        row = overview(MISSION.replace('test "TC-12", monitor', written)).requirements[1]
+        assert (written, row.way) == (written, way)
+    row = overview(MISSION.replace(", monitor", ', review "R-3"')).requirements[1]
+    assert row.uses[0].clauses[0].why == 'verified by test "TC-12", review "R-3"'
