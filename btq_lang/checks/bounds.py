@@ -157,7 +157,7 @@ def _of_subject(view: View, claim: syntax.Claim) -> tuple[str, str] | None:
 
 def _of_event(view: View, claim: syntax.Claim) -> tuple[str, str] | None:
     """The message and the note for a claim about what happens after the mission has ended, or what runs before it."""
-    if VERBS[claim.verb.raw].operand == "answer":
+    if VERBS[claim.row].operand == "answer":
         return None
     event = claim.event if isinstance(claim.event, syntax.Event) else None
     for atom in claim.event.atoms if claim.event is not None else ():
