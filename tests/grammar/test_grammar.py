@@ -42,7 +42,6 @@ WITHOUT_A_FUNCTION = {  # productions, and why
     "ReqHead": "of two forms, which `parse_requirement` and `parse_classic_requirement` read with their clauses",
     "Name": "a word of two kinds, which `Cursor.name` takes",
     "Cmp": "a set of words",
-    "Counted": "a set of words",
     "Func": "a set of words",
 }
 
