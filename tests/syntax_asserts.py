@@ -20,6 +20,7 @@ from btq_lang.syntax.tree import (
     AnyEvent,
     Apply,
     Approval,
+    Average,
     Because,
     Between,
     Binary,
@@ -481,11 +482,18 @@ def _(clause: Claim) -> str:
         parts.append(show_condition(clause.condition))
     if clause.resource or verb == "uses":
         parts.append(f"of {show(clause.resource)}")
-    if clause.per or (verb == "runs" and not clause.every):
+    if clause.per or clause.form or (verb == "runs" and not clause.every):
         parts.append(f"per {show_path(clause.per) if isinstance(clause.per, Path) else show(clause.per)}")
-    if clause.event or verb in ("starts", "ends", "follows"):
+    if clause.of is not None:
+        parts.append(f"of {show_path(clause.of)}")
+    if clause.event or (verb in ("starts", "ends", "follows") and not clause.form):
         parts += ["after" if verb in ("starts", "ends") else "", show_event(clause.event)]
     return words(*parts)
+
+
+@show_clause.register
+def _(_: Average) -> str:
+    return "on average"
 
 
 @show_clause.register

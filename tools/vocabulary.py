@@ -17,7 +17,7 @@ from btq_lang.catalog.units import SYMBOLS as UNITS
 from btq_lang.catalog.verbs import words
 from btq_lang.grammar.claims import HAPPENINGS
 from btq_lang.grammar.claims import VERB_WORDS as VERBS_OF_SUBJECTS
-from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS
+from btq_lang.grammar.clauses import ACTIONS, AVERAGE, EXPERIMENTS, METHODS, TIME
 from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS, HEADS, METADATA_HEADS
 from btq_lang.grammar.hazards import HAZARD_HEADS
 from btq_lang.syntax.tokens import DIRECTIONS, NODE_CLAUSES, SYMBOLS
@@ -76,7 +76,9 @@ CLAUSE_WORDS = tuple(sorted(NODE_CLAUSES))
 VERB_WORDS = longest_first(VERBS_OF_SUBJECTS)
 ANSWERS = sorted(words(operands=("answer",)))
 HEAD_WORDS = longest_first((*HEADS, *METADATA_HEADS, *HAZARD_HEADS))
-REQUIREMENT_WORDS = longest_first((*VERB_WORDS, *ANSWERS, *HEAD_WORDS, *HAPPENINGS, *EXPERIMENTS, *PARTICLES))
+REQUIREMENT_WORDS = longest_first(
+    (*VERB_WORDS, *ANSWERS, *HEAD_WORDS, *HAPPENINGS, *EXPERIMENTS, TIME, AVERAGE, *PARTICLES)
+)
 OUTCOME_WORDS = longest_first((*ACTIONS, *METHODS))
 FUNCTION_WORDS = longest_first(FUNCTIONS)
 COMPARISON_SIGNS = longest_first(COMPARISONS)

@@ -324,21 +324,47 @@ def _uses(guard: ClauseGuard) -> None:
 
 def _tries(guard: ClauseGuard) -> None:
     """A counter of starts; where the clause says `per` a node, each start of that node resets it."""
+    count, most = _counter(guard)
+    code = f"(({count} + 1.0) {most})"
+    guard.wrap(CONDITION, "Sequence", guard.claim.head, before=(guard.condition("check", code),))
+    counter = guard.leaf("Script", "counter", f"{count} := ({count} + 1.0)")
+    guard.wrap(INSIDE, "Sequence", "counted", before=(counter,))
+    _reset(guard, count)
+
+
+def _results(guard: ClauseGuard) -> None:
+    """A counter of results, and a condition after a success; a failure that is one too many is the violation itself."""
+    count, most = _counter(guard)
+    attribute = _RECORDED_BY[guard.claim.head]
+    assert attribute is not None, "it records a result"
+    is_kept = f"({count} {most})"
+    if guard.claim.head != "fails":
+        guard.wrap(CHECK, "Sequence", "results", after=(guard.condition("check", is_kept),))
+    if guard.stop and guard.claim.head != "succeeds":
+        failed = f"{guard.stop} := ({guard.stop} || (!{is_kept}))"
+        guard.wrap(INSIDE, "Sequence", "failed", attributes=(("_onFailure", failed),))
+    guard.wrap(INSIDE, "Sequence", "counted", attributes=((attribute, f"{count} := ({count} + 1.0)"),))
+    _reset(guard, count)
+    if guard.claim.head != "succeeds" and not guard.stop:
+        guard.notes.append("a failure that is one too many is the violation itself")
+
+
+def _counter(guard: ClauseGuard) -> tuple[str, str]:
+    """The variable that counts, and how it is compared."""
     guard.refuse_scopes()
     bound = _upper_bound(guard)
     per = guard.claim.per
     holder = per.node if isinstance(per, NodeTarget) else None
     if isinstance(per, NodeTarget) and per.through:
         raise NotEnforced("its `per` path selects only some instances of the node")
-    count = guard.entry("count", "0.0", holder)
-    most = number_script(bound.value, None, guard.stored)
-    code = f"(({count} + 1.0) {bound.relation} {most})"
-    guard.wrap(CONDITION, "Sequence", "tries", before=(guard.condition("check", code),))
-    counter = guard.leaf("Script", "counter", f"{count} := ({count} + 1.0)")
-    guard.wrap(INSIDE, "Sequence", "counted", before=(counter,))
-    if holder is not None:
+    return guard.entry("count", "0.0", holder), f"{bound.relation} {number_script(bound.value, None, guard.stored)}"
+
+
+def _reset(guard: ClauseGuard, count: str) -> None:
+    """Let each start of the node after `per` set the counter to 0."""
+    if isinstance(guard.claim.per, NodeTarget):
         reset = guard.leaf("Script", "zero", f"{count} := {real(0.0)}")
-        guard.wrap(INSIDE, "Sequence", "per", before=(reset,), node=holder)
+        guard.wrap(INSIDE, "Sequence", "per", before=(reset,), node=guard.claim.per.node)
 
 
 def _follows(guard: ClauseGuard) -> None:
@@ -429,5 +455,7 @@ _BY_VERB: Final[dict[str, Callable[[ClauseGuard], None]]] = {
     "ends with": _ends_with,
     "uses": _uses,
     "tries": _tries,
+    "starts per": _tries,
+    **dict.fromkeys(("succeeds per", "fails per", "finishes per"), _results),
     "follows": _follows,
 }

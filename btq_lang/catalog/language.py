@@ -185,8 +185,12 @@ clause
         runs, or activations of a node, in which the condition does not hold all along are counted apart
     until | from Pick starts until Place succeeds | only between two events | \
         for `keeps` and `never`: only the time from an event until the next other one, or the end of the run
+    on average | on average | the mean | \
+        of `takes` and `uses`: the mean of all activations that succeed or fail keeps the bound, and not each of them
     in at least | in at least 98 % of activations | how often | \
         allows some violations; also `of runs`, of an event `of occurrences`, and `with probability >= 98 %`
+    of time | in at least 95 % of time | a share of the time | \
+        of `keeps` and `never`: in each run the condition may be broken for the rest of the time that the node runs
     with probability | with probability >= 98 % of runs | how often | allows some violations
     activations | in at least 98 % of activations | from its start to its end | each time that the node runs
     runs | in at least 98 % of runs | whole missions | each time that the mission runs

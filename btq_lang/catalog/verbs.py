@@ -14,7 +14,18 @@ from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     Operand: TypeAlias = Literal[
-        "duration", "deadline", "condition", "use", "count", "rate", "reaction", "event", "answer", "stretch", "visits"
+        "duration",
+        "deadline",
+        "condition",
+        "use",
+        "count",
+        "rate",
+        "failures",
+        "reaction",
+        "event",
+        "answer",
+        "stretch",
+        "visits",
     ]
     Judged: TypeAlias = Literal["at its start", "while it runs", "at its end", "over the run"]
     Limits: TypeAlias = Literal["", "completion", "success"]
@@ -27,8 +38,8 @@ class Verb(Record):
     Attributes:
         word: one, or the first word of its clauses and what tells them from those of another verb: `ends with`.
         operand: what it is followed by: a bound of a duration, perhaps a deadline, a condition, a bound of the use of a
-            signal, a bound of a count, a period or a rate, a deadline after an event, an event, an event or a condition
-            that answers one, a condition and how long it may hold, nodes.
+            signal, a bound of a count, a period or a rate, a bound of a failure rate, a deadline after an event, an
+            event, an event or a condition that answers one, a condition and how long it may hold, nodes.
         measures: what is compared with the bound, or evaluated.
         judged: when it is known whether an activation, or a run, satisfies or violates it.
         phrases: for each continuation: its words, an example, what it is about, and when a clause is violated.
@@ -93,6 +104,14 @@ _START: Final = "at its start"
 _MEANWHILE: Final = "while it runs"
 _END: Final = "at its end"
 _RUN: Final = "over the run"
+_PERIOD: Final = "a run, or, with the name of another node after `per`, in one of its activations"
+_LEAST: Final = ("at least", 12, "less")
+_MOST: Final = ("at most", 3, "more")
+_DURATION: Final[Operand] = "duration"
+_USE: Final[Operand] = "use"
+_CHECK: Final[Enforced] = "check"
+_REFUSAL: Final[Enforced] = "refusal"
+_NO_FORM: Final = (("", None),)  # it begins as the clauses of another verb
 _NOTHING_STARTS_NODES: Final = "BehaviorTree.CPP has no node that makes another one start in time"
 
 VERBS: Final = {
@@ -178,6 +197,29 @@ VERBS: Final = {
             enforced="guard",
             is_final=True,
         ),
+        *(
+            Verb(
+                word=f"{word} of time",
+                operand="condition",
+                measures="the share of the time that it runs",
+                judged=_RUN,
+                said=f"{how} in {{}} of the time",
+                phrases=(
+                    (
+                        f"{word} of time",
+                        f"{word} {condition} in at least 95 % of time",
+                        "a share of the time",
+                        f"in a run it is {truth} for a larger share of the time that the node runs",
+                    ),
+                ),
+                forms=_NO_FORM,
+                why_monitored="what share of its time that is, is known only when the run has ended",
+            )
+            for word, condition, how, truth in (
+                ("keeps", "battery >= 15 %", "held", "false"),
+                ("never", "humans_near", "did not hold", "true"),
+            )
+        ),
         Verb(
             word="never for",
             operand="stretch",
@@ -238,6 +280,26 @@ VERBS: Final = {
             forms=(("uses at most", "uses at most ${1:1 Wh} of ${0:signal}"),),
             enforced="guard",
         ),
+        *(
+            Verb(
+                word=f"{word} on average",
+                operand=operand,
+                measures=f"the mean of {measures}",
+                judged=_RUN,
+                phrases=((f"{word} on average", example, "a mean", f"the mean of {measures} is higher"),),
+                forms=_NO_FORM,
+                why_monitored="a mean is evaluated in the logs of many runs",
+            )
+            for word, operand, measures, example in (
+                (
+                    "takes",
+                    _DURATION,
+                    "the times to its success or failure",
+                    "takes at most 30 s on average",
+                ),
+                ("uses", _USE, "the uses to its success or failure", "uses at most 20 Wh of energy on average"),
+            )
+        ),
         Verb(
             word="tries",
             operand="count",
@@ -254,6 +316,45 @@ VERBS: Final = {
             ),
             forms=(("tries at most", "tries at most ${0:3}"),),
             enforced="refusal",
+        ),
+        *(
+            Verb(
+                word=f"{word} per",
+                operand="count",
+                measures=f"how often it {word}",
+                judged=_RUN,
+                said=f"{past} {{}}",
+                phrases=tuple(
+                    (f"{word} {bound}", f"{word} {bound} {number} per run", what, f"{event} {how} often in {_PERIOD}")
+                    for bound, number, how in bounds
+                ),
+                forms=tuple(
+                    (f"{word} {bound}", f"{word} {bound} ${{1:{number}}} per ${{0:run}}") for bound, number, _ in bounds
+                ),
+                enforced=enforced,
+            )
+            for word, past, what, event, enforced, bounds in (
+                ("succeeds", "succeeded", "successes", "the node succeeds", _CHECK, (_LEAST, _MOST)),
+                ("starts", "started", "starts", "the node starts", _REFUSAL, (_LEAST, _MOST)),
+                ("fails", "failed", "failures", "the node fails", _CHECK, (_MOST,)),
+                ("finishes", "finished", "results", "the node succeeds or fails", _CHECK, (_LEAST, _MOST)),
+            )
+        ),
+        Verb(
+            word="fails per time",
+            operand="failures",
+            measures="its failures in the time of all runs",
+            judged=_RUN,
+            phrases=(
+                (
+                    "fails per",
+                    "fails at most 1 per 200 h of Dock",
+                    "a failure rate",
+                    "the node fails more often, over the time of all runs, or over that of the node after `of`",
+                ),
+            ),
+            forms=_NO_FORM,
+            why_monitored="a failure rate is evaluated in the logs of many runs",
         ),
         Verb(
             word="runs",
@@ -343,9 +444,13 @@ VERBS: Final = {
         ),
     )
 }
+_OF_MEANS: Final = [verb for verb in VERBS if verb.endswith(" on average")]
+POOLED: Final = words(operands=("failures",)).union(_OF_MEANS)  # judged of all runs together
+COUNTING: Final = frozenset([verb.partition(" ")[0] for verb in words(operands=("count",)) if verb.endswith(" per")])
 _UNITS: Final[dict[str, str | None]] = {
     **dict.fromkeys((*words(operands=("duration",)), "within", "every", "per", "for"), "s"),
     **dict.fromkeys(("in", "probability", "confidence"), "%"),
     **dict.fromkeys(words(operands=("condition", "use", "count", "rate"))),
+    **dict.fromkeys(COUNTING),
     **dict.fromkeys(("while", "when", "assuming", "if", "context", "over", "goal", "initially")),
 }

@@ -103,12 +103,12 @@ def _value(amount: syntax.Amount) -> tuple[float, str]:
 def _count(
     requirement: syntax.Requirement, claim: syntax.Claim, amount: syntax.Amount, number: float, is_lower: bool
 ) -> Iterator[Diagnostic]:
-    what = "attempts" if VERBS[claim.verb.raw].operand == "count" else "starts"
+    what, is_rate = _NAMES.get(claim.row, "starts"), claim.row == "runs"
     has_scope = any(isinstance(clause, syntax.ScopeClause) for clause in requirement.clauses)
     notes: tuple[str, ...] = ()
     if number < 0 or number != int(number):
         message = f"expected a whole number of {what}, found `{_shown(amount)}`"
-        if isinstance(claim.per, syntax.Word) and number > 0:
+        if is_rate and number > 0:
             notes = ("write a whole number and a longer time: `runs at least 1 per 2 s`",)
     elif what == "attempts" and not is_lower and number < 1 and not has_scope:
         message = "a node that starts makes at least one attempt, so only a node that never starts keeps this bound"
@@ -117,7 +117,7 @@ def _count(
         return
     fixes: tuple[Fix, ...] = ()
     whole = max(1, ceil(number) if is_lower else floor(number))
-    if amount.word.kind == NUMBER and not amount.negative and not isinstance(claim.per, syntax.Word):
+    if amount.word.kind == NUMBER and not amount.negative and not is_rate:
         fixes = (write_fix(str(whole), amount.word.span),)
     yield Diagnostic("impossible-bound", amount.word.span, message, notes=notes, fixes=fixes)
 
@@ -152,7 +152,7 @@ def same_in_every_run(view: View, claim: syntax.Claim) -> Diagnostic | None:
 def _of_subject(view: View, claim: syntax.Claim) -> tuple[str, str] | None:
     """The message and the note for a claim about how often, or after what, a mission starts."""
     verb, event = claim.verb.raw, claim.event
-    if not (verb in _STARTS and _is_mission(view, claim.subject)):
+    if not (claim.row in _STARTS and _is_mission(view, claim.subject)):
         return None
     if event is None:
         message = f"a mission starts only once in a run, so `{verb}` does not apply to it"
@@ -165,7 +165,7 @@ def _of_subject(view: View, claim: syntax.Claim) -> tuple[str, str] | None:
 
 def _of_event(view: View, claim: syntax.Claim) -> tuple[str, str] | None:
     """The message and the note for a claim about what happens after the mission has ended, or what runs before it."""
-    if VERBS[claim.verb.raw].operand == "answer":
+    if VERBS[claim.row].operand == "answer":
         return None
     event = claim.event if isinstance(claim.event, syntax.Event) else None
     for atom in claim.event.atoms if claim.event is not None else ():
@@ -237,6 +237,10 @@ def _path_text(path: syntax.Path) -> str:
 
 
 _COUNTED: Final = ("count", "rate")
+_NAMES: Final = {
+    **{"tries": "attempts", "starts per": "attempts"},
+    **{"succeeds per": "successes", "fails per": "failures", "finishes per": "results"},
+}
 _TIMED: Final = ("duration", "deadline", "rate", "reaction", "answer", "stretch")
 # Verbs about when, and how often, a node starts.
 _STARTS: Final = words(operands=("count", "rate", "event")) | {"starts"}

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from btq_lang.catalog.verbs import POOLED
 from btq_lang.checks import lookups
 from btq_lang.checks.view import View, quality_named
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, Tag, replace_fix
@@ -15,6 +16,7 @@ from btq_lang.util.text import Span
 
 _ONCE: dict[type, str] = {
     syntax.FromUntil: "from when until when it must hold",
+    syntax.Average: "that the mean counts",
     syntax.Odds: "how often it must hold",
     syntax.Confidence: "a confidence",
     syntax.Window: "a window",
@@ -28,11 +30,11 @@ _ONCE: dict[type, str] = {
 def duplicate_clause(view: View) -> Iterator[Diagnostic]:
     """A second clause of a kind where only the first takes effect; an equal one can be removed."""
     for symbol, requirement in view.requirements:
-        first: dict[type, syntax.Clause] = {}
+        first: dict[object, syntax.Clause] = {}
         for clause in requirement.clauses:
             if isinstance(clause, syntax.Odds) and not _is_share(clause):
                 continue  # `succeeds in 45 s`, which the parser reports
-            if type(clause) in _ONCE and (counts := first.setdefault(type(clause), clause)) is not clause:
+            if type(clause) in _ONCE and (counts := first.setdefault(_kind(clause), clause)) is not clause:
                 # If one of several equal definitions lacked it, it would contradict the others.
                 is_alone = not view.ask(lookups.is_repeated, symbol.kind, symbol.name)
                 yield _duplicate(view, counts, clause, is_alone)
@@ -45,8 +47,10 @@ def _is_share(odds: syntax.Odds) -> bool:
 def clause_without_odds(view: View) -> Iterator[Diagnostic]:
     """A confidence, or a window of runs or activations, in a requirement without a required probability."""
     for _, requirement in view.requirements:
-        if any(isinstance(clause, syntax.Odds) for clause in requirement.clauses):
+        if any(isinstance(clause, syntax.Odds) and not clause.is_of_time for clause in requirement.clauses):
             continue
+        if any(map(_is_of_all_runs, requirement.clauses)):
+            continue  # a confidence counts there, too
         if view.is_torn(requirement.start, requirement.end):
             continue  # the odds may be on a line that could not be read
         for clause in requirement.clauses:
@@ -91,11 +95,23 @@ def unused_parameter(view: View) -> Iterator[Diagnostic]:
                 yield Diagnostic("unused-parameter", parameter.name.span, message, tags=(Tag.UNNECESSARY,))
 
 
+def _is_of_all_runs(clause: syntax.Clause) -> bool:
+    """Whether all runs are judged together because of a clause."""
+    return isinstance(clause, syntax.Average) or (isinstance(clause, syntax.Claim) and clause.row in POOLED)
+
+
+def _kind(clause: syntax.Clause) -> object:
+    """Equal for clauses of which the first counts; the share of time and the odds are two."""
+    return type(clause), isinstance(clause, syntax.Odds) and clause.is_of_time
+
+
 def _duplicate(view: View, counts: syntax.Clause, clause: syntax.Clause, is_alone: bool) -> Diagnostic:
     text = view.text
     stated, restated = (" ".join(text[repeated.start : repeated.end].split()) for repeated in (counts, clause))
     removals = [(restated, clause)] if stated == restated else [(restated, clause), (stated, counts)]
-    message = f"the requirement already states {_ONCE[type(clause)]}: `{stated}`"
+    is_of_time = isinstance(clause, syntax.Odds) and clause.is_of_time
+    what = "a share of time" if is_of_time else _ONCE[type(clause)]
+    message = f"the requirement already states {what}: `{stated}`"
     fixes = tuple(
         replace_fix(f"Remove `{words}`", with_blanks(text, removed), "", safe=is_alone and stated == restated)
         for words, removed in removals

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import prod
+from typing import Final
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import Dimension
@@ -132,7 +133,7 @@ def goal_beyond_bound(view: View, requirement: ResolvedRequirement) -> Iterator[
 def attempts_mismatch(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
     """`tries at most` and the number of attempts of Retry and Repeat do not match."""
     for _, claim, node, place in demanded.claims:
-        most = claim.highest if VERBS[claim.verb].operand == "count" else None
+        most = claim.highest if claim.verb in ("tries", "starts per") else None
         loops = _loops(node, claim.per.node) if most is not None and isinstance(claim.per, NodeTarget) else []
         if most is None or not loops:
             continue
@@ -182,7 +183,8 @@ def _limits(claim: ResolvedClaim) -> Iterator[_Limit]:
         yield ("duration",), claim.lowest, claim.highest
     elif claim.signal is not None:
         yield (claim.verb, claim.signal.name), claim.lowest, claim.highest
-    elif claim.head != "never" and isinstance(claim.condition, Compare):  # the condition is what must not hold
+    elif claim.limit is None and claim.head != "never" and isinstance(claim.condition, Compare):
+        # the condition of `never` is what must not hold, and a share of time has a limit
         yield from _compared(claim.verb, claim.condition)
 
 
@@ -240,3 +242,6 @@ def _dimension(claim: ResolvedClaim) -> Dimension | None:
     value = claim.limit.value if claim.limit is not None else None
     value = value.cases[0].value if isinstance(value, ResolvedTable) else value
     return value.unit.dimension if isinstance(value, Quantity) else None
+
+
+_WITHOUT_LIMITS: Final = ("never", "keeps of time", "never of time")  # what may, or need not, hold all the time

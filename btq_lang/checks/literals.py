@@ -179,7 +179,7 @@ def number_for_text(view: View) -> Iterator[Diagnostic]:
 
 
 def _quantity(target: _Target, value: Word, version: str) -> Iterator[Diagnostic]:
-    """A quantity where the port's unit is unknown or of another dimension, or the in_unit in that unit does not fit."""
+    """A quantity where the port's unit is unknown or of another dimension, or the number in that unit does not fit."""
     quantity = parse_quantity(value.raw)
     if quantity is None:
         return  # an unknown unit, which is reported
@@ -192,7 +192,7 @@ def _quantity(target: _Target, value: Word, version: str) -> Iterator[Diagnostic
                 "quantity-on-unitless-port",
                 value.span,
                 f"unknown unit of the port `{target.port}`",
-                notes=(f"its description is `{target.doc}`: write the number in that unit, `{number}`",),
+                notes=(f"its description is `{target.doc}`: write the number in that unit, `{in_unit}`",),
                 fixes=(replace_fix(f"Write `{in_unit}`", value.span, in_unit),),
             )
             return

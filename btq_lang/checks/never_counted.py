@@ -34,7 +34,7 @@ def never_counted(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
             continue  # it starts once in a run, which bounds.py reports
         if _is_open(view) or _reaches(view, holder, node) or _may_overlap(view, holder, node):
             continue
-        counted, holding = claim.text.partition(f" {claim.verb} ")[0], claim.text.rpartition(" per ")[2]
+        counted, holding = claim.text.partition(f" {claim.head} ")[0], claim.text.rpartition(" per ")[2]
         message = f"`{counted}` never starts while `{holding}` runs, so nothing is counted"
         related = (Related(holder.place, "named by `per`"),)
         tree = node.tree if node.parent is not None else None

@@ -249,7 +249,7 @@ def _without_subject(view: View, name: str) -> Iterator[Diagnostic]:
             subject = (
                 "the time from one event to another" if isinstance(claim.subject, Interval) else "a sum of durations"
             )
-            message = f"`{claim.verb}` is about a node, not about {subject}, so nothing can check it"
+            message = f"`{claim.head}` is about a node, not about {subject}, so nothing can check it"
             note = "write `takes` after it, or a node before the verb"
             yield _diagnostic(claim, message, note)
         elif resolved is not None and resolved.span is not None and not VERBS[claim.verb].is_of_moments:

@@ -278,6 +278,8 @@ class _Reader:
             values[f"parameter {parameter.name.text}"] = AspectValue(_meaning(parameter), text + default)
         for clause in requirement.clauses:
             aspect = clause.row if isinstance(clause, syntax.Claim) else _ASPECTS[type(clause)]
+            if isinstance(clause, syntax.Odds) and clause.is_of_time:
+                aspect = "share of time"
             aspect = numbered(aspect, values)
             values[aspect] = AspectValue(_meaning(clause), self._slice(clause.start, clause.end))
         return self._item("requirement", requirement.name, values, requirement)
@@ -398,6 +400,7 @@ _ASPECTS: Final[dict[type, str]] = {
     syntax.ScopeClause: "scope",
     syntax.FromUntil: "from … until",
     syntax.Assuming: "assumption",
+    syntax.Average: "on average",
     syntax.Odds: "odds",
     syntax.Confidence: "confidence",
     syntax.Window: "over last",

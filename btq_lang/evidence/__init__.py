@@ -14,12 +14,15 @@ One invariant: what a log does not show is unknown, with the reason; nothing is 
                    used up
     kept_spans.py  keeps and never from an event until another one
     over_run.py    what a clause judged over a run reads: what its nodes did, and when events happened
+    time_shares.py, exposure.py   a share of the time in which a node is active, and what a run adds to a failure rate
     scopes.py      which activations count
     outline.py     the clauses of a mission and their places, which identify them in a later text
     clause_findings.py   the counts of a clause, also in a sliding window, and its verdict
     clause.py, evaluate.py   a clause, and all clauses of a mission, judged while a log is read
     edges.py, margins.py, rejudging.py   the counts for every bound, and a clause judged again with an edited one
     tally.py, odds.py   judgements counted, and confidence limits
+    pools.py, rates.py, amounts.py, means.py   what all runs come to together: a failure rate, a mean
+    poisson.py, student.py   the confidence limits of these
     explain.py, explain_run.py   what led to a violation
     distribution.py, timeline.py   a histogram of values, and a run with its signals, for the page
     coverage.py    which nodes ran, how long they took and blocked the tree, and which contexts held

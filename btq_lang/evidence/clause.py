@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
-from btq_lang.catalog.verbs import VERBS
+from btq_lang.catalog.verbs import POOLED, VERBS
 from btq_lang.evidence import margins
 from btq_lang.evidence.clause_findings import ClauseFindings, verdict_of
 from btq_lang.evidence.conditions import Measure
@@ -28,6 +28,7 @@ from btq_lang.evidence.model import (
 )
 from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.over_run import OverRun, target_of
+from btq_lang.evidence.pools import pool_of
 from btq_lang.evidence.run_verbs import run_judge
 from btq_lang.evidence.scopes import in_scope, within
 from btq_lang.evidence.signals import Signals, UnknownValue
@@ -102,7 +103,7 @@ class JudgedClause:
         self.demand: Final = demand
         self.requirement: Final = requirement
         self.claim: Final = claim
-        self.findings: Final = ClauseFindings(requirement, limits)
+        self.findings: Final = ClauseFindings(requirement, limits, pool_of(claim, requirement.confidence))
         self._tally: Final = self.findings.tally
         self._margins: Final = self.findings.margins
         self._subject: Final = subject
@@ -170,8 +171,7 @@ class JudgedClause:
         for uids in self._own(joined) if self._is_judged else ():
             others = nearby(uids[0])
             needed = [target_of(event) for event in self._events if event.condition is None]
-            if isinstance(self.claim.per, NodeTarget):
-                needed.append(self.claim.per)
+            needed += [node for node in (self.claim.per, self.claim.of) if isinstance(node, NodeTarget)]
             needed += [node.target for visit in self.claim.visits for node in visit.nodes]
             instances = [others.find(target) for target in needed]
             lost = [uids_of_target for uids_of_target in instances if isinstance(uids_of_target, UnknownValue)]
@@ -516,7 +516,10 @@ class JudgedClause:
         if isinstance(subject, DurationSum):
             uids = [uid for target in subject.targets for uid in self._instances(joined, target)]
             return [tuple(uids)] if uids and not self.findings.missing else []
-        return [(uid,) for uid in self._instances(joined, _node_of(subject))]
+        own = self._instances(joined, _node_of(subject))
+        if VERBS[self.claim.verb].operand == "failures":  # together, for they share the exposure
+            return [tuple(own)] if own else []
+        return [(uid,) for uid in own]
 
     def _instances_of(self, joined: Joined, event: ResolvedEvent | ResolvedAnyEvent) -> Iterable[int]:
         """The uids of the nodes of an event; that of the root for a condition."""
@@ -551,11 +554,13 @@ class JudgedClause:
         subjects = (subject, *(event.subject for event in self._events))
         if any(isinstance(each, MissionRun) and each.node is None for each in subjects):
             return "the mission has no known main tree"
+        if self.claim.verb in POOLED and self.findings.pool is None:
+            return "its bound depends on the situation, and all runs are judged together"
         if self._judge is None and self._judge_run is None:
             measured = "the time from one event to another" if isinstance(subject, Interval) else "a sum of durations"
             if self.requirement.span is not None:
                 measured = "the time from one event until another"
-            return f"`{self.claim.verb}` cannot be judged of {measured}"
+            return f"`{self.claim.head}` cannot be judged of {measured}"
         return ""
 
     def remarks(self, tree: LoggedTree, keeping: Collection[int]) -> Iterator[str]:
@@ -585,7 +590,10 @@ class JudgedClause:
         if verdict == NEVER and findings.missed and self.claim.event is not None:
             event = self.claim.text.partition(" after ")[2].removeprefix("when ")
             why = f"it was not running when {event} ({counted(findings.missed, 'time')})"
-        is_of_run = VERBS[self.claim.verb].operand == "count" and self.claim.per is None
+        verb = VERBS[self.claim.verb]
+        is_share = verb.operand == "condition" and verb.judged == "over the run"
+        is_of_run = is_share or (verb.operand == "count" and self.claim.per is None)
+        is_pooled = self.claim.verb in POOLED and self._judge_run is not None
         is_once_a_run = isinstance(self._subject, DurationSum) or (is_of_run and len(findings.paths) == 1)
         of_each: Literal["activations", "occurrences"] = "activations"
         if isinstance(self._subject, ResolvedEachEvent):
@@ -596,7 +604,7 @@ class JudgedClause:
             of=self.claim.subject_text if isinstance(self._subject, Interval | DurationSum | ResolvedEachEvent) else "",
             verdict=verdict,
             why=why,
-            unit="runs" if tally.counts_runs or is_once_a_run else of_each,
+            unit="runs" if tally.counts_runs or is_once_a_run or is_pooled else of_each,
             confidence=self.requirement.confidence,
             histogram=tally.distribution.histogram(self.marks()),
             timeline=findings.timeline if verdict == VIOLATED else None,

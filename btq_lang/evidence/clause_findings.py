@@ -20,6 +20,7 @@ from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.odds import Limits
+    from btq_lang.evidence.pools import Pool
     from btq_lang.evidence.verbs import Judgement
     from btq_lang.evidence.verdicts import CauseLink, Timeline, Verdict
     from btq_lang.requirements.model import ResolvedOdds, ResolvedRequirement, ResolvedWindow
@@ -31,6 +32,7 @@ class ClauseFindings:
     """The counts of a clause in some logs; they refer to no text, so they may go to another process.
 
     Attributes:
+        pool: of a clause about all runs together; else None.
         paths: of its nodes, as an ordered set.
         missing: why it cannot be judged at all its nodes; empty if it can.
         has_run: whether one of its nodes has.
@@ -39,9 +41,13 @@ class ClauseFindings:
         left_out: as `failed`, `halted`, `idle` and `not_applicable` of `ClauseVerdict`.
     """
 
-    def __init__(self, requirement: ResolvedRequirement, limits: Limits) -> None:
+    def __init__(self, requirement: ResolvedRequirement, limits: Limits, pool: Pool | None = None) -> None:
+        """Count nothing yet; `pool`: as of `Tally`."""
+        self.pool: Final = pool
         odds, confidence, window = requirement.odds, requirement.confidence, requirement.window
-        self.tally: Final = Tally(odds, confidence, limits) if window is None else Recent(window, odds, confidence)
+        self.tally: Final = (
+            Tally(odds, confidence, limits, pool=pool) if window is None else Recent(window, odds, confidence, pool)
+        )
         self.margins: Final = Margins(odds is not None and odds.experiments == "runs")
         self.paths: Final[dict[str, None]] = {}
         self.missing = ""
@@ -77,7 +83,8 @@ def verdict_of(tally: Tally, missing: str, has_run: bool) -> tuple[Verdict, str]
         if tally.cut_off:
             return NEVER, "the log ends before it does"
         return NEVER, "nothing that it is about happened in any run" if has_run else "it did not start in any run"
-    return verdict, tally.why if verdict in (UNKNOWN, UNDECIDED) else ""
+    why = tally.why if verdict in (UNKNOWN, UNDECIDED) else ""
+    return verdict, why or (tally.pool.shown().text if tally.pool is not None and verdict == UNKNOWN else "")
 
 
 class Recent:
@@ -85,8 +92,15 @@ class Recent:
     logs.
     """
 
-    def __init__(self, window: ResolvedWindow, odds: ResolvedOdds | None, confidence: float | None) -> None:
+    def __init__(
+        self,
+        window: ResolvedWindow,
+        odds: ResolvedOdds | None,
+        confidence: float | None,
+        pool: Pool | None = None,
+    ) -> None:
         self.cut_off = 0
+        self._pool: Final = pool
         self._window: Final = window
         self._odds: Final = odds
         self._confidence: Final = confidence
@@ -130,7 +144,8 @@ class Recent:
     def result(self) -> Tally:
         """The tally of the judgements in the window."""
         is_of_odds = self._odds is None or self._odds.experiments == self._window.experiments
-        tally = Tally(self._odds, self._confidence, "window", self._window.count if is_of_odds else None)
+        pool = self._pool.emptied() if self._pool is not None else None
+        tally = Tally(self._odds, self._confidence, "window", self._window.count if is_of_odds else None, pool)
         tally.cut_off = self.cut_off
         for run, judgements in self._kept:
             for entry in judgements:

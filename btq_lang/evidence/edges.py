@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from btq_lang.catalog.verbs import VERBS, words
+from btq_lang.catalog.verbs import POOLED, VERBS, words
 from btq_lang.evidence.conditions import MIRRORED, OPPOSITE
 from btq_lang.requirements.model import (
     Aggregate,
@@ -64,6 +64,8 @@ def edge_of(claim: ResolvedClaim, subject: Subject | None, requirement: Resolved
     if isinstance(subject, DurationSum | ResolvedEachEvent):
         return None  # parts of a sum, and earlier answers, may be unknown
     if claim.limit is not None:
+        if claim.verb in POOLED:
+            return None  # all runs decide together
         if VERBS[claim.verb].operand == "count" and requirement.scopes:
             return None  # starts may be unknown
         if claim.signal is not None and claim.signal.behaviour == "level":

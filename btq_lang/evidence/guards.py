@@ -153,8 +153,9 @@ def _guard(tree: LoggedTree, uid: int, condition: int, requirement: str) -> Guar
     checked = _CHECKED.get(purpose)
     if checked is not None:
         return Guard(path, requirement, frozenset([checked]), checks=True, halts=False)
-    return Guard(path, requirement, words(enforced="refusal") & {purpose}, halts=False)
+    return Guard(path, requirement, words(enforced="refusal") & {_REFUSED.get(purpose, purpose)}, halts=False)
 
 
 # The last word in the name of a Sequence that checks a success, and the verb of its clause.
 _CHECKED: Final = {"leaves": "leaves", "ends": "ends with", "used": "uses"}
+_REFUSED: Final = {"starts": "starts per"}

@@ -12,6 +12,7 @@ from btq_lang.evidence.verdicts import (
     CauseLink,
     ClauseVerdict,
     Measures,
+    Pooled,
     RequirementLinks,
     RequirementVerdict,
     RunValue,
@@ -102,7 +103,7 @@ def _requirement(requirement: RequirementVerdict, mission: MissionVerdicts) -> J
 
 def _clause(clause: ClauseVerdict) -> Json:
     return {
-        **_fields(clause, exclude=("of", "histogram", "timeline", "measures", "by_run")),
+        **_fields(clause, exclude=("of", "histogram", "timeline", "measures", "by_run", "pooled")),
         "worst": _fields(clause.worst) if clause.worst is not None else None,
         "bounded": _fields(clause.bounded) if clause.bounded is not None else None,
         "limits": clause.limits if clause.interval is not None else None,
@@ -116,6 +117,7 @@ def _clause(clause: ClauseVerdict) -> Json:
             }
             for violation in clause.violations
         ],
+        **({"pooled": _fields(clause.pooled)} if clause.pooled is not None else {}),
         **({"by_run": [*map(_run_value, clause.by_run)]} if clause.by_run else {}),
         **({"measures": _measures(clause.measures)} if clause.measures is not None else {}),
     }
@@ -237,6 +239,7 @@ def _read_clause(data: dict[str, Any]) -> ClauseVerdict:
         "violations": tuple(map(_read_violation, data["violations"])),
         "by_run": tuple(map(_read_run_value, data.get("by_run", ()))),
         "histogram": None,
+        "pooled": Pooled(**data["pooled"]) if "pooled" in data else None,
         "measures": _read_measures(data["measures"]) if "measures" in data else None,
     }
     return ClauseVerdict(**fields)

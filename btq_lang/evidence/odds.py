@@ -25,7 +25,7 @@ def lower_limit(k: int, n: int, confidence: float, limits: Limits = "one look") 
         return 0.0
     if limits == "every look":
         return _lower_at_every_look(k, n, confidence)
-    return _root(lambda p: beta_cdf(p, k, n - k + 1) - (1 - confidence))
+    return root(lambda p: beta_cdf(p, k, n - k + 1) - (1 - confidence))
 
 
 def upper_limit(k: int, n: int, confidence: float, limits: Limits = "one look") -> float:
@@ -84,10 +84,10 @@ def _lower_at_every_look(k: int, n: int, confidence: float) -> float:
     large at most as often as the confidence leaves.
     """
     least = lgamma(k + 1) + lgamma(n - k + 1) - lgamma(n + 2) + log1p(-confidence)
-    return _root(lambda p: k * log(p) + (n - k) * log1p(-p) - least if p * n < k else inf)
+    return root(lambda p: k * log(p) + (n - k) * log1p(-p) - least if p * n < k else inf)
 
 
-def _root(function: Callable[[float], float]) -> float:
+def root(function: Callable[[float], float]) -> float:
     """The root of an increasing function on [0, 1]."""
     low, high = 0.0, 1.0
     while (middle := (low + high) / 2) not in (low, high):

@@ -93,7 +93,8 @@ def _again(demand: Demand, clause: ClauseVerdict, edge: Edge | None) -> Shown:
     odds_now = (odds.relation, odds.probability) if odds is not None else None
     if is_same_bound and (odds_now, confidence) == (measures.odds, clause.confidence):
         return Shown(demand, clause, clause.violated)
-    if demand.requirement.window is not None or (not is_same_bound and measures.margins is None):
+    is_pooled = clause.pooled is not None
+    if is_pooled or demand.requirement.window is not None or (not is_same_bound and measures.margins is None):
         return Shown(demand, None)
     if is_same_bound or edge is None or measures.margins is None:
         return Shown(demand, _with_counts(demand, clause, measures, None), clause.violated)

@@ -15,10 +15,12 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.conditions import Measure, compared, truth
+from btq_lang.evidence.exposure import rate
 from btq_lang.evidence.kept_spans import kept_in_spans
 from btq_lang.evidence.model import UNKNOWN_BEGIN, UNKNOWN_END, Activation
 from btq_lang.evidence.over_run import Happening, NextOf, OverRun, Stretch, is_never_at_once, next_finder
 from btq_lang.evidence.signals import UnknownValue
+from btq_lang.evidence.time_shares import of_time
 from btq_lang.evidence.verbs import OUT, Judgement, between, is_same
 from btq_lang.evidence.visits import visits
 from btq_lang.requirements.model import (
@@ -267,11 +269,15 @@ def _follows(claim: ResolvedClaim, run: OverRun) -> Judgements:
 
 
 def _tries(claim: ResolvedClaim, run: OverRun) -> Judgements:
-    """`tries at most m per P`: how often a node starts in each activation of another; without `per`, in the run."""
+    """`tries at most m per P`, `fails at most m per P`: how often a node starts, or ends in this way, in each
+    activation of another; without `per`, in the run.
+    """
     assert claim.limit is not None, "a number of tries has a bound"
     is_upper = claim.limit.relation in ("<=", "<")
-    starts = run.starts()
-    moments = [start.shown for start, _ in starts]
+    results = _RESULTS.get(claim.verb)
+    every = run.starts()
+    starts = [start for start in every if start[0].outcome in results] if results is not None else every
+    moments = [start.ended if results is not None else start.shown for start, _ in starts]
     periods = run.observed.nodes.activations(claim.per) if isinstance(claim.per, NodeTarget) else [run.root]
     for refusal in run.refused:
         if not any(period.shown <= refusal.at <= period.ended for period in periods):
@@ -279,13 +285,16 @@ def _tries(claim: ResolvedClaim, run: OverRun) -> Judgements:
     for period in periods:
         inside = starts[bisect_left(moments, period.shown) : bisect_right(moments, period.ended)]
         refused = [refusal for refusal in run.refused if period.shown <= refusal.at <= period.ended]
-        if not inside and not refused and is_upper:
+        active = inside
+        if results is not None:  # without any result, too
+            active = [each for each in every if each[0].shown <= period.ended and period.shown <= each[0].ended]
+        if not active and not refused and is_upper:
             yield OUT
             continue
         least = _number(claim, run, period, [start for start, counts in inside if counts is True], refused)
         most = _number(claim, run, period, [start for start, _ in inside], refused)
-        reasons = [counts.why for _, counts in inside if isinstance(counts, UnknownValue)]
-        has_none = is_upper and not refused and len(reasons) == len(inside)  # perhaps: then the period does not count
+        reasons = [counts.why for _, counts in active if isinstance(counts, UnknownValue)]
+        has_none = is_upper and not refused and len(reasons) == len(active)  # perhaps: then the period does not count
         is_open = least is None or most is None or least.holds is most.holds
         if has_none or (least is None and most is not None) or not is_open:
             yield Judgement(None, period.end, reasons[0])
@@ -321,7 +330,7 @@ def _number(
     bound = tried.bound.si
     breaking = max(floor(bound) if claim.limit.relation != "<" else ceil(bound) - 1, 0)
     if holds is False and tried.is_upper and breaking < len(starts):
-        decided_at = starts[breaking].begin
+        decided_at = starts[breaking].end if claim.verb in _RESULTS else starts[breaking].begin
     sentence = VERBS[claim.verb].said.replace("{}", counted(len(starts), "time"))
     if refused:
         sentence += f", and its guard at {refused[0].guard.path} refused {len(refused)} more"
@@ -494,12 +503,17 @@ def _sum(claim: ResolvedClaim, run: OverRun, starts: Sequence[Activation], total
     return Judgement(holds, run.root.end, sentence, summed, run.root.begin, starts) if holds is not None else None
 
 
+# The outcomes that are counted, where starts are not.
+_RESULTS: Final = {"succeeds per": "S", "fails per": "F", "finishes per": "SF"}
 JUDGES: Final[dict[str, RunJudge]] = {
     "starts": _starts,
     "ends": _ends,
     "follows": _follows,
     "followed": _followed,
-    "tries": _tries,
+    **dict.fromkeys(("tries", "starts per", *_RESULTS), _tries),
     "runs": _runs,
     "visits": visits,
+    "fails per time": rate,
+    "keeps of time": of_time,
+    "never of time": of_time,
 }

@@ -7,14 +7,24 @@ from collections.abc import Mapping
 from typing import Final
 
 from btq_lang.evidence.tally import USUAL_CONFIDENCE
-from btq_lang.evidence.verdicts import NEVER, OPEN, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, ClauseVerdict, Violation
+from btq_lang.evidence.verdicts import (
+    NEVER,
+    OPEN,
+    SATISFIED,
+    UNDECIDED,
+    UNKNOWN,
+    VIOLATED,
+    ClauseVerdict,
+    Pooled,
+    Violation,
+)
 from btq_lang.evidence.wording import clock_time, duration, share
 from btq_lang.util.text import counted
 
 
 def result(clause: ClauseVerdict) -> str:
     """The counts, and how far the worst measure is from its bound."""
-    parts = [_counted(clause)]
+    parts = [_counted(clause) if clause.pooled is None or clause.verdict == NEVER else _pooled(clause, clause.pooled)]
     if clause.worst is not None and clause.interval is None and clause.verdict != UNKNOWN:
         run = clause.worst.run
         worst = f"worst {clause.worst.text} in run {run}" if run is not None else f"worst {clause.worst.text}"
@@ -41,6 +51,8 @@ def headline(clause: ClauseVerdict, medians: Mapping[str, float]) -> str:
 
     With odds, it sums up all violations.  `medians`: how long nodes take, in seconds by path.
     """
+    if clause.pooled is not None:
+        return f"{clause.path}: {clause.pooled.text}"
     if clause.interval is None:
         return explained(clause, worst_violation(clause), medians)
     if not clause.violations:
@@ -91,6 +103,11 @@ def _others(clause: ClauseVerdict) -> str:
     if not named:
         return f"; also {counted(more, 'other run')}" if more else ""
     return f"; also run{'s' if len(named) > 1 else ''} {', '.join(named)}" + (f" and {more} more" if more else "")
+
+
+def _pooled(clause: ClauseVerdict, pooled: Pooled) -> str:
+    unknown = f", {clause.unknown} unknown ({clause.why})" if clause.unknown else ""
+    return f"{pooled.text}{unknown}"
 
 
 def _counted(clause: ClauseVerdict) -> str:

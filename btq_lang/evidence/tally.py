@@ -30,6 +30,7 @@ from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.conditions import Measure
+    from btq_lang.evidence.pools import Pool
     from btq_lang.evidence.verbs import Judgement
     from btq_lang.requirements.model import ResolvedOdds
 
@@ -54,9 +55,20 @@ class Tally:
     """
 
     def __init__(
-        self, odds: ResolvedOdds | None, confidence: float | None, limits: Limits = "one look", most: int | None = None
+        self,
+        odds: ResolvedOdds | None,
+        confidence: float | None,
+        limits: Limits = "one look",
+        most: int | None = None,
+        pool: Pool | None = None,
     ) -> None:
-        """Count nothing yet; `most`: the maximum that count; None: all."""
+        """Count nothing yet.
+
+        Args:
+            most: the maximum that count; None: all.
+            pool: decides instead of the counts.
+        """
+        self.pool: Final = pool
         self.counted = 0
         self.violated = 0
         self.unknown = 0
@@ -88,6 +100,8 @@ class Tally:
             self._unclear += 1
             self.why = self.why or judgement.sentence
             return
+        if self.pool is not None:
+            self.pool.see(judgement)
         if judgement.holds:
             self._kept += 1
         else:
@@ -160,6 +174,9 @@ class Tally:
         self.violated += other.violated
         self.unknown += other.unknown
         self.cut_off += other.cut_off
+        theirs: Any = other.pool  # one clause has pools of one class
+        if self.pool is not None and theirs is not None:
+            self.pool.add_all(theirs)
         self.why = self.why or other.why
         room = max(_MOST_VIOLATIONS - len(self.violations), 0)
         self.violations.extend(replace(violation, run=violation.run + runs) for violation in other.violations[:room])
@@ -210,7 +227,8 @@ class Tally:
         same = ("counted", "violated", "unknown", "cut_off", "worst", "limits", "bounded")
         fields = {name: getattr(self, name) for name in same}
         lists = {"violations": tuple(self.violations), "by_run": self._last_runs()}
-        return {**fields, "interval": self.interval(), "more": self.more(), **lists}
+        pooled = self.pool.shown() if self.pool is not None and self.counted else None
+        return {**fields, "interval": self.interval(), "more": self.more(), "pooled": pooled, **lists}
 
     def verdict(self) -> Verdict:
         """Without odds one violation decides; with odds the unknown ones are taken as false and as true, and a verdict
@@ -219,6 +237,8 @@ class Tally:
         n, k, unknown = self.counted, self.counted - self.violated, self.unknown
         if n + unknown == 0:
             return NEVER
+        if self.pool is not None:
+            return UNKNOWN if unknown else self.pool.verdict()
         if self._odds is None:
             return VIOLATED if self.violated else UNKNOWN if unknown else SATISFIED
         low, high = self._by_odds(k, n + unknown), self._by_odds(k + unknown, n + unknown)

@@ -10,6 +10,7 @@ from operator import itemgetter
 from typing import Final, NamedTuple, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
+from btq_lang.evidence.amounts import Amounts
 from btq_lang.evidence.conditions import Measure, bound_at, compared, measure_of, truth
 from btq_lang.evidence.model import CLOCK_SET_BACK, ENOUGH, UNKNOWN_BEGIN, UNKNOWN_END, Activation, Moment
 from btq_lang.evidence.observed import Observed
@@ -33,6 +34,7 @@ class Judgement(NamedTuple):  # not a Record for the same reason as Measure
         note: what is unusual about it; a log has each once.
         most: the upper limit of what is measured, if only its limits are known; `measure` is the lower one.
         passed: when a duration became longer than its bound.
+        amounts: what a run adds to a rate.
     """
 
     holds: bool | None
@@ -44,6 +46,7 @@ class Judgement(NamedTuple):  # not a Record for the same reason as Measure
     note: str = ""
     most: Measure | None = None
     passed: int | None = None
+    amounts: Amounts | None = None
 
 
 OUT: Final = Judgement(None, 0, "it does not count")
@@ -62,6 +65,8 @@ def agreed(late: Judgement | None, early: Judgement | None, activation: Activati
         return None
     if OUT in (late, early) or late is None or early is None or not is_same(late, early):
         return Judgement(None, activation.end, UNKNOWN_BEGIN)
+    if late.amounts is not None and early.amounts is not None:
+        return late._replace(amounts=late.amounts.joined(early.amounts))
     return between(late, late.measure, early.most or early.measure)
 
 
@@ -170,6 +175,23 @@ def _used(claim: ResolvedClaim, activation: Activation, observed: Observed) -> t
         return amount, f"`{signal.name}` was recharged meanwhile, and counts on from there" if number else ""
     amount, number = risen([ends[0], *values])
     return amount, f"`{signal.name}` was restarted meanwhile, and counts on from there" if number else ""
+
+
+def on_average(claim: ResolvedClaim, activation: Activation, observed: Observed) -> Judgement | None:
+    """`takes at most d on average`, `uses at most x of k on average`: what an activation that has ended by itself adds
+    to the mean, on which all of them decide.
+    """
+    if activation.outcome not in ("S", "F"):
+        return None
+    used = _used(claim, activation, observed) if claim.signal is not None else None
+    if isinstance(used, UnknownValue):
+        return Judgement(None, activation.end, used.why)
+    measure = duration(claim, activation, observed)
+    if used is not None:
+        measure = compared(claim, used[0], observed, activation.started)
+    if isinstance(measure, UnknownValue):
+        return Judgement(None, activation.end, measure.why)
+    return Judgement(True, activation.end, "", measure, note=used[1] if used is not None else "")
 
 
 # ---- conditions ----
@@ -322,4 +344,6 @@ JUDGES: Final[dict[str, Judge]] = {
     "keeps": keeps,
     "never": keeps,
     "never for": never_for,
+    "takes on average": on_average,
+    "uses on average": on_average,
 }

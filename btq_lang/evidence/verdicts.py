@@ -115,6 +115,21 @@ class Bounded(Record):
     text: str
 
 
+class Pooled(Record):
+    """What all runs come to together, in a clause that is not about each of them.
+
+    Attributes:
+        low, high: limits of a rate, per second, or of a mean, in SI, with the confidence that the requirement names, if
+            any; None: unknown.
+        more: how many more seconds decide it, if it does not happen again; None: no known time does.
+    """
+
+    text: str
+    low: float | None
+    high: float | None
+    more: float | None
+
+
 class Histogram(Record):
     """The distribution of the measured values, in SI.
 
@@ -235,6 +250,7 @@ class ClauseVerdict(Record):
         failed, halted: activations left out because the clause is about those that succeed.
         idle: in how many runs its node did not start, if it is about activations of one.
         not_applicable: how many activations, or runs, were left out because an assumption did not hold.
+        pooled: of a clause about all runs together, from which its verdict follows; else None.
     """
 
     text: str
@@ -261,6 +277,7 @@ class ClauseVerdict(Record):
     failed: int = 0
     halted: int = 0
     idle: int = 0
+    pooled: Pooled | None = None
     not_applicable: int = 0
 
 

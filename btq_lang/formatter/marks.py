@@ -164,6 +164,7 @@ _ORDER: Final = (
     syntax.ScopeClause,
     syntax.FromUntil,
     syntax.Assuming,
+    syntax.Average,
     syntax.Odds,
     syntax.Confidence,
     syntax.Window,

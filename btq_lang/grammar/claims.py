@@ -9,7 +9,7 @@ import re
 from typing import Final
 
 from btq_lang.catalog.units import dimension_name, parse_unit
-from btq_lang.catalog.verbs import VERBS, words
+from btq_lang.catalog.verbs import COUNTING, VERBS, words
 from btq_lang.diagnostics.model import Fix, replace_fix, write_fix
 from btq_lang.grammar.clause_slips import clause_slip
 from btq_lang.grammar.conditions import (
@@ -55,8 +55,11 @@ from btq_lang.util.record import replace
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 
+_BEFORE_BOUNDS: Final = frozenset(("fails", "finishes"))  # verbs there alone: elsewhere events, or names
 # Those that follow a subject; `followed` is one only after `each … is`.
-VERB_WORDS: Final = frozenset(verb.partition(" ")[0] for verb in VERBS.keys() - words(operands=("answer",)))
+VERB_WORDS: Final = (
+    frozenset(verb.partition(" ")[0] for verb in VERBS.keys() - words(operands=("answer",))) - _BEFORE_BOUNDS
+)
 HAPPENINGS: Final = frozenset(("starts", "succeeds", "fails", "finishes", "halts"))
 
 
@@ -89,7 +92,10 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
     every = False
     order: Word | None = None
     visits: tuple[NodeRef, ...] = ()
-    operand = VERBS[verb.raw].operand
+    of: Path | None = None
+    counts = verb.raw in COUNTING and bound_follows(cursor, cursor.index)
+    form = "per" if counts else ""
+    operand = VERBS[verb.raw].operand if not counts else "count"
     if operand == "duration":
         bound = parse_bound(cursor)
     elif operand == "deadline":
@@ -110,7 +116,8 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
         resource = cursor.plain_name("a signal") if cursor.expect_word("of", forgotten=cursor.kind == NAME) else None
     elif operand == "count":
         bound = parse_bound(cursor)
-        per = parse_path(cursor, "a node") if cursor.accept_word("per") else None
+        per = parse_period(cursor, verb.raw, is_optional=not counts)
+        of = parse_path(cursor, "a node") if is_time_of(cursor, per) and cursor.accept_word("of") else None
     elif operand == "rate":
         if cursor.accept_word("every"):
             every = True
@@ -133,7 +140,7 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
         bound = parse_within(cursor) if cursor.expect_word("within") else None
         event = parse_event(cursor) if cursor.expect_word("after", ("of", "from", "since")) else None
     end = cursor.last_end()
-    return Claim(start, end, subject, verb, bound, condition, resource, per, event, every, visits, order)
+    return Claim(start, end, subject, verb, bound, condition, resource, per, event, every, visits, order, form, of)
 
 
 def parse_node_ref(cursor: Cursor) -> NodeRef | None:
@@ -147,6 +154,26 @@ def parse_node_ref(cursor: Cursor) -> NodeRef | None:
     pairs = cursor.listed(port_value)
     close_group(cursor, "`,` or `)`")
     return NodeRef(start, cursor.last_end(), path, pairs)
+
+
+def is_time_of(cursor: Cursor, per: Path | Word | None) -> bool:
+    """Whether what follows is the node whose time is meant."""
+    return isinstance(per, Word) and per.kind == QUANTITY
+
+
+def parse_period(cursor: Cursor, verb: str, is_optional: bool) -> Path | Word | None:
+    """ "per" ( "run" | Path ), of counts;  "per" QUANTITY, of failures"""
+    if cursor.accept_word("per"):
+        if cursor.kind == QUANTITY and verb == "fails":
+            return cursor.take()
+        return cursor.take() if cursor.at_word("run") else parse_path(cursor, "`run`, or a node")
+    if not is_optional and report_slip(cursor):
+        cursor.recover()
+    elif not is_optional:
+        note = "the number is that of each run, or of each activation of a node"
+        fix = write_fix(" per run", Span(cursor.last_end(), cursor.last_end()).shifted(cursor.base))
+        cursor.expected("`per`, and `run` or a node", (note,), (fix,) if cursor.kind == NEWLINE else ())
+    return None
 
 
 def parse_followed(cursor: Cursor, verb: int) -> Claim:
@@ -290,10 +317,12 @@ def parse_bounded(cursor: Cursor) -> Bounded | None:
 
 
 def at_verb(cursor: Cursor) -> bool:
-    """Whether a verb is here; `visits` is one only where nodes follow, else a name."""
-    if cursor.kind != NAME or cursor.raw not in VERB_WORDS:
+    """Whether the current word is a verb, as `fails` is before a bound alone."""
+    if cursor.kind != NAME:
         return False
-    return cursor.raw != "visits" or (cursor.kinds[cursor.index + 1] in (NAME, STRING) and not is_verb_ahead(cursor, 1))
+    if cursor.raw == "visits":  # one only where nodes follow
+        return cursor.kinds[cursor.index + 1] in (NAME, STRING) and not is_verb_ahead(cursor, 1)
+    return cursor.raw in VERB_WORDS or (cursor.raw in _BEFORE_BOUNDS and bound_follows(cursor, cursor.index + 1))
 
 
 def nodes_to_visit(cursor: Cursor) -> tuple[tuple[NodeRef, ...], Word | None]:
@@ -316,6 +345,14 @@ def port_value(cursor: Cursor) -> Pair | None:
         cursor.expected("a value")
         return Pair(key, None)
     return Pair(key, cursor.take())
+
+
+def bound_follows(cursor: Cursor, index: int) -> bool:
+    """Whether a bound begins at a token; `within` begins none of a count."""
+    first = cursor.raws[index]
+    if first == "between" or (first, *cursor.raws[index + 1 : index + 2]) in RELATIONS:
+        return True
+    return first != "within" and any(tuple(cursor.raws[index : index + length]) in BOUNDS for length in (1, 2, 3, 4, 5))
 
 
 def report_slip(cursor: Cursor) -> bool:
@@ -399,6 +436,8 @@ def no_verb(cursor: Cursor, subject: Subject) -> None:
     elif isinstance(subject, Path) and (cursor.at_word("and") or cursor.at(",")):
         note = "a clause applies to one node; write it for each, or `sum of A, B` for the time of both"
         cursor.expected(_A_VERB, (note,))
+    elif first is not None and first.raw == "at" and report_slip(cursor):
+        cursor.recover()
     elif first is not None and first.raw == "at" and (fixes := takes_before(cursor, first)):
         cursor.expected(f"a verb before `at {cursor.raw}`", (MEANT["at"],), fixes)
     elif first is not None and first.kind == NAME and (noted := MEANT.get(first.raw) or NO_VERBS.get(first.raw)):
@@ -578,6 +617,9 @@ def takes_before(cursor: Cursor, first: Word) -> tuple[Fix, ...]:
 
 def no_relation(cursor: Cursor) -> None:
     """Report a bound without its first words."""
+    if cursor.at_word("on") and report_slip(cursor):
+        cursor.recover()
+        return
     is_value = cursor.kind in (QUANTITY, NUMBER)
     note = f"write the kind of bound before the value: `at most {cursor.raw if is_value else '30 s'}`"
     fixes: tuple[Fix, ...] = ()
@@ -631,7 +673,7 @@ QUALITY_IN_HEAD: Final = "a requirement's quality goes after its name: `QualityR
 NO_VERBS: Final = {  # what else people write before or as a verb
     **dict.fromkeys(MODALS, "a clause begins with its verb, without such a word: `takes at most 30 s`"),
     **dict.fromkeys(("finishes", "ends", "completes"), "write `succeeds within 30 s`, or `takes at most 30 s`"),
-    "fails": "`tries at most 3` limits the attempts, `succeeds` demands that the node does not fail",
+    "fails": "`fails at most 3 per run` limits the failures, `succeeds` demands that the node does not fail",
     **dict.fromkeys(("stays", "remains", "is"), "what holds while a node runs is written `keeps battery >= 15 %`"),
 }
 MEANT: Final = {  # by the word that is read as a node before a verb

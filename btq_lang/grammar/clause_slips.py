@@ -138,9 +138,29 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
     ("(?:the )?(?:update |tick |control )?(?:frequency|rate) *BOUNDNUMBER *Hz", ("runs {bound} {number} per 1 s",), ""),
     ("(?:the )?(?:period|cycle) *BOUNDTIME", ("runs every {time}",), ""),
     (r"(?:attempts|retries) *BOUND(?P<number>\d+)", ("tries {bound} {number}",), ""),
-    # how probably
+    (r"(?:the )?(?:number of )?failures *BOUND(?P<number>\d+)", ("fails {bound} {number} per run",), ""),
+    ("(?:the )?(?:mtbf|MTBF|mean time between failures) *BOUNDTIME", ("fails at most 1 per {time}",), ""),
     (
-        "(?:the )?(?:success[ _-]?(?:rate|ratio|probability)|probability of success|reliability|availability) *"
+        rf"(?:the )?(?:average|mean) {_TIMES}(?: of SUBJECT|[^<>=:]*?) *BOUNDTIME",
+        ("{subject}takes {bound} {time} on average",),
+        "",
+    ),
+    ("SUBJECTtakes on average BOUNDTIME", ("{subject}takes {bound} {time} on average",), ""),
+    (
+        f"{_USES} on average BOUNDVALUE (?:(?:of|from) )?OTHER",
+        ("{subject}uses {bound} {value} of {other} on average",),
+        "",
+    ),
+    (r"(?:the )?(?:number of )?successes *BOUND(?P<number>\d+)", ("succeeds {bound} {number} per run",), ""),
+    # how probably
+    ("(?:for |during )?(?:at least )?SHARE of (?:the |its |that )?time", ("in at least {share} of time",), ""),
+    (
+        "(?:the )?availability *(?:is |of )?(?:>=|at least|min|minimum|[:=]) *SHARE",
+        ("keeps <signal> in at least {share} of time", "succeeds in at least {share} of runs"),
+        "the first is a share of the time, of a signal that is true while it is available",
+    ),
+    (
+        "(?:the )?(?:success[ _-]?(?:rate|ratio|probability)|probability of success|reliability) *"
         "(?:is |of )?(?:>=|at least|min|minimum|[:=]) *SHARE",
         ("succeeds in at least {share} of activations", "succeeds in at least {share} of runs"),
         "",

@@ -27,6 +27,7 @@ from btq_lang.syntax.suggestions import unknown_unit
 from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPERATOR, QUANTITY, STRING
 from btq_lang.syntax.tree import (
     Assuming,
+    Average,
     Because,
     Clause,
     Confidence,
@@ -45,6 +46,8 @@ from btq_lang.util.text import Span
 
 EXPERIMENTS: Final = frozenset(("activations", "runs"))
 COUNTED: Final = ("activations", "runs", "occurrences")  # by odds
+AVERAGE: Final = "average"
+TIME: Final = "time"  # a share of it, rather than of experiments
 ACTIONS: Final = ("fail", "halt", "warn", "log")
 METHODS: Final = ("monitor", "analysis", "test", "review")
 ENDS_CLAUSES: Final = frozenset(("satisfices", "satisfies", "tags", "parameters", "QualityReq", "Quality"))
@@ -72,7 +75,7 @@ def parse_clauses(cursor: Cursor, at_least_one: bool = False) -> tuple[Clause, .
 
 
 def parse_clause(cursor: Cursor) -> Clause | None:
-    """Clause = Claim | Scope | FromUntil | Assuming | Odds | Confidence | Window | OnViolation | Goal | Because | …"""
+    """Clause = Claim | Scope | FromUntil | Assuming | Average | Odds | Confidence | Window | OnViolation | Goal | …"""
     word = cursor.raw if cursor.kind == NAME else ""
     if word in VERB_WORDS or word in SUBJECT_HEADS:
         return parse_from_until(cursor) if word == "from" and until_ahead(cursor) else parse_claim(cursor)
@@ -86,6 +89,8 @@ def parse_clause(cursor: Cursor) -> Clause | None:
         return parse_confidence(cursor)
     if word == "over":
         return parse_window(cursor)
+    if word == "on" and cursor.is_word(cursor.index + 1, AVERAGE):
+        return parse_average(cursor)
     if word == "on" or word == "on_violation":
         return parse_on_violation(cursor)
     if word == "goal":
@@ -136,14 +141,21 @@ def parse_from_until(cursor: Cursor) -> FromUntil:
     return FromUntil(start, cursor.last_end(), first, last)
 
 
+def parse_average(cursor: Cursor) -> Average:
+    """ "on" "average" """
+    start = cursor.take().start
+    cursor.advance()
+    return Average(start, cursor.last_end())
+
+
 def parse_odds(cursor: Cursor) -> Odds:
-    """ "in" "at" "least" QUANTITY "of" Experiments | "with" "probability" ( ">=" | ">" ) QUANTITY [ "of" … ]"""
+    """ "in" "at" "least" QUANTITY "of" Counted | "with" "probability" ( ">=" | ">" ) QUANTITY [ "of" Counted ]"""
     start = cursor.start()
     return parse_share(cursor, start) if cursor.accept_word("in") else parse_probability(cursor, start)
 
 
 def parse_share(cursor: Cursor, start: int) -> Odds:
-    """ "at" "least" QUANTITY "of" Experiments"""
+    """ "at" "least" QUANTITY "of" Counted"""
     value: Word | None = None
     experiments = None
     if cursor.kind == QUANTITY:
@@ -156,12 +168,12 @@ def parse_share(cursor: Cursor, start: int) -> Odds:
     elif cursor.expect_word("at") and cursor.expect_word("least"):
         value = parse_percentage(cursor, "98 %")
     if value is not None and cursor.expect_word("of", forgotten=cursor.raw in COUNTED):
-        experiments = parse_one_of(cursor, COUNTED)
+        experiments = parse_counted(cursor)
     return Odds(start, cursor.last_end(), ">=", value, experiments)
 
 
 def parse_probability(cursor: Cursor, start: int) -> Odds:
-    """ "with" "probability" ( ">=" | ">" ) QUANTITY [ "of" Experiments ]"""
+    """ "with" "probability" ( ">=" | ">" ) QUANTITY [ "of" Counted ]"""
     relation = ">="
     value: Word | None = None
     experiments = None
@@ -182,7 +194,7 @@ def parse_probability(cursor: Cursor, start: int) -> Odds:
                 fixes = (write_fix(written, cursor.here()),)
             cursor.expected("`>=` or `>` and a percentage", (), fixes)
     if value is not None and cursor.accept_word("of"):
-        experiments = parse_one_of(cursor, COUNTED)
+        experiments = parse_counted(cursor)
     return Odds(start, cursor.last_end(), relation, value, experiments)
 
 
@@ -258,9 +270,19 @@ def parse_way(cursor: Cursor) -> Way | None:
     return Way(start, cursor.last_end(), method, identifier) if method is not None else None
 
 
+def parse_counted(cursor: Cursor) -> Word | None:
+    """ "activations" | "runs" | "occurrences" | "time"; an article before it is reported"""
+    following = cursor.index + 1
+    if cursor.kind == NAME and cursor.raw in _ARTICLES and cursor.is_word(following, TIME):
+        span = Span(cursor.here().start, cursor.starts[following] + len(TIME))
+        cursor.complain(span, f"expected `{TIME}`, found `{cursor.raw} {TIME}`", write_fix(TIME, span, safe=True))
+        cursor.advance()
+    return parse_one_of(cursor, (*COUNTED, TIME))
+
+
 def parse_experiments(cursor: Cursor) -> Word | None:
     """ "activations" | "runs" """
-    return parse_one_of(cursor, ("activations", "runs"))
+    return parse_one_of(cursor, _EXPERIMENTS)
 
 
 def parse_percentage(cursor: Cursor, example: str, before: str = "") -> Word | None:
@@ -412,6 +434,8 @@ def is_no_time(cursor: Cursor) -> bool:
     return ends and not is_misspelt and measured(cursor.raws[: cursor.index]) == "s"
 
 
+_EXPERIMENTS: Final = tuple(sorted(EXPERIMENTS))
+_ARTICLES: Final = ("the", "its", "that")
 _STRING: Final = [STRING, NEWLINE]
 _BEFORE_OPERANDS: Final = ("when", "and", "or", "not", "node", "(")
 _ON_VIOLATION: Final = (

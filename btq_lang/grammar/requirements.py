@@ -8,8 +8,9 @@ from __future__ import annotations
 import re
 from typing import Final
 
+from btq_lang.catalog.verbs import COUNTING
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, replace_fix, write_fix
-from btq_lang.grammar.claims import MEANT, VERB_WORDS, followed_ahead, parse_bounded
+from btq_lang.grammar.claims import MEANT, VERB_WORDS, at_verb, followed_ahead, parse_bounded
 from btq_lang.grammar.clauses import ENDS_CLAUSES, is_assumption, parse_clauses
 from btq_lang.grammar.conditions import HEADS, RELATIONS, close_group
 from btq_lang.grammar.cursor import Cursor
@@ -252,7 +253,7 @@ def bare_title(cursor: Cursor, has_quality: bool) -> Word | None:
     if (
         cursor.kind != NAME
         or cursor.group
-        or cursor.raw in VERB_WORDS
+        or at_verb(cursor)
         or cursor.raw in HEADS
         or cursor.raw in ENDS_CLAUSES
         or is_clause_by_context(cursor)
@@ -304,7 +305,7 @@ def is_clause(cursor: Cursor, index: int) -> bool:
     if cursor.kinds[index] != NAME:
         return False
     raw, second = cursor.raws[index], cursor.raws[index + 1] if cursor.kinds[index + 1] == NAME else ""
-    if raw in VERB_WORDS and second:
+    if (raw in VERB_WORDS or raw in COUNTING) and second:
         return second == "between" or (second, cursor.raws[index + 2]) in RELATIONS
     is_reason = raw in ("because", "source") and cursor.kinds[index + 1] == STRING
     return is_reason or raw in ENDS_CLAUSES or (raw, second) in _BEGIN_CLAUSES
@@ -372,6 +373,7 @@ _BEGIN_CLAUSES: Final = frozenset(
         ("in", "at"),
         ("with", "probability"),
         ("on", "violation"),
+        ("on", "average"),
         ("over", "last"),
         ("verified", "by"),
         ("approved", "by"),

@@ -12,7 +12,7 @@ from typing import Final
 from btq_lang.catalog.nodes import lookup
 from btq_lang.grammar.claims import HAPPENINGS, VERB_WORDS
 from btq_lang.grammar.clauses import ACTIONS as ON_VIOLATION
-from btq_lang.grammar.clauses import EXPERIMENTS, METHODS
+from btq_lang.grammar.clauses import AVERAGE, EXPERIMENTS, METHODS, TIME
 from btq_lang.grammar.conditions import FUNCTIONS, HEADS, METADATA_HEADS
 from btq_lang.ide.legend import MODIFIERS, TYPES
 from btq_lang.syntax.tokens import (
@@ -102,7 +102,7 @@ KEYWORDS: Final = frozenset(
     | {"TreeNodesModel", "xml", "parameters", "metadata", "Quality", "ID", "description", "true", "false"}
     | {"and", "or", "not", "if", "else", "node", "at", "to", "except", "of", "per", "under", "tagged", "within"}
     | {"most", "least", "less", "more", "than", "between", "after", "violation", "probability", "last", "by", "fresh"}
-    | {"for", "assuming", "order"}
+    | {"for", "assuming", "order", TIME, AVERAGE}
     | {"from", "level", "counter", "gauge", "initially", *ON_VIOLATION, *METHODS}
     | CATEGORIES
     | NODE_CLAUSES

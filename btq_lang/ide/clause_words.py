@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btq_lang.catalog.verbs import VERBS
+from btq_lang.catalog.verbs import COUNTING, VERBS
 from btq_lang.catalog.verbs import words as words_of
 from btq_lang.grammar.claims import HAPPENINGS
-from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS
+from btq_lang.grammar.clauses import ACTIONS, AVERAGE, EXPERIMENTS, METHODS, TIME
 from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS, METADATA_HEADS
 from btq_lang.syntax.tokens import BRACED, CLOSE, NAME, NUMBER, OPEN, QUANTITY, STRING, Token
 from btq_lang.util.record import Record, replace
@@ -59,7 +59,9 @@ def expected(words: Sequence[Token]) -> Expected:
     if text == "of" and _begins_last(earlier, (*_USES, "sum", "in", "with")) in _USES:
         return Expected(signal=True)
     if text == "of":
-        return Expected(node=True) if before == "sum" else Expected(_EXPERIMENTS)
+        if before == "sum" or _is_per(earlier[:-2]):
+            return Expected(node=True)
+        return Expected((*_EXPERIMENTS, TIME) if _has_time(earlier) else _EXPERIMENTS)
     if text == "by" and before == "followed":
         return replace(_EVENT, condition=True)
     if text == "and" and _begins_last(earlier, ("between", *_CONDITIONS)) == "between":
@@ -80,7 +82,8 @@ def expected(words: Sequence[Token]) -> Expected:
     if last.kind in (NUMBER, QUANTITY):
         if is_window(earlier):
             return Expected(_EXPERIMENTS) if last.kind == NUMBER else Expected(clause=True)
-        return Expected(_after_value(earlier), clause=True)
+        of = ("of",) if last.kind == QUANTITY and _is_per(earlier[:-1]) else ()
+        return Expected((*_after_value(earlier), *of), clause=True)
     if last.kind in (NAME, STRING, CLOSE) or text in HAPPENINGS:
         if head_of_event == "followed" and text not in HAPPENINGS:
             return Expected((*_HAPPENINGS, *_AFTER_OPERAND, "within"), clause=True)
@@ -125,10 +128,12 @@ def joined(words: Sequence[str]) -> list[str]:
 
 def is_count(words: Sequence[str]) -> bool:
     """Whether a number at the end of these words is a count: `tries at most 3`, `runs at least 9`."""
-    head = _begins_last(words, _CLAUSES)
-    if head not in _COUNTED:
+    head = _begins_last(words, (*_CLAUSES, *COUNTING))
+    if head not in _COUNTED | COUNTING:
         return False
     following = words[last_index(words, head) + 1 :]
+    if head in COUNTING and "within" in following:
+        return False
     return not {"per", "every"} & set(following) and _begins_last(following, ("if", "else", ",")) != "if"
 
 
@@ -194,7 +199,7 @@ def _after_value(words: Sequence[str]) -> tuple[str, ...]:
     if head in _REACTIONS and "after" not in words[last_index(words, head) :]:
         return ("after", "if")
     if head in ("in", "with"):
-        return ("of runs", "of activations")
+        return ("of runs", "of activations", *(("of time",) if _has_time(words) else ()))
     if head == "over":
         return _EXPERIMENTS
     if head == "never" and "for" in words[last_index(words, head) :]:
@@ -208,6 +213,16 @@ def _after_value(words: Sequence[str]) -> tuple[str, ...]:
     if "if" in words:
         return ("and", "or", "else")
     return ("if",) if head in _TIMED or head == "goal" else ()
+
+
+def _is_per(words: Sequence[str]) -> bool:
+    """Whether these words of a failure rate precede its time: `fails at most 1 per`."""
+    return words[-1:] == ["per"] and _begins_last(words, (*_CLAUSES, *COUNTING)) == "fails"
+
+
+def _has_time(words: Sequence[str]) -> bool:
+    """Whether a share after these words may be one of the time: after `keeps` or `never`, perhaps a line above."""
+    return _begins_last(words, tuple(VERBS)) in ("", "keeps", "never")
 
 
 def last_index(words: Sequence[str], word: str) -> int:
@@ -260,9 +275,9 @@ _LISTS = {
     "verified": Expected(METHODS),
 }
 _OPERANDS = {
-    **dict.fromkeys(("duration", "use", "count"), Expected(_BOUNDS)),
+    **dict.fromkeys(("duration", "use", "count", "failures"), Expected(_BOUNDS)),
     "rate": Expected(("every", *_BOUNDS)),
-    "deadline": Expected(("within",), clause=True),
+    "deadline": Expected(("within", *_BOUNDS), clause=True),
     "reaction": Expected(("within",)),
     **dict.fromkeys(("condition", "stretch"), _CONDITION),
     "visits": Expected(node=True),
@@ -278,13 +293,14 @@ _OF_MISSIONS = [
 _AFTER = {
     **{verb.word: _OPERANDS[verb.operand] for verb in VERBS.values()},
     "ends": Expected(("within", "with")),
+    "starts": Expected(("within", *_BOUNDS)),
     **dict.fromkeys(("within", "goal", "most", "least", "than", "between", "else"), _VALUE),
     "at": Expected(("most", "least")),
     "less": Expected(("than",)),
     "more": Expected(("than",)),
     "for": Expected(("more than",)),
     **dict.fromkeys(("while", "when", "assuming", "if", "and", "or", "not"), _CONDITION),
-    "on": Expected(("violation",)),
+    "on": Expected(("violation", AVERAGE)),
     "violation": Expected(ACTIONS),
     "verified": Expected(("by",)),
     "by": Expected(METHODS),
@@ -296,7 +312,7 @@ _AFTER = {
     **dict.fromkeys(("after", "from", "to", "until", "each"), _EVENT),
     "is": Expected(("followed by",)),
     "mission": Expected((*_OF_MISSIONS, *_HAPPENINGS)),
-    "per": Expected(node=True),
+    "per": Expected(("run",), node=True),
     "every": Expected(value=True, node=True),
     "node": Expected(node=True),
     "confidence": Expected(("95 %", "99 %")),

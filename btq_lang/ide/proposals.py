@@ -125,8 +125,8 @@ def clauses(present: tuple[str, ...]) -> Iterator[Proposal]:
     """Verbs and heads of clauses, in the order in which a requirement is written; those that may occur once and do are
     left out."""
     for word, snippet in _CLAUSES:
-        head = word.split()[0]
-        if head not in _ONCE or head not in present:
+        head, *following = word.split()[:2]
+        if head not in _ONCE or not {head, *following}.issubset(present):
             yield keyword(word, snippet)
 
 
@@ -446,7 +446,7 @@ _ITEMS = (
 )
 _ONCE = frozenset(("in", "with", "confidence", "over", "on", "goal", "because", "verified", "priority"))
 _CLAUSES = (
-    *(form for verb in VERBS.values() for form in verb.forms or ((verb.word, None),)),
+    *(form for verb in VERBS.values() for form in verb.forms or ((verb.word, None),) if form[0]),
     ("mission", None),
     ("every", None),
     ("from", "from ${1:A} starts to ${2:B} succeeds $0"),
@@ -454,6 +454,7 @@ _CLAUSES = (
     ("while", None),
     ("when", None),
     ("assuming", None),
+    ("on average", None),
     ("in at least", "in at least ${1:95 %} of ${0:runs}"),
     ("with probability", "with probability >= ${1:95 %} of ${0:runs}"),
     ("confidence", "confidence ${0:95 %}"),

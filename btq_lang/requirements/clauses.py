@@ -12,9 +12,12 @@ from typing import Final
 
 from btq_lang.catalog.units import Dimension, a_dimension
 from btq_lang.catalog.verbs import VERBS
+from btq_lang.diagnostics.model import Place
 from btq_lang.requirements import model, nodes
 from btq_lang.requirements.metadata import metadata_of
+from btq_lang.requirements.pooled import judged_together, on_average
 from btq_lang.requirements.reader import Reader
+from btq_lang.requirements.shares import of_time
 from btq_lang.requirements.terms import COUNT, DURATION, PERCENT, SORTS, TIME, Wanted, sort_of
 from btq_lang.requirements.visits import visits_of
 from btq_lang.syntax import tree as syntax
@@ -58,8 +61,10 @@ def with_clauses(
                 assumptions.append(model.ResolvedScope("assuming", condition, text))
         elif isinstance(clause, syntax.FromUntil):
             keep("span", _span(reader, clause))
+        elif isinstance(clause, syntax.Average):
+            keep("average", reader.place(Span(clause.start, clause.end)))
         elif isinstance(clause, syntax.Odds):
-            keep("odds", _odds(reader, clause))
+            keep("share" if clause.is_of_time else "odds", _odds(reader, clause))
         elif isinstance(clause, syntax.Confidence):
             keep("confidence", _confidence(reader, clause))
         elif isinstance(clause, syntax.Window):
@@ -77,6 +82,14 @@ def with_clauses(
     if any(isinstance(clause, syntax.FromUntil) for clause in clauses) and "span" not in once:
         unread += [claim.text for claim in claims]  # at other times they may be violated
         claims.clear()
+    if isinstance(share := once.pop("share", None), model.ResolvedOdds):
+        claims, not_of_time = of_time(reader, claims, share)
+        unread += not_of_time
+    if isinstance(average := once.pop("average", None), Place):
+        claims, without_mean = on_average(reader, claims, average.span)
+        unread += without_mean
+    claims, not_together = judged_together(reader, claims, once.get("odds"))
+    unread += not_together
     if goals:
         once["goal"] = reader.bounded(goals[0].value, _of_goal(claims, "odds" in once))
     if metadata:
@@ -140,8 +153,15 @@ def _verb(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | None:
     if operand == "reaction":
         event = _event(reader, written.event)
         return replace(claim, event=event) if event is not None else None
+    if operand == "count" and isinstance(written.per, syntax.Word):  # `run`
+        return claim
+    if written.of is not None:
+        of = reader.target(written.of)
+        if of is None:
+            return None
+        claim = replace(claim, of=of)
     per = _per(reader, written.per)
-    if per is None and (written.per is not None or (operand == "rate" and not written.every)):
+    if per is None and (written.per is not None or written.form or (operand == "rate" and not written.every)):
         return None
     return claim if per is None else replace(claim, per=per)
 
@@ -189,7 +209,7 @@ def _limit(reader: Reader, written: syntax.Bound | None, wanted: Wanted) -> mode
 def _per(reader: Reader, written: syntax.Path | syntax.Word | None) -> model.NodeTarget | model.Quantity | None:
     if isinstance(written, syntax.Path):
         is_run = written.names[-1].text.lower() in _RUN
-        return reader.target(written, ("without `per` it counts per run",) if is_run else ())
+        return reader.target(written, ("write `per run`",) if is_run else ())
     return reader.quantity(written, DURATION) if written is not None else None
 
 
@@ -295,6 +315,8 @@ def _of_goal(claims: list[model.ResolvedClaim], has_odds: bool) -> Wanted | None
             return None
         if VERBS[claim.verb].operand in _TIMED or claim.every:
             dimensions[TIME] = "s"
+        elif claim.condition is not None:  # a share of time
+            dimensions[PERCENT] = "%"
         elif claim.signal is not None and claim.signal.unit is not None:
             dimensions[claim.signal.unit.dimension] = claim.signal.unit.symbol
         else:

@@ -9,7 +9,9 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from functools import cache, lru_cache
+from typing import Final
 
+from btq_lang.catalog.verbs import COUNTING
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
@@ -59,7 +61,7 @@ def _nodes_needed(text: str) -> frozenset[str] | None:
     if is_script(text):
         return frozenset()
     words = text.replace(".", " ").split()
-    if not words or (words[0] not in HEADS and VERB_WORDS.isdisjoint(words)):
+    if not words or (words[0] not in HEADS and _VERBS.isdisjoint(words)):
         return None
     parsed = clauses_of(text)
     if parsed is None:
@@ -86,6 +88,9 @@ def clauses_of(text: str) -> tuple[Requirement, str] | None:
         return None
     says_more = item.parameters or item.quality is not None or item.text is not None
     return (item, whole) if item.clauses and not says_more else None
+
+
+_VERBS: Final = VERB_WORDS | COUNTING  # some of the latter are verbs before a bound alone
 
 
 @cache

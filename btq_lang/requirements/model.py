@@ -322,14 +322,16 @@ class ResolvedClaim(Record):
     Attributes:
         subject: the claim's own; None: what the requirement is attached to.
         verb: the word of its row in `catalog.verbs`.
-        limit: of takes, uses, tries, runs; of `within d`, `runs every d` and `never φ for more than d` as `<= d`.
+        limit: of takes, uses, tries, runs; of `within d`, `runs every d` and `never φ for more than d` as `<= d`; of
+            keeps and never the share of time.
         condition: of needs, keeps, never, leaves, ends with, never for, and of followed if it is followed by one.
         signal: of uses.
-        per: of tries a node, of runs a duration.
+        per: of tries and counts a node (None: the run), of runs a duration.
         event: of starts, ends, follows, followed.
         every: `runs every d`.
         visits, in_order: of visits.
-        text: the clause as typed, blanks folded.
+        of: of a failure rate, the node whose time is its exposure; None: the time of the runs.
+        text: the clause as typed, blanks folded; with its share of time, or `on average`.
     """
 
     verb: str
@@ -344,6 +346,7 @@ class ResolvedClaim(Record):
     every: bool = False
     visits: tuple[Visit, ...] = ()
     in_order: bool = False
+    of: NodeTarget | None = None
 
     @property
     def head(self) -> str:

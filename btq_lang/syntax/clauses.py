@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import Final, TypeAlias
 
+from btq_lang.syntax.tokens import QUANTITY
 from btq_lang.syntax.words import Pair, Word
 from btq_lang.util.record import Part, Record
 from btq_lang.util.text import Span
@@ -144,11 +145,13 @@ class Claim(Part):
         bound: of takes, uses, tries, runs; for `within d`, `runs every d` and `never φ for more than d`, `<= d`.
         condition: of needs, keeps, never, leaves, ends with, and of followed if it is followed by one.
         resource: of uses: the signal.
-        per: of tries: the path; of runs: the quantity.
+        per: of tries and counts: the path, or the word `run`; of runs: the quantity.
         event: of starts, ends, follows, followed.
         every: `runs every d`.
         visits: of visits.
         order: of `visits A, B in order`.
+        form: `per` of `succeeds at least 12 per run`, which counts; else empty.
+        of: of `fails at most 1 per 200 h of Dock`: the path.
     """
 
     subject: Subject | None
@@ -161,10 +164,15 @@ class Claim(Part):
     every: bool = False
     visits: tuple[NodeRef, ...] = ()
     order: Word | None = None
+    form: str = ""
+    of: Path | None = None
 
     @property
     def row(self) -> str:
         """The verb's row in `catalog.verbs`: of `ends with battery_low` the one of `ends with`."""
+        if self.form:
+            is_rate = isinstance(self.per, Word) and self.per.kind == QUANTITY
+            return f"{self.verb.raw} per time" if is_rate else f"{self.verb.raw} {self.form}"
         if self.condition is None:
             return self.verb.raw
         if self.verb.raw == "never" and self.bound is not None:
@@ -192,12 +200,21 @@ class FromUntil(Part):
     last: Event | AnyEvent | None
 
 
+class Average(Part):
+    """`on average`: of takes and uses, the mean of all activations is demanded."""
+
+
 class Odds(Part):
     """`in at least 98 % of runs`, `with probability >= 98 %`. experiments: None if omitted."""
 
     relation: str
     value: Word | None
     experiments: Word | None
+
+    @property
+    def is_of_time(self) -> bool:
+        """`in at least 98 % of time`: a part of the demand rather than its odds."""
+        return self.experiments is not None and self.experiments.raw == "time"
 
 
 class Confidence(Part):
@@ -287,6 +304,7 @@ Clause: TypeAlias = (
     | ScopeClause
     | FromUntil
     | Assuming
+    | Average
     | Odds
     | Confidence
     | Window

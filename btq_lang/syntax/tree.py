@@ -18,6 +18,7 @@ from btq_lang.syntax.clauses import AnyEvent as AnyEvent
 from btq_lang.syntax.clauses import Approval as Approval
 from btq_lang.syntax.clauses import Argument as Argument
 from btq_lang.syntax.clauses import Assuming as Assuming
+from btq_lang.syntax.clauses import Average as Average
 from btq_lang.syntax.clauses import Because as Because
 from btq_lang.syntax.clauses import Between as Between
 from btq_lang.syntax.clauses import Binary as Binary

@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from btq_lang.catalog.language import PHRASES, Phrase, beginning, phrase_at, phrases_of
+from btq_lang.catalog.verbs import COUNTING
 from btq_lang.grammar.claims import HAPPENINGS, VERB_WORDS
-from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS
+from btq_lang.grammar.clauses import ACTIONS, AVERAGE, EXPERIMENTS, METHODS, TIME
 from btq_lang.grammar.conditions import FUNCTIONS, HEADS, METADATA_HEADS
 from btq_lang.grammar.hazards import HAZARD_HEADS
 from btq_lang.grammar.item_words import ITEM_WORDS
@@ -32,13 +33,14 @@ def words_of(*parts: str) -> set[str]:
 
 
 def test_no_word_of_the_grammar_is_left_out() -> None:
-    assert words_of("claim") - {"every", "is", "followed", "by", "with", "for"} == VERB_WORDS
+    others = {"every", "is", "followed", "by", "with", "for", "of", "time", "at", "least", "most", "per", "on", AVERAGE}
+    assert words_of("claim") - others == VERB_WORDS | COUNTING
     assert words_of("event") - {"when", "or"} == HAPPENINGS
     assert words_of("action") == set(ACTIONS)
     assert words_of("method") == set(METHODS)
     assert words_of("item") == set(ITEM_WORDS)
     assert words_of("clause of a node") - {"parameters"} == set(NODE_CLAUSES)
-    assert words_of() >= HEADS | METADATA_HEADS | FUNCTIONS | EXPERIMENTS | {*HAZARD_HEADS}
+    assert words_of() >= HEADS | METADATA_HEADS | FUNCTIONS | EXPERIMENTS | {*HAZARD_HEADS, TIME}
 
 
 @pytest.mark.parametrize("phrase", PHRASES, ids=lambda phrase: f"{phrase.words}, {phrase.part}")

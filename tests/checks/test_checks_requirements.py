@@ -262,6 +262,10 @@ USER = "BehaviorTree X\n    Action A\n"
             "how often it must hold: `in at least 9 % of runs`",
         ),
         (" verified by test verified by review\n", "how to verify it: `verified by test`"),
+        (
+            "\n    in at least 9 % of time\n    in at least 9 % of runs\n    in at least 8 % of time\n",
+            "a share of time: `in at least 9 % of time`",
+        ),
     ],
 )
 def test_a_clause_of_a_kind_that_is_said_once(clauses: str, expected: str) -> None:

@@ -395,6 +395,38 @@ def test_tries_are_counted(engine: Engine, per: str, action: str) -> None:
     assert_unchanged(engine, text.replace("at most 3", "less than 5"), FOUR_TRIES, ["Pick"])
 
 
+@pytest.mark.parametrize("per", ["run", "Shelf", "Main"])
+@pytest.mark.parametrize("action", ["fail", "halt"])
+def test_starts_and_successes_are_counted(engine: Engine, per: str, action: str) -> None:
+    text = f"QualityReq rq1\n    Pick starts at most 3 per {per}\n    on violation {action}\n{PICKS}"
+    answer = assert_fails(engine, text, FOUR_TRIES)
+    assert answer.statuses("Pick").count("RUNNING") == 3
+    assert_unchanged(engine, text.replace("at most 3", "less than 5"), FOUR_TRIES, ["Pick"])
+    tree = PICKS.replace("Retry (num_attempts = 5)", "Repeat (num_cycles = 5)")
+    for verb in ("succeeds", "finishes") if action == "halt" else ("succeeds",):
+        text = f"QualityReq rq1\n    Pick {verb} at most 3 per {per}\n    on violation {action}\n{tree}"
+        answer = assert_fails(engine, text, {})
+        assert answer.statuses("Pick").count("SUCCESS") == 4
+        assert_unchanged(engine, text.replace("at most 3", "less than 6"), {}, ["Pick"])
+
+
+@pytest.mark.parametrize("per", ["run", "Shelf", "Main"])
+@pytest.mark.parametrize("verb", ["fails", "finishes"])
+def test_failures_are_counted_and_halt_the_mission(engine: Engine, per: str, verb: str) -> None:
+    text = f"QualityReq rq1\n    Pick {verb} at most 2 per {per}\n    on violation halt\n{PICKS}"
+    answer = assert_fails(engine, text, FOUR_TRIES)
+    assert answer.statuses("Pick").count("FAILURE") == 3
+    assert_unchanged(engine, text.replace("at most 2", "less than 5"), FOUR_TRIES, ["Pick"])
+
+
+def test_results_are_counted_anew_for_each_activation(engine: Engine) -> None:
+    tree = PICKS.replace("Retry (num_attempts = 5)", "Repeat (num_cycles = 2)")
+    tree = tree.replace("        -> Shelf\n", "        Repeat (num_cycles = 3)\n          -> Shelf\n")
+    text = f"QualityReq rq1\n    Pick succeeds at most 2 per Shelf\n    on violation fail\n{tree}"
+    assert_unchanged(engine, text, {}, ["Pick"])
+    assert_fails(engine, text.replace("per Shelf", "per run"), {})
+
+
 def test_tries_are_counted_anew_for_each_activation(engine: Engine) -> None:
     tree = PICKS.replace("        -> Shelf\n", "        Repeat (num_cycles = 3)\n          -> Shelf\n")
     text = f"QualityReq rq1\n    Pick tries at most 2 per Shelf\n    on violation fail\n{tree}"

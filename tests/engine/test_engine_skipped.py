@@ -30,6 +30,7 @@ CLAUSES = {
     "uses": "uses at most 5 Wh of energy",
     "tries": "tries at most 9",
     "tries_per": "tries at most 9 per Main",
+    "counts": "succeeds at most 9 per run",
     "follows": "follows First succeeds",
     "follows_start": "follows First starts",
     "several": "takes at most 1 h\n    Move needs not near\n    Move keeps speed <= 1 m/s\n    Move tries at most 9",

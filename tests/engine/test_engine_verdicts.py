@@ -86,6 +86,7 @@ ROWS: Final[Mapping[str, Row]] = {
     "follows_again": ("", "follows First succeeds", THRICE, QUICK, {}, HELD, (3, 2), (3, 2)),
     # judged per run: the refusals add no case
     "tries": ("", "tries at most 1", THRICE, QUICK, {}, HELD, (1, 1), (3, 2)),
+    "starts": ("", "starts at most 1 per run", THRICE, QUICK, {}, HELD, (1, 1), (3, 2)),
 }
 
 

@@ -7,15 +7,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import isclose, sqrt
+from statistics import fmean, stdev
 from typing import TYPE_CHECKING, Any
 
 from literal_log import both, micros
-from literal_over_runs import OverRuns, all_of
+from literal_over_runs import OF_RUNS, OverRuns, all_of
 from literal_verbs import OPEN, OUT, Judged, counted
 
-from btq_lang.evidence.model import ROOT
+from btq_lang.evidence.model import ENOUGH, ROOT
 from btq_lang.evidence.odds import lower_limit, upper_limit
-from btq_lang.requirements.model import DurationSum, Interval, MissionRun, NodeTarget, ResolvedEachEvent
+from btq_lang.evidence.poisson import lower_number, upper_number
+from btq_lang.evidence.student import quantile
+from btq_lang.requirements.model import DurationSum, Interval, MissionRun, NodeTarget, Quantity, ResolvedEachEvent
 
 if TYPE_CHECKING:
     from literal_log import Truth
@@ -58,7 +62,7 @@ class World(OverRuns):
                 continue
             if requirement.span is not None:
                 found += self.kept_in_spans(uid, claim, requirement)
-            elif claim.verb in ("tries", "runs", "follows", "visits"):
+            elif claim.verb in OF_RUNS:
                 found += self.over_runs(uid, claim, requirement)
             elif claim.verb not in ("starts", "ends"):
                 found += self.of_activations(uid, claim, requirement, part)
@@ -120,6 +124,20 @@ class Session:
             if each.verdict != OUT or claim.verb not in ("starts", "ends", "follows", "keeps", "never")
         ]
 
+    def rated(self, applied: Applied, claim: ResolvedClaim) -> list[tuple[Judged, tuple[int, int, int, int]]]:
+        """fails at most m per d: what each run adds, if it has time for it."""
+        uids = self.late.uids(applied.subject) if isinstance(applied.subject, NodeTarget | MissionRun) else []
+        is_mission = isinstance(applied.subject, MissionRun)
+        early, late = (
+            world.rates(uids, is_mission, claim, applied.requirement) if uids else [] for world in self.worlds
+        )
+        found = []
+        for run, ones, others in zip(self.runs, early, late, strict=False):
+            (few, one_many, short, one_long), (other_few, many, other_short, long) = ones, others
+            added = min(few, other_few), max(one_many, many), min(short, other_short), max(one_long, long)
+            found.append((Judged(run.run, uids[0], True if added[3] else OUT, run.end), added))
+        return found
+
     def followed(self, each: ResolvedEachEvent, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Judged]:
         """each e is followed by f: what both ends of the begins say of each e."""
         early, late = (world.followed(each, claim, requirement) for world in self.worlds)
@@ -136,7 +154,7 @@ class Session:
             ones, others = ([each for each in judged if (each.run, each.uid) == (run, uid)] for judged in (early, late))
             if len(ones) == len(others):
                 found += [
-                    replace(other, verdict=alike(one.verdict, other.verdict))
+                    replace(other, verdict=alike(one.verdict, other.verdict), measures=ends(one, other))
                     for one, other in zip(ones, others, strict=True)
                 ]
             elif any(each.verdict != OUT for each in (*ones, *others)):
@@ -214,6 +232,12 @@ def alike(one: Verdict, other: Verdict) -> Verdict:
     return one if one == other else OPEN if {one, other} == {OPEN, OUT} else None
 
 
+def ends(one: Judged, other: Judged) -> tuple[float, float]:
+    """Between which a measure is; the lower one if they are nearly the same."""
+    low, high = sorted((*one.measures, *other.measures))[:: len(one.measures) * 2 - 1]
+    return (low, low) if high - low <= abs(low) * ENOUGH else (low, high)
+
+
 def both_parts(upper: Judged, lower: Judged) -> Judged:
     """`between` by what its ends come to: what is cut off, or not counted, is so by the upper one."""
     if isinstance(upper.verdict, str) or isinstance(lower.verdict, str):
@@ -234,11 +258,15 @@ class Literal:
         requirement = applied.requirement
         judged: list[Judged] = []
         before = 0
+        if claim.verb == "fails per time":
+            return self.rate(applied, claim)
         for session in self.sessions:
             judged += [replace(each, run=each.run + before) for each in session.judged(applied, claim)]
             before += len(session.runs)
         judged.sort(key=lambda each: (self.runs[each.run].begin, each.run, each.at, each.decided))
         judged = self.last(requirement, judged)
+        if claim.verb.endswith(" on average"):
+            return ClauseResult(self.mean(requirement, claim, judged), tuple(judged), tuple(x.verdict for x in judged))
         experiments = [each.verdict for each in judged]
         if requirement.odds is not None and requirement.odds.experiments == "runs":
             of_runs = [[each.verdict for each in judged if each.run == run] for run in range(len(self.runs))]
@@ -252,6 +280,90 @@ class Literal:
         if verdict == "satisfied" and not nodes & ran:
             verdict = "never exercised"  # where others ran that it might have run in, or after
         return ClauseResult(verdict, tuple(judged), tuple(experiments))
+
+    def mean(self, requirement: ResolvedRequirement, claim: ResolvedClaim, judged: Sequence[Judged]) -> str:
+        """takes, uses … on average: the least and the most that the mean of what counts may be."""
+        assert claim.limit is not None
+        assert isinstance(claim.limit.value, Quantity)
+        verdicts = [each.verdict for each in judged]
+        if None in verdicts:
+            return "unknown"
+        limits = [each.measures for each in judged if each.verdict is True]
+        if not limits:
+            return "never exercised"
+        middles = [(low + high) / 2 for low, high in limits]
+        halves = [(high - low) / 2 for low, high in limits]
+        width = fmean(halves)
+        if requirement.confidence is not None:
+            if len(limits) < 2:
+                return "undecided"
+            deviation = stdev(middles) + sqrt(sum(half * half for half in halves) / (len(halves) - 1))
+            width += quantile(requirement.confidence, len(limits) - 1) * deviation / sqrt(len(limits))
+        low, high = fmean(middles) - width, fmean(middles) + width
+        least = claim.limit.value.si if claim.limit.relation not in ("<=", "<") else float("-inf")
+        most = claim.limit.value.si if claim.limit.relation in ("<=", "<") else float("inf")
+        if isinstance(claim.limit.upper, Quantity):
+            most = claim.limit.upper.si
+        for bound in (least, most):
+            low, high = (bound if isclose(end, bound, rel_tol=1e-12) else end for end in (low, high))
+        is_strict = claim.limit.relation in ("<", ">")
+        if (least < low and high < most) or (not is_strict and least <= low and high <= most):
+            return "satisfied"
+        if low > most or high < least or (is_strict and (low >= most or high <= least)):
+            return "violated"
+        return "undecided" if requirement.confidence is not None else "unknown"
+
+    def rate(self, applied: Applied, claim: ResolvedClaim) -> ClauseResult:
+        """fails at most m per d: the failures and the time of all runs."""
+        requirement = applied.requirement
+        added: dict[int, tuple[int, int, int, int]] = {}
+        judged: list[Judged] = []
+        before = 0
+        for session in self.sessions:
+            for each, amounts in session.rated(applied, claim):
+                judged.append(replace(each, run=each.run + before))
+                added[each.run + before] = amounts
+            before += len(session.runs)
+        judged.sort(key=lambda each: (self.runs[each.run].begin, each.run, each.at))
+        judged = self.last(requirement, judged)
+        counted = [added[each.run] for each in judged if each.verdict is True]
+        few, many, short, long = (sum(column) for column in zip(*counted, strict=True)) if counted else (0, 0, 0, 0)
+        one, other = self.of_rate(requirement, claim, many, short), self.of_rate(requirement, claim, few, long)
+        verdict = "never exercised" if not counted else one if one == other else "unknown"
+        uids = {each.uid for each in judged}
+        if isinstance(applied.subject, NodeTarget):
+            uids = {*self.sessions[0].late.uids(applied.subject)}
+        if verdict == "satisfied" and not uids & {each.uid for each in self.activations}:
+            verdict = "never exercised"
+        return ClauseResult(verdict, tuple(judged), tuple(each.verdict for each in judged))
+
+    def of_rate(self, requirement: ResolvedRequirement, claim: ResolvedClaim, number: int, micros_: int) -> str:
+        """What a number of failures in a time comes to."""
+        assert claim.limit is not None
+        assert isinstance(claim.per, Quantity)
+        assert isinstance(claim.limit.value, Quantity)
+        low, high = float("-inf"), float("inf")
+        if claim.limit.relation in ("<=", "<"):
+            high = claim.limit.value.si
+        else:
+            low = claim.limit.value.si
+        if isinstance(claim.limit.upper, Quantity):
+            high = claim.limit.upper.si
+        is_strict = claim.limit.relation in ("<", ">")
+        times = micros_ / 1e6 / claim.per.si
+        confidence = requirement.confidence
+        if confidence is None and times < 1:
+            return "unknown"
+        fewest, most = (
+            (number, number)
+            if confidence is None
+            else (lower_number(number, confidence), upper_number(number, confidence))
+        )
+        at_least, at_most = low * times if low > 0 else low, high * times if high < float("inf") else high
+        is_kept = fewest > at_least and most < at_most if is_strict else fewest >= at_least and most <= at_most
+        if is_kept:
+            return "satisfied"
+        return "violated" if confidence is None or fewest > at_most or most < at_least else "undecided"
 
     def verdict(self, requirement: ResolvedRequirement, experiments: Sequence[Verdict]) -> str:
         """What experiments come to together."""

@@ -108,8 +108,8 @@ class OverRuns(OfActivations):
     """A session, and what each run of it comes to."""
 
     def over_runs(self, uid: int, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Judged]:
-        """tries, runs, follows at one instance of a node."""
-        judge = {"tries": self.tries, "runs": self.rate, "follows": self.follows, "visits": self.visits}[claim.verb]
+        """A verb of OF_RUNS at one instance of a node."""
+        judge = getattr(self, OF_RUNS[claim.verb])
         found = []
         for run in self.runs:
             own = [each for each in self.of(uid) if each.run == run.run]
@@ -125,20 +125,31 @@ class OverRuns(OfActivations):
         claim: ResolvedClaim,
         requirement: ResolvedRequirement,
     ) -> list[Decided]:
-        """How many starts that count lie in each activation of the other node, or in the run."""
+        """How many starts, or results of a kind, lie in each activation of the other node, or in the run."""
         assert not isinstance(claim.per, Quantity)
         around = [ROOT] if claim.per is None else self.nearest(uid, self.uids(claim.per))
         refused = [
             check
             for verb, guard, check in self.refusals(uid)
-            if verb == "tries" and self.guards[guard.uid] == requirement.name and check.run == run.run
+            if verb == claim.verb and self.guards[guard.uid] == requirement.name and check.run == run.run
         ]
         found: list[Decided] = []
         for p in (each for other in around for each in self.of(other) if each.run == run.run):
-            inside = [(x, self.counts(x, requirement)) for x in own if p.shown <= x.shown <= p.stop]
+            counted_outcomes = COUNTED.get(claim.verb, "SFHO")
+            moments = {id(x): x.stop if claim.verb in COUNTED else x.shown for x in own}
+            of_kind = [x for x in own if x.outcome in counted_outcomes]
+            inside = [(x, self.counts(x, requirement)) for x in of_kind if p.shown <= moments[id(x)] <= p.stop]
+            meanwhile = [self.counts(x, requirement) for x in own if x.shown <= p.stop and p.shown <= x.stop]
             sure = [x for x, counts in inside if counts]
             numbers = {len(sure), sum(counts is not False for _, counts in inside)}
             verdicts = {self.tried(p, number, claim) for number in numbers}
+            if claim.verb in COUNTED and claim.limit is not None and claim.limit.relation in ("<", "<="):
+                # that it did not come to such a result counts where it was active
+                at_none = self.within(0, claim.limit, p)[0]
+                none: list[Verdict] = [OPEN if at_none and p.outcome == "O" else at_none]
+                verdicts = {each for number in numbers for each in ([self.tried(p, number, claim)] if number else none)}
+                if True not in meanwhile:
+                    verdicts = {OUT} if not any(each is None for each in meanwhile) else {*verdicts, OUT}
             verdict = verdicts.pop() if len(verdicts) == 1 else None
             one_more = [each for each in refused if p.first <= each.first <= p.last]
             if one_more:
@@ -244,6 +255,74 @@ class OverRuns(OfActivations):
         is_above = self.within(max(numbers), claim.limit, stretch)[0] is False
         worst = numbers.index(max(numbers) if is_above else min(numbers))
         return [(False, inside[worst] + length)]
+
+    def share(
+        self,
+        uid: int,
+        own: Sequence[Activation],
+        run: Activation,
+        claim: ResolvedClaim,
+        requirement: ResolvedRequirement,
+    ) -> list[Decided]:
+        """keeps φ in at least p of time: each piece of the time counts, may count, or does not."""
+        pieces = [
+            (time, counts, negated(self.holds(claim.condition, moment, seen), claim.verb == "never of time"))
+            for a in own
+            for time, counts, moment, seen in self.pieces(a, requirement)
+        ]
+        if not pieces:
+            return [(OUT, run.end)]
+        if run.outcome == "O":
+            return [(OPEN, run.end)]
+        if not any(counts for _, counts, _ in pieces):
+            return [(None, run.end)]
+        shares = []
+        for doubt in (False, True):  # what is in doubt is against the clause, or for it
+            supposed = [(time, counts, doubt if holds is None else holds) for time, counts, holds in pieces]
+            counted_ones = [(time, holds) for time, counts, holds in supposed if counts or holds is doubt]
+            shares.append(sum(time for time, holds in counted_ones if holds) / sum(time for time, _ in counted_ones))
+        verdicts = {both(*self.within(share, claim.limit, run)) for share in shares}
+        return [(verdicts.pop() if len(verdicts) == 1 else None, run.end)]
+
+    def pieces(self, a: Activation, requirement: ResolvedRequirement) -> list[tuple[int, Truth, Moment, Activation]]:
+        """The time of an activation between two changes: how long, whether it counts, when, and as it is seen then."""
+        found: list[tuple[int, Truth, Moment, Activation]] = []
+        early = replace(a, start=a.earliest)
+        when = self.holds_all("when", requirement, a.start, a)
+        for moment, following in pairwise(sorted({*self.moments(early), a.latest, a.stop})):
+            seen = a if moment >= a.start else early
+            now = self.holds_all("while", requirement, moment, seen)
+            counts = both(when, now, moment >= a.latest or None, a.is_exact or None)
+            if counts is not False and following[0] > moment[0]:
+                found.append((following[0] - moment[0], counts, moment, seen))
+        return found
+
+    def rates(
+        self, uids: Sequence[int], is_mission: bool, claim: ResolvedClaim, requirement: ResolvedRequirement
+    ) -> list[tuple[int, int, int, int]]:
+        """fails at most m per d: of each run the failures, fewest and most, and the time for them, least and most."""
+        found = []
+        for run in self.runs:
+            around = self.nearest(uids[0], self.uids(claim.of)) if claim.of is not None else [ROOT]
+            exposed = [each for uid in around for each in self.of(uid) if each.run == run.run]
+            times = [piece for a in exposed for piece in self.pieces(a, requirement)]
+            own = (
+                [run] if is_mission else [each for each in self.activations if each.uid in uids and each.run == run.run]
+            )
+            failed = [
+                both(self.holds_all("when", requirement, x.start, x), self.holds_all("while", requirement, x.stop, x))
+                for x in own
+                if x.outcome == "F"
+            ]
+            found.append(
+                (
+                    sum(counts is True for counts in failed),
+                    sum(counts is not False for counts in failed),
+                    sum(time for time, counts, *_ in times if counts),
+                    sum(time for time, *_ in times),
+                )
+            )
+        return found
 
     def reactions(self, uid: int, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Spent]:
         """starts within d after ev, ends within d after ev: the next start, or end, after each event."""
@@ -576,6 +655,17 @@ class OverRuns(OfActivations):
             for each in of
             if each.outcome in outcomes
         ]
+
+
+COUNTED = {"succeeds per": "S", "fails per": "F", "finishes per": "SF"}
+OF_RUNS = {
+    **dict.fromkeys((*COUNTED, "starts per"), "tries"),
+    "tries": "tries",
+    "runs": "rate",
+    "visits": "visits",
+    "follows": "follows",
+    **dict.fromkeys(("keeps of time", "never of time"), "share"),
+}
 
 
 def between(run: Activation, uid: int, start: Moment, stop: Moment) -> Activation:

@@ -29,6 +29,7 @@ class Judged:
     Attributes:
         at: its end, or that of the run.
         is_refused: it did not start.
+        measures: between which what goes into a mean is.
         decided: when that was decided, of several in a run that are judged when the run has ended.
     """
 
@@ -38,6 +39,7 @@ class Judged:
     at: int
     decided: int = 0
     is_refused: bool = False
+    measures: tuple[float, float] = (0.0, 0.0)
 
 
 class OfActivations(Log):
@@ -58,7 +60,10 @@ class OfActivations(Log):
             if claim.verb in ("keeps", "never")
             else judged(each, self.never_for(each, claim, requirement))
             if claim.verb == "never for"
-            else judged(each, self.scoped(each, self.whole(each, claim, part), requirement))
+            else replace(
+                judged(each, self.scoped(each, self.whole(each, claim, part), requirement)),
+                measures=(self.measured(claim, each) or 0.0,) * 2 if claim.verb.endswith(" on average") else (0.0, 0.0),
+            )
             for each in self.of(uid)
         ]
         return [
@@ -110,7 +115,11 @@ class OfActivations(Log):
             )
             for verb, guard, check in self.refusals(uid)
             if claim.verb == "succeeds"
-            or (claim.verb == verb != "tries" and self.guards[guard.uid] == requirement.name)
+            or (
+                claim.verb == verb
+                and verb not in ("tries", "starts per")
+                and self.guards[guard.uid] == requirement.name
+            )
         ]
 
     def refusals(self, uid: int) -> list[tuple[str, Activation, Activation]]:
@@ -134,7 +143,8 @@ class OfActivations(Log):
                 if not guards or guards[-1].last < check.first:  # the log is cut off before the only row of the guard
                     guards.append(replace(check, uid=above, first=guards[-1].last + 1 if guards else 0))
                 word = self.tree.nodes[above].path.rpartition("_")[2]
-                found.append(({"used": "uses", "ends": "ends with"}.get(word, word), guards[-1], check))
+                words = {"used": "uses", "ends": "ends with", "starts": "starts per"}
+                found.append((words.get(word, word), guards[-1], check))
         return found
 
     def held(self, uid: int, guard: Activation, check: Activation) -> list[Activation]:
@@ -170,6 +180,9 @@ class OfActivations(Log):
             if claim.limit is None:
                 return True if a.outcome == "S" else OPEN if a.outcome == "O" else OUT
             return self.bounded(a, (a.end - a.begin) / 1e6, claim.limit)
+        if claim.verb.endswith(" on average"):  # whatever it is
+            known: Truth = None if self.measured(claim, a) is None else True
+            return known if a.outcome in ("S", "F") else OPEN if a.outcome == "O" else OUT
         if claim.verb == "needs":
             holds = self.holds(claim.condition, a.start, a)
             return OPEN if holds and a.outcome == "O" else holds
@@ -181,6 +194,14 @@ class OfActivations(Log):
             return holds if a.outcome in ("S", "F") else OPEN if a.outcome == "O" else OUT
         assert claim.verb == "uses"
         return self.bounded(a, self.used(claim, a), claim.limit, part)
+
+    def measured(self, claim: ResolvedClaim, a: Activation) -> float | None:
+        """How long an activation lasts, or how much it uses."""
+        assert claim.limit is not None
+        is_bound_known = self.amount(claim.limit.value, a.start, a) is not None
+        if claim.signal is None:
+            return (a.end - a.begin) / 1e6 if is_bound_known else None
+        return self.used(claim, a) if is_bound_known else None
 
     def used(self, claim: ResolvedClaim, a: Activation) -> float | None:
         """How much of its signal an activation used, in SI, by the samples from the last one before it to its end.

@@ -236,7 +236,40 @@ def requirement(chance: random.Random, name: str, labels: list[str]) -> str:
             lines.append(f"over last {chance.choice(['5 activations', '2 runs', '4 s'])}")
     elif chance.random() < 0.4:
         lines.append(f"on violation {chance.choice(['fail', 'fail', 'halt'])}")
-    return "\n    ".join([head, *lines]) + apply
+    return "\n    ".join([head, *of_more(lines)]) + apply
+
+
+def of_more(lines: list[str]) -> list[str]:
+    """Some of the clauses demand a share of the time, or count results; drawn apart, so that the other cases stay the
+    same.
+    """
+    chance = random.Random("\n".join(lines))
+    for index, line in enumerate(lines):
+        if " tries " in line and chance.random() < 0.6:
+            verb = chance.choice(["succeeds", "starts", "fails", "finishes"])
+            lines[index] = line.replace(" tries ", f" {verb} ") + ("" if " per " in line else " per run")
+    if len(lines) == 1 and " tries " in lines[0] and chance.random() < 0.5:
+        subject = lines[0].partition(" tries ")[0]
+        of = f" of {subject}" if chance.random() < 0.3 and subject.startswith("n") else ""
+        relation = chance.choice(["at most", "at most", "less than", "at least"])
+        lines[0] = f"{subject} fails {relation} {chance.choice([0, 0.5, 1, 2])} per {chance.randint(1, 20)} s{of}"
+        lines.extend([f"confidence {chance.choice([60, 90])} %"] if chance.random() < 0.5 else [])
+    if (
+        len(lines) == 1
+        and re.search("^(?!from|sum).* (takes|uses) ", lines[0])
+        and not re.search(" if |limit", lines[0])
+        and chance.random() < 0.4
+    ):
+        lines.append("on average")
+        lines.extend([f"confidence {chance.choice([60, 90])} %"] if chance.random() < 0.5 else [])
+    claims = [line for line in lines if line.split()[0] not in _HEADS]
+    if all(re.search(" (keeps|never) ", line) for line in claims) and chance.random() < 0.4:
+        share = f"{chance.choice([20, 50, 75, 90])} % of time"
+        lines.insert(len(claims), chance.choice([f"in at least {share}", f"with probability > {share}"]))
+    return lines
+
+
+_HEADS = ("while", "when", "in", "with", "confidence", "over", "on")
 
 
 def claim(chance: random.Random, labels: list[str]) -> str:

@@ -643,7 +643,7 @@ FROM_OTHER_LANGUAGES: list[tuple[str, str, str | None]] = [
     ),
     (
         requirement("tries at most 2 per mission"),
-        "4:25 error unmatched-path «mission» unknown node `mission` | without `per` it counts per run",
+        "4:25 error unmatched-path «mission» unknown node `mission` | write `per run`",
         None,
     ),
     (

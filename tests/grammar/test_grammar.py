@@ -6,6 +6,7 @@ import importlib
 import pkgutil
 import random
 import re
+from itertools import pairwise
 from pathlib import Path
 from typing import TypeAlias
 
@@ -41,7 +42,6 @@ WITHOUT_A_FUNCTION = {  # productions, and why
     "ReqHead": "of two forms, which `parse_requirement` and `parse_classic_requirement` read with their clauses",
     "Name": "a word of two kinds, which `Cursor.name` takes",
     "Cmp": "a set of words",
-    "Counted": "a set of words",
     "Func": "a set of words",
 }
 
@@ -92,6 +92,8 @@ def sentence(chance: random.Random) -> str:
     """A random file."""
     words: list[str] = []
     _derive(("name", "File"), chance, words, 0)
+    for index in [at for at, pair in enumerate(pairwise(words)) if pair[0] in TOKENS["QUANTITY"] and pair[1] == "("]:
+        words[index] = TOKENS["NUMBER"][0]  # a word before a bracket is no unit
     lines, line, level = [], "", 0
     for word in words:
         if word in ("INDENT", "DEDENT"):

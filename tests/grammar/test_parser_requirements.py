@@ -174,6 +174,12 @@ def test_broken_requirement(text: str, tree: str, problem: str) -> None:
         ("uses between 1 Wh and 2 Wh of energy", "uses between 1Wh 2Wh of energy"),
         ("tries at most 3", "tries <= 3"),
         ("tries at most 3 per a/b", "tries <= 3 per a/b"),
+        ("tries at most 3 per run", "tries <= 3 per run"),
+        ("succeeds at least 12 per run", "succeeds >= 12 per run"),
+        ("starts between 1 and 3 per 'run'", "starts between 1 3 per 'run'"),
+        ("fails at most 1 per 200 h", "fails <= 1 per 200h"),
+        ("fails less than 0.5 per 1 d of a/b", "fails < 0.5 per 1d of a/b"),
+        ("fails at most 3 if a else 1 per run", "fails <= [3 if a, 1 else] per run"),
         ("runs every 5 s", "runs every <= 5s"),
         ("runs at least 1 per 1 s", "runs >= 1 per 1s"),
         ("starts within 2 s after a succeeds", "starts <= 2s after a succeeds"),
@@ -329,7 +335,18 @@ def test_a_verb_is_no_subject_without_quotes(verb: str) -> None:
             "uses <= 3Wh of MISSING",
             "1:22 syntax-error «'a'» expected a signal, found `'a'`",
         ),
-        ("tries at most 3 per", "tries <= 3", f"1:20 syntax-error «» expected a node, {END}"),
+        ("tries at most 3 per", "tries <= 3", f"1:20 syntax-error «» expected `run`, or a node, {END}"),
+        (
+            "succeeds at least 3 per 200 s",
+            "succeeds >= 3 per MISSING",
+            "1:25 syntax-error «200 s» expected `run`, or a node, found `200 s`",
+        ),
+        ("fails at most 3 per 200 h of", "fails <= 3 per 200h", f"1:29 syntax-error «» expected a node, {END}"),
+        (
+            "fails at most 3",
+            "fails <= 3 per MISSING",
+            f"1:16 syntax-error «» expected `per`, and `run` or a node, {END}",
+        ),
         (
             "runs",
             "runs MISSING per MISSING",
@@ -479,6 +496,23 @@ def test_a_misspelt_clause(clause: str, word: str, likely: str) -> None:
     assert_fix(text, f"Replace `{word}` with `{likely}`", text.replace(word, likely))
 
 
+@pytest.mark.parametrize(
+    ("clause", "shown"),
+    [
+        ("a succeeds less than 3 per a/b", "<a> succeeds < 3 per a/b"),
+        ("mission finishes more than 0 per run", "<mission> finishes > 0 per run"),
+        ("fails takes at most 3 s", "<fails> takes <= 3s"),
+        ("finishes succeeds", "<finishes> succeeds"),
+        ("fails/finishes fails at most 3 per fails", "<fails/finishes> fails <= 3 per fails"),
+        ("run tries at most 3 per run", "<run> tries <= 3 per run"),
+        ("a follows fails fails", "<a> follows fails fails"),
+        ("from fails starts to a fails takes at most 3 s", "<from fails starts to a fails> takes <= 3s"),
+    ],
+)
+def test_words_that_are_verbs_before_a_bound_alone(clause: str, shown: str) -> None:
+    assert_clause(clause, shown)
+
+
 # ---- the other clauses ----------------------------------------------------------------------------------------------
 
 
@@ -491,6 +525,9 @@ def test_a_misspelt_clause(clause: str, word: str, likely: str) -> None:
         ("in at least 98% of runs", "odds >= 98% of runs"),
         ("with probability >= 98 %", "odds >= 98%"),
         ("with probability > 98 % of runs", "odds > 98% of runs"),
+        ("on average", "on average"),
+        ("in at least 98 % of time", "odds >= 98% of time"),
+        ("with probability > 98 % of time", "odds > 98% of time"),
         ("confidence 95 %", "confidence 95%"),
         ("over last 200 activations", "over last 200 activations"),
         ("over last 7 runs", "over last 7 runs"),
@@ -531,7 +568,7 @@ def test_clause(clause: str, shown: str) -> None:
         (
             "in at least 98 % of times",
             "odds >= 98%",
-            "1:21 syntax-error «times» expected activations, runs or occurrences, found `times`",
+            "1:21 syntax-error «times» expected activations, runs, occurrences or time, found `times`",
         ),
         (
             "with probability 98 %",

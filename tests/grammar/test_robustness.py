@@ -37,7 +37,7 @@ WORDS = (
     *("until", "each", "is", "followed", "occurrences"),
     *("at", "most", "least", "less", "than", "more", "between", "and", "or", "not", "if", "else", "of", "per", "every"),
     *("within", "after", "mission", "from", "to", "sum", "when", "while", "in", "with", "probability", "confidence"),
-    *("for", "assuming", "visits", "order"),
+    *("for", "assuming", "visits", "order", "time", "average"),
     *("over", "last", "activations", "on", "violation", "fail", "goal", "because", "verified", "by", "review", "node"),
     *("source", "refines", "mitigates", "priority", "approved", "hazard", "severity"),
     *(

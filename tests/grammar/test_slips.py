@@ -508,9 +508,25 @@ CLAUSES: Final[list[tuple[str, tuple[str, ...], str]]] = [
     ("update rate > 10 Hz", ("runs more than 10 per 1 s",), ""),
     ("period <= 100 ms", ("runs every 100 ms",), ""),
     ("retries at most 3", ("tries at most 3",), ""),
+    ("average execution time of Go <= 30 s", ("Go takes at most 30 s on average",), ""),
+    ("takes on average at most 30 s", ("takes at most 30 s on average",), ""),
+    ("uses on average less than 3 m of way", ("uses less than 3 m of way on average",), ""),
+    ("mean time between failures at least 200 h", ("fails at most 1 per 200 h",), ""),
+    ("MTBF >= 200 h", ("fails at most 1 per 200 h",), ""),
+    ("failures <= 2", ("fails at most 2 per run",), ""),
+    ("number of successes at least 12", ("succeeds at least 12 per run",), ""),
     *(
         (clause, ("succeeds in at least 95 % of activations", "succeeds in at least 95 % of runs"), "")
         for clause in ("success rate >= 95 %", "succeeds 95 % of the time", "succeeds at least 95 %")
+    ),
+    *(
+        (clause, ("in at least 95 % of time",), "")
+        for clause in ("at least 95 % of the time", "for 95 % of its time", "during at least 95 % of time")
+    ),
+    (
+        "availability >= 98 %",
+        ("keeps <signal> in at least 98 % of time", "succeeds in at least 98 % of runs"),
+        "the first is a share of the time, of a signal that is true while it is available",
     ),
     *(
         (clause, ("over last 200 activations",), "")

@@ -83,7 +83,7 @@ def _files(connection: Any, store: str) -> list[str]:
 
 def _columns(table: str) -> dict[str, str]:
     """The columns that a table must have, and their types."""
-    others = ("clause_index",) if table == "verdicts" else OPTIONAL.get(table, ())
+    others = (*(("clause_index",) if table == "verdicts" else ()), *OPTIONAL.get(table, ()))
     texts = dict.fromkeys((*COMMON[table], *(OF_CLAUSE if table == "verdicts" else ())), "VARCHAR")
     return {
         **texts,

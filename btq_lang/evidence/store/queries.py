@@ -125,7 +125,10 @@ QUERIES: Final = {
             MIN(clause_index) AS clause_index, MAX(title) AS title, MAX(measures) AS measures, MAX(counts) AS counts,
             MAX(unit) AS unit, MAX(odds) AS odds, MAX(relation) AS relation, MAX(experiments) AS experiments,
             MAX(confidence) AS confidence, MAX(last_number) AS last_number, MAX(last_of) AS last_of,
-            MAX(last_seconds) AS last_seconds, MAX(CASE WHEN exercised THEN 1 ELSE 0 END) AS exercised,
+            MAX(last_seconds) AS last_seconds, MAX(rate_low) AS rate_low, MAX(rate_high) AS rate_high,
+            MAX(rate_strict) AS rate_strict, MAX(rate_seconds) AS rate_seconds,
+            MAX(mean_low) AS mean_low, MAX(mean_high) AS mean_high, MAX(mean_strict) AS mean_strict,
+            MAX(CASE WHEN exercised THEN 1 ELSE 0 END) AS exercised,
             SUM(cut_off) AS cut_off, MIN(missing) AS missing
         FROM clauses
         GROUP BY {by}, requirement, clause, node
@@ -143,8 +146,16 @@ QUERIES: Final = {
             MIN(CASE WHEN verdict = 'satisfied' AND most_si IS NULL THEN measured_si END) AS lowest,
             MAX(CASE WHEN verdict = 'satisfied' AND most_si IS NULL THEN measured_si END) AS highest,
             SUM(CASE WHEN most_si IS NULL THEN 0 ELSE 1 END) AS bounded, MAX(most_si) AS bounded_si,
-            MAX(CASE WHEN most_si IS NOT NULL THEN bound_si END) AS bounded_bound_si
-        FROM verdicts
+            MAX(CASE WHEN most_si IS NOT NULL THEN bound_si END) AS bounded_bound_si,
+            COUNT(middle) AS measured, SUM(middle) AS total, SUM(middle * middle) AS squares,
+            SUM(half) AS halves, SUM(half * half) AS squared_halves,
+            SUM(number) AS number, SUM(number_most) AS number_most,
+            SUM(exposure_s) AS exposure_s, SUM(exposure_most_s) AS exposure_most_s
+        FROM (
+            SELECT *, (measured_si + COALESCE(most_si, measured_si)) / 2 AS middle,
+                ABS(COALESCE(most_si, measured_si) - measured_si) / 2 AS half
+            FROM verdicts
+        ) AS measures
         GROUP BY {by}, requirement, clause, node
     """,
     # The violations furthest beyond their bounds, with their runs.
@@ -169,7 +180,8 @@ QUERIES: Final = {
                 verdicts.node AS node, verdicts.log AS log, verdicts.run AS run, verdicts.path AS path,
                 verdicts.end_us AS end_us, verdicts.at_us AS at_us, verdicts.verdict AS verdict,
                 verdicts.measured_si AS measured_si, verdicts.bound_si AS bound_si, verdicts.why AS why,
-                verdicts.most_si AS most_si,
+                verdicts.most_si AS most_si, verdicts.number AS number, verdicts.number_most AS number_most,
+                verdicts.exposure_s AS exposure_s, verdicts.exposure_most_s AS exposure_most_s,
                 runs.source AS source, runs.start_us AS run_start_us, runs.end_us AS run_end_us,
                 windows.last_number AS last_number, windows.last_of AS last_of, windows.last_seconds AS last_seconds,
                 DENSE_RANK() OVER (

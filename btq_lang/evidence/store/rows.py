@@ -27,6 +27,7 @@ from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.clause import JudgedClause
+    from btq_lang.evidence.pools import Pool
     from btq_lang.evidence.verbs import Judgement
     from btq_lang.evidence.verdicts import ClauseVerdict
     from btq_lang.requirements.model import Quantity, ResolvedRequirement
@@ -127,7 +128,9 @@ class MissionRows:
             times_seen[same] += 1  # a requirement with parameters may be applied to a node twice
             text = verdict.text if times_seen[same] == 1 else f"{verdict.text} ({times_seen[same]})"
             row = replace(verdict, text=text, path=node)
-            self._write(written, requirement, row, findings.has_run, findings.missing, clause.marks())
+            if findings.pool is not None:
+                written.unit = findings.pool.demanded.unit.symbol
+            self._write(written, requirement, row, findings.has_run, findings.missing, clause.marks(), findings.pool)
         for requirement in self._open:
             for verdict in open_clauses(requirement):
                 self._write(_Clause(self._rows.clauses), requirement, verdict, False, verdict.why, {})
@@ -141,12 +144,14 @@ class MissionRows:
         has_run: bool,
         missing: str,
         marks: Mapping[str, Quantity],
+        pool: Pool | None = None,
     ) -> None:
         """Write a clause.
 
         Args:
             has_run, missing: as in `ClauseFindings`.
             marks: as in `Histogram`.
+            pool: as of `ClauseFindings`.
         """
         odds, window = requirement.odds, requirement.window
         named = (requirement.name, " ".join((requirement.title or "").split()), verdict.text, verdict.path)
@@ -156,7 +161,11 @@ class MissionRows:
         means = (verdict.of, counts, clause.unit, *of_odds, requirement.confidence, *of_window)
         marked = (marks[kind].si if kind in marks else None for kind in ("lower bound", "upper bound", "goal"))
         state = has_run, verdict.cut_off, missing
-        self._rows.write["clauses"]((*self._whose, clause.index, *named, *means, *state, *marked))
+        rate: tuple[float | None, ...] = (None,) * 7
+        if pool is not None:
+            *bounds, seconds = pool.demanded.columns
+            rate = (*bounds, seconds, None, None, None) if seconds else (None, None, None, None, *bounds)
+        self._rows.write["clauses"]((*self._whose, clause.index, *named, *means, *state, *marked, *rate))
 
     def _judged(self, clause: _Clause, of_runs: bool, judgement: Judgement, begin: int, end: int, path: str) -> None:
         verdict = UNKNOWN if judgement.holds is None else SATISFIED if judgement.holds else VIOLATED
@@ -167,7 +176,24 @@ class MissionRows:
         why = None if judgement.holds else judgement.sentence
         violated_at = judgement.at if verdict == VIOLATED else None
         most = judgement.most.si if judgement.most is not None else None
-        row = (clause.index, self._rows.run, path, begin, end, verdict, True, violated_at, *numbers, why, most)
+        amounts: tuple[float | None, ...] = (None,) * 4
+        if judgement.amounts is not None:
+            least_number, most_number, exposure, longest = judgement.amounts
+            amounts = least_number, most_number, exposure / 1e6, longest / 1e6
+        row = (
+            clause.index,
+            self._rows.run,
+            path,
+            begin,
+            end,
+            verdict,
+            True,
+            violated_at,
+            *numbers,
+            why,
+            most,
+            *amounts,
+        )
         if of_runs:
             clause.open.append(row)
         else:

@@ -13,9 +13,12 @@ from typing import Final
 
 from btq_lang.catalog.units import Unit, parse_unit
 from btq_lang.diagnostics.model import Place
+from btq_lang.evidence.amounts import Amounts
 from btq_lang.evidence.clause_findings import verdict_of
 from btq_lang.evidence.conditions import Measure
+from btq_lang.evidence.means import Mean
 from btq_lang.evidence.odds import Limits
+from btq_lang.evidence.rates import PoolBound, Rate
 from btq_lang.evidence.store.queries import BY_RUN, QUERIES, Ask, Row
 from btq_lang.evidence.tally import MOST_RUNS, Run, Tally
 from btq_lang.evidence.verbs import Judgement
@@ -142,8 +145,7 @@ def _verdict(
         recent: the judgements that its window covers.
         runs: what the last runs show of it.
     """
-    unit = parse_unit(row["unit"] or "1")
-    assert unit is not None, "a unit of the table, as it was written"
+    unit = _unit(row)
     is_windowed = row["last_number"] is not None or row["last_seconds"] is not None
     tally = _recent(row, recent, unit) if is_windowed else _counted(row, counts, broken, unit)
     tally.by_run.extend(RunValue(run["run"], run["run_start_us"], _RANKS[run["worst_rank"]], run["si"]) for run in runs)
@@ -162,6 +164,20 @@ def _verdict(
     )
 
 
+def _unit(row: Row) -> Unit:
+    unit = parse_unit(row["unit"] or "1")
+    assert unit is not None, "a unit of the table, as it was written"
+    return unit
+
+
+def _amounts(row: Row) -> Amounts | None:
+    """What some runs add to a failure rate."""
+    if row["number"] is None:
+        return None
+    times = (round(row[name] * 1e6) for name in ("exposure_s", "exposure_most_s"))
+    return Amounts(int(row["number"]), int(row["number_most"]), *times)
+
+
 def _counted(row: Row, counts: Row | None, broken: Sequence[Row], unit: Unit) -> Tally:
     """The tally of a clause whose judgements all count."""
     tally = _tally(row)
@@ -170,6 +186,13 @@ def _counted(row: Row, counts: Row | None, broken: Sequence[Row], unit: Unit) ->
     tally.violated, tally.unknown = int(counts["violated"]), int(counts["unclear"])
     tally.counted = int(counts["kept"]) + tally.violated
     tally.why = counts["why"] or ""
+    if isinstance(tally.pool, Rate) and (amounts := _amounts(counts)) is not None:
+        tally.pool.add(amounts)
+    elif isinstance(tally.pool, Mean) and counts["measured"]:
+        number, total, squares = counts["measured"], counts["total"], counts["squares"]
+        bound = tally.pool.demanded.value
+        beyond = total - number * bound, squares - 2 * bound * total + number * bound * bound
+        tally.pool.add((number, *beyond, counts["halves"], counts["squared_halves"]))
     tally.violations.extend(_violation(violation, unit) for violation in broken)
     if counts["bounded"]:
         si, bound = counts["bounded_si"], counts["bounded_bound_si"]
@@ -201,6 +224,7 @@ def _recent(row: Row, judgements: Sequence[Row], unit: Unit) -> Tally:
             holds = None if judged["verdict"] == UNKNOWN else judged["verdict"] == SATISFIED
             most = _measure({**judged, "measured_si": judged["most_si"]}, unit)
             judgement = Judgement(holds, judged["at_us"] or 0, judged["why"] or "", _measure(judged, unit), most=most)
+            judgement = judgement._replace(amounts=_amounts(judged))
             tally.add(judgement, judged["path"], judged["end_us"], ())
         first = of_run[0]
         tally.end_run(Run(number, first["source"], first["run_start_us"], first["run_end_us"]))
@@ -215,7 +239,14 @@ def _tally(row: Row) -> Tally:
     is_of_odds = odds is None or odds.experiments == row["last_of"]
     is_windowed = row["last_number"] is not None or row["last_seconds"] is not None
     limits: Limits = "window" if is_windowed else "every look"  # a store is looked at again when it has grown
-    tally = Tally(odds, row["confidence"], limits, row["last_number"] if is_of_odds else None)
+    pool: Rate | Mean | None = None
+    if row["mean_strict"] is not None:
+        bounds = row["mean_low"], row["mean_high"], row["mean_strict"]
+        pool = Mean(PoolBound.of_columns(*bounds, 0.0, _unit(row)), row["confidence"])
+    if row["rate_seconds"] is not None:
+        bounds = row["rate_low"], row["rate_high"], row["rate_strict"]
+        pool = Rate(PoolBound.of_columns(*bounds, row["rate_seconds"], _unit(row)), row["confidence"])
+    tally = Tally(odds, row["confidence"], limits, row["last_number"] if is_of_odds else None, pool)
     tally.cut_off = int(row["cut_off"])
     return tally
 

@@ -69,7 +69,9 @@ ROWS: Final = {
     # `counts`: `activations`, `runs`, or `open` if no log can show it; `unit`: of what is measured; `exercised`:
     # whether its node ran; `cut_off`: activations that the end of the log left undecided; `missing`: why it cannot be
     # judged, or not at all its nodes; `lower_si`, `upper_si`: of a clause with two bounds, unless they vary; `goal_si`:
-    # what its requirement aims at.
+    # what its requirement aims at; `rate_low` to `rate_high` in `rate_seconds`: the failure rate that it
+    # demands, of whose time `unit` is the unit; `rate_strict`: whether the bound itself violates it; `mean_low`,
+    # `mean_high` and `mean_strict`: the same of a mean.
     "clauses": {
         **_WHOSE,
         "clause_index": "INTEGER",
@@ -93,11 +95,19 @@ ROWS: Final = {
         "lower_si": "DOUBLE",
         "upper_si": "DOUBLE",
         "goal_si": "DOUBLE",
+        "rate_low": "DOUBLE",
+        "rate_high": "DOUBLE",
+        "rate_strict": "DOUBLE",
+        "rate_seconds": "DOUBLE",
+        "mean_low": "DOUBLE",
+        "mean_high": "DOUBLE",
+        "mean_strict": "DOUBLE",
     },
     # What was judged: an activation, or a run for clauses about runs.  `verdict`: `satisfied`, `violated` or `unknown`;
     # `counted`: whether it counts: where runs are counted, one judgement of each run does; `at_us`: when it was
     # violated; `why`: what happened, with `{}` for what was measured, or why it is unknown; `most_si`: the upper limit
-    # of a measure of which `measured_si` is the lower one, if it is not known exactly.
+    # of a measure of which `measured_si` is the lower one, if it is not known exactly; `number` to `number_most`
+    # failures in `exposure_s` to `exposure_most_s`: what a run adds to a failure rate.
     "verdicts": {
         "clause_index": "INTEGER",
         "run": "INTEGER",
@@ -111,10 +121,28 @@ ROWS: Final = {
         "bound_si": "DOUBLE",
         "why": "VARCHAR",
         "most_si": "DOUBLE",
+        "number": "DOUBLE",
+        "number_most": "DOUBLE",
+        "exposure_s": "DOUBLE",
+        "exposure_most_s": "DOUBLE",
     },
 }
 # Columns that the sets of earlier versions may lack; they are then NULL.
-OPTIONAL: Final = {"clauses": ("lower_si", "upper_si", "goal_si")}
+OPTIONAL: Final = {
+    "clauses": (
+        "lower_si",
+        "upper_si",
+        "goal_si",
+        "rate_low",
+        "rate_high",
+        "rate_strict",
+        "rate_seconds",
+        "mean_low",
+        "mean_high",
+        "mean_strict",
+    ),
+    "verdicts": ("number", "number_most", "exposure_s", "exposure_most_s"),
+}
 # The columns that a verdict takes from its clause.
 OF_CLAUSE: Final = ("mission", "robot", "requirement", "clause", "node")
 _SETS: Final = "[0-9a-f]*"

@@ -132,10 +132,17 @@ def test_sets_of_an_earlier_version_are_to_be_judged_again(command: tuple[str, .
 
 
 def test_sets_without_the_columns_of_this_version_are_read(store: Path) -> None:
-    """Goals and pairs of bounds are missing in sets of version 2; nothing else depends on them."""
+    """Goals and pairs of bounds are missing in sets of version 2, rates in those before them; nothing else depends on
+    them.
+    """
     before = run_btq("report", "kept", cwd=store.parent)
     for path in store.glob("*/clauses.parquet"):
-        columns = "lower_si, upper_si, goal_si"
+        columns = "lower_si, upper_si, goal_si, rate_low, rate_high, rate_strict, rate_seconds"
+        columns += ", mean_low, mean_high, mean_strict"
+        duckdb.sql(f"COPY (SELECT * EXCLUDE ({columns}) FROM '{path}') TO '{path}.new' (FORMAT parquet)")
+        Path(f"{path}.new").replace(path)
+    for path in store.glob("*/verdicts.parquet"):
+        columns = "number, number_most, exposure_s, exposure_most_s"
         duckdb.sql(f"COPY (SELECT * EXCLUDE ({columns}) FROM '{path}') TO '{path}.new' (FORMAT parquet)")
         Path(f"{path}.new").replace(path)
     assert run_btq("report", "kept", cwd=store.parent) == before
