@@ -97,6 +97,22 @@ def test_checks_know_the_nodes_and_hold_the_code_against_them(robot: Path) -> No
     assert check(robot, "trees/m.btq", "src") == [*IN_MISSION, UNUSED, UNDECLARED]
 
 
+def test_a_helper_of_a_helper_reads_a_port(robot: Path) -> None:
+    helpers = """\
+namespace {
+void read(BT::TreeNode & node, const char * port, double & value) { node.getInput(port, value); }
+void readAll(BT::TreeNode & node, double & value) { read(node, "speed", value); }
+}
+"""
+    tick = 'getInput("sped", speed_);'
+    write(robot, "src/drive.cpp", (helpers + SOURCE).replace(tick, "readAll(*this, speed_);"))
+    assert check(robot) == IN_MISSION
+    write(robot, "src/drive.cpp", (helpers + SOURCE).replace(tick, "read(*this, kName, speed_);"))
+    assert check(robot) == [*IN_MISSION, f"src/drive.cpp:11:20: {OF_UNUSED}"]
+    write(robot, "src/drive.cpp", (helpers + SOURCE).replace(tick, "elsewhere(*this);"))
+    assert check(robot) == IN_MISSION
+
+
 def test_a_node_of_version_3_may_have_the_name_of_a_built_in_of_version_4(robot: Path) -> None:
     ports = 'BT::PortsList providedPorts() { return { BT::InputPort<double>("sleep_time") }; }'
     node = f"struct Sleep : BT::SyncActionNode {{ static {ports} }};\n"
