@@ -48,6 +48,7 @@ class Project(Record):
         folders: working folders: an editor's, or the current one.
         pools: folders in which an XML file finds the trees and models that it lacks; the loader finds them.
         created: the trees of XML that C++ in the pools names, and probably creates.
+        served: the folders from whose XML a server in the pools creates any tree by its ID.
         evidence: its table about logs, if it has one.
         factories: what each of its programs registers.
         node_files: files whose models count in all files: files of btq, and C++ sources that were read.
@@ -76,6 +77,7 @@ class Project(Record):
     folders: tuple[str, ...] = ()
     pools: tuple[str, ...] = ()
     created: frozenset[str] = frozenset()
+    served: tuple[str, ...] = ()
     evidence: EvidenceSettings | None = None
     factories: tuple[Factory, ...] = ()
     node_files: tuple[str, ...] = ()
