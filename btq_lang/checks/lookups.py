@@ -174,6 +174,16 @@ def outside_entries(workspace: Workspace, viewpoint: str) -> tuple[OutsideEntry,
 
 
 @of_viewpoint
+def is_of_navigator(workspace: Workspace, viewpoint: str) -> bool:
+    """Whether bt_navigator is what loads a file: its factory says so, or there are none and the project names only
+    nodes of Nav2."""
+    if workspace.factory is not None:
+        return bool(workspace.factory.nav2)
+    paths = workspace.scope(viewpoint).node_paths
+    return bool(paths) and not workspace.project.factories and set(paths).issubset(FILES.values())
+
+
+@of_viewpoint
 def node_paths(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
     """The files whose models count for a file, and nothing else in them."""
     return workspace.scope(viewpoint).node_paths

@@ -149,7 +149,7 @@ def _unset(view: View, tree: str, mentions: Sequence[EntryMention], excluded: se
         if writers:
             yield _lost(view, mention, writers, use)
         elif use & EntryUse.OUTSIDE:
-            is_usual = mention.in_script and not view.ask(lookups.outside_entries)  # programs set what scripts read
+            is_usual = mention.in_script and not view.ask(lookups.is_of_navigator)  # programs set what scripts read
             if not (use & EntryUse.STRANGE or is_usual or view.ask(_is_passed, tree, name)):
                 outside.append(mention)
         elif not use & EntryUse.STRANGE and view.ask(_needs, tree, name):
@@ -241,14 +241,27 @@ def _passing(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> t
     """The first tree that gives an entry to one that it runs."""
     view = View(store, viewpoint)
     calls = calls_of(view, tree)
-    caller = next((caller for caller, call in calls if name in call.given or name in call.values), None)
+    caller = next(
+        (
+            caller
+            for caller, call in calls
+            if name in call.given or name in call.values or (call.shares and view.ask(_has_entry, caller, name))
+        ),
+        None,
+    )
     return view.declared_at(Kind.TREE, caller, f"passes `{name}` to `{tree}`") if caller is not None else ()
+
+
+def _has_entry(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
+    """Whether an entry is a port of a tree, or a node of it writes it."""
+    handled = store.ask(handling, viewpoint, tree)
+    return name in handled.ports or any(touch.name == name and touch.writes for touch in handled.touches)
 
 
 def _never_set(view: View, mentions: Sequence[EntryMention]) -> Iterator[Diagnostic]:
     """The diagnostics for entries of the root blackboard: a warning for each if the entries that the program sets are
     known; else one hint for all."""
-    if view.ask(lookups.outside_entries):
+    if view.ask(lookups.is_of_navigator):
         for mention in mentions:
             message = f"nothing writes `{mention.name}` before it is read here, and bt_navigator does not set it"
             yield Diagnostic("unset-entry", mention.span, message)

@@ -230,3 +230,18 @@ def test_an_entry_that_one_of_several_subtrees_does_not_pass(first: str, second:
     assert show(text, found) == [f"10:17 warning unset-entry «Stop» {message}"] * is_told
     related = [f"{each.message}" for problem in found for each in problem.related]
     assert related == ["passes `spot` to `Stop`"] * is_told
+
+
+@pytest.mark.parametrize(
+    ("before", "is_told"),
+    [("Find (place = {spot})", True), ("Find (place = {other})", False), ("Go (place = {spot})", False)],
+)
+def test_an_entry_that_one_of_several_subtrees_passes_with_all_others(before: str, is_told: bool) -> None:
+    text = (
+        "Action Go\n    input place\nAction Find\n    output place\n"
+        f"BehaviorTree Main\n    ->\n        {before}\n        SubTree Stop (_autoremap = true)\n        SubTree Stop\n"
+        "BehaviorTree Stop\n    Go (place = {spot})\n"
+    )
+    message = "`Stop` reads `spot`, which this SubTree does not pass to it, and another one does"
+    diagnostics = [each for each in problems(text, "unset-entry") if "another one" in each.message]
+    assert show(text, diagnostics) == [f"9:17 warning unset-entry «Stop» {message}"] * is_told
