@@ -79,8 +79,8 @@ class Uses:
         return tuple(use for use in self.all if use.port not in names and not use.falls_back)
 
     def without_each(self, ports: Iterable[CppPort]) -> tuple[tuple[str, str], ...]:
-        """The effect of each missing input that has no default: see `PortUse.without`."""
-        inputs = (port for port in ports if port.direction != "output" and port.default is None)
+        """The effect of each input for which there is no value: see `PortUse.without`."""
+        inputs = (port for port in ports if port.direction != "output")
         return tuple((port.name, self._without(port)) for port in inputs)
 
     def _without(self, port: CppPort) -> str:

@@ -641,3 +641,26 @@ def test_a_node_that_derives_from_nav2s_needs_what_they_need(
     if distribution != "humble":
         write(robot, "trees/m.btq", mission.format(" (_autoremap = true)"))
         assert check(robot, "trees") == []
+
+
+@pytest.mark.parametrize(
+    ("read", "severity"),
+    [
+        ('fast_ = getInput<bool>("fast").value();', "warning"),
+        ('if(!getInput("fast", fast_)) { fast_ = false; }', "hint"),
+        ('getInput("fast", fast_);', "hint"),
+    ],
+)
+def test_a_default_does_not_count_for_an_entry_that_nothing_sets(robot: Path, read: str, severity: str) -> None:
+    source = SOURCE.replace('if(!getInput("fast", fast_)) { fast_ = false; }', read).replace('"sped"', '"speed"')
+    write(
+        robot, "src/drive.cpp", source.replace('BT::InputPort<bool>("fast")', 'BT::InputPort<bool>("fast", true, "")')
+    )
+    node = "    Drive (goal = {place} fast = {hasty})\n"
+    main = "    ->\n        SubTree Go (place = there hasty = true)\n        SubTree Go (place = there)\n"
+    write(robot, "trees/m.btq", f"BehaviorTree Main\n{main}BehaviorTree Go\n{node}")
+    message = "`Go` reads `hasty`, which this SubTree does not pass to it, and another one does"
+    assert check(robot) == [f"trees/m.btq:4:17: {severity}[unset-entry] {message}"]
+    write(robot, "trees/m.btq", f"BehaviorTree Main\n{main.replace(' hasty = true', '')}BehaviorTree Go\n{node}")
+    message = "nothing in `Go` writes `hasty`, which is read here, and no SubTree passes it"
+    assert check(robot) == [f"trees/m.btq:6:35: {severity}[unset-entry] {message}"]

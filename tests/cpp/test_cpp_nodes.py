@@ -791,7 +791,7 @@ def test_the_function_of_a_simple_node_is_held_against_its_ports() -> None:
             ["inout level : int", "input gain : double = '1.0' # of the microphone"],
             ["gain"],
             [],
-            ["fails"],
+            ["fails", ""],
         ),
         ("Speak", ["input text : std::string", "output length : int"], ["length"], ["lenght"], ["fails"]),
         ("Whole", ["input a : int"], [], [], [""]),
