@@ -203,7 +203,7 @@ def _delays(view: View) -> Iterator[Diagnostic]:
     if any(at_least(last_of(line), NO_DELAY.since) and not at_least(line, NO_DELAY.until) for line in view.engines):
         pin = f'if you run {view.target}, set `engine = "{view.target}"` in btq.toml'
         notes = (NO_DELAY.instead, *(() if view.is_pinned else (pin,)))
-        severity = None if view.is_pinned else Severity.HINT  # `btq init` names all versions, so nobody may run it
+        severity = None if view.is_pinned else Severity.HINT  # `btq init` names all, and the robot may run another
         for resolved in delays:
             message = f"{resolved.shown_kind} {NO_DELAY.what}"
             yield Diagnostic("count-of-nothing", resolved.node.head.span, message, notes=notes, severity=severity)

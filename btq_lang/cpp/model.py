@@ -76,8 +76,7 @@ class CppNode(Record):
         complete: whether these are all of its ports.
         unread: ports that its code never names.
         undeclared: reads and writes of ports that it does not provide.
-        without: what its code does without a value of an input, for which a default stands in only if the XML does not
-            name an entry: see `PortUse.without`.
+        without: what its code does if it gets no value of an input, as where an entry has none: see `PortUse.without`.
         at_once: whether it is seen to end within the tick that starts it.
         nav2_base: the class of nav2_behavior_tree from which its class derives; empty if from none.
     """
