@@ -19,6 +19,14 @@ def ends_at_once(workspace: Workspace, viewpoint: str, kind: Kind, name: str) ->
     return any(node.at_once for node in nodes if node is not None)
 
 
+@of_name
+def without(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> tuple[tuple[str, str], ...] | None:
+    """The effect of each input of a node for which there is no value; None if the node is not made of C++."""
+    definition = workspace.scope(viewpoint).find(kind, name)
+    node = workspace.files[definition.path].cpp_nodes.get(name) if definition is not None else None
+    return node.without if node is not None else None
+
+
 @of_viewpoint
 def set_in_cpp(workspace: Workspace, viewpoint: str) -> SetEntries:
     """The entries that C++ with the nodes of a file sets on a blackboard."""

@@ -102,13 +102,14 @@ def meaning(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Visi
 
 @of_name
 def ports_of_models(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> tuple[tuple[Port, ...], ...]:
-    """The ports of each model of a node in scope, of the first alone if it is C++ whose ports are all seen, else of the
-    one that it has in the pool."""
-    definitions = workspace.scope(viewpoint).all(kind, name) or (workspace.find(viewpoint, kind, name),)
-    first = workspace.files[definitions[0].path].cpp_nodes.get(name) if definitions[0] is not None else None
+    """The ports of each model of a node in scope, else of the one that it has in the pool.  If the first is C++ whose
+    ports are all seen, only a node of Nav2 counts, too, which a program may register in its place."""
+    in_scope = workspace.scope(viewpoint).all(kind, name) or (workspace.find(viewpoint, kind, name),)
+    definitions = [definition for definition in in_scope if definition is not None]
+    first = workspace.files[definitions[0].path].cpp_nodes.get(name) if definitions else None
     if first is not None and first.complete:
-        definitions = definitions[:1]
-    targets = [definition.symbol.target for definition in definitions if definition is not None]
+        definitions = [definitions[0], *(each for each in definitions[1:] if each.path in FILES.values())]
+    targets = [definition.symbol.target for definition in definitions]
     return tuple([target.ports for target in targets if isinstance(target, Model)])
 
 
@@ -171,6 +172,16 @@ def outside_entries(workspace: Workspace, viewpoint: str) -> tuple[OutsideEntry,
     from btq_lang.catalog.nav2.navigator import outside_entries as entries_of  # only for Nav2
 
     return entries_of(nav2)
+
+
+@of_viewpoint
+def is_of_navigator(workspace: Workspace, viewpoint: str) -> bool:
+    """Whether bt_navigator is what loads a file: its factory says so, or there are none and the project names only
+    nodes of Nav2."""
+    if workspace.factory is not None:
+        return bool(workspace.factory.nav2)
+    paths = workspace.scope(viewpoint).node_paths
+    return bool(paths) and not workspace.project.factories and set(paths).issubset(FILES.values())
 
 
 @of_viewpoint

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import posixpath
 from collections.abc import Iterable, Iterator
 from itertools import chain
 from typing import TYPE_CHECKING, Final
@@ -161,6 +162,8 @@ def unknown_main_tree(view: View) -> Iterator[Diagnostic]:
         return
     if view.ask(calls.has_gaps) or not view.is_read:
         return  # the tree that runs the others may be misspelt
+    if posixpath.dirname(view.path) in view.project.served:
+        return
     if view.main_tree or view.ask(lookups.has_root_of_tree):
         return
     tops = [name for name in view.ask(lookups.own_trees) if not view.ask(calls.callers, name)]

@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import chain
 
+from btq_lang.catalog.kinds import PortKind
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import cpp_lookups, lookups
@@ -149,11 +150,11 @@ def _unset(view: View, tree: str, mentions: Sequence[EntryMention], excluded: se
         if writers:
             yield _lost(view, mention, writers, use)
         elif use & EntryUse.OUTSIDE:
-            is_usual = mention.in_script and not view.ask(lookups.outside_entries)  # programs set what scripts read
+            is_usual = mention.in_script and not view.ask(lookups.is_of_navigator)  # programs set what scripts read
             if not (use & EntryUse.STRANGE or is_usual or view.ask(_is_passed, tree, name)):
                 outside.append(mention)
-        elif not use & EntryUse.STRANGE and view.ask(_needs, tree, name):
-            yield _not_given(view, tree, mention)
+        elif not use & EntryUse.STRANGE and (need := view.ask(_need, tree, name)):
+            yield _not_given(view, tree, mention, need)
     set_in_cpp = view.ask(cpp_lookups.set_in_cpp).names
     outside = [
         mention for mention in outside if mention.name not in set_in_cpp and view.ask(_needs, tree, mention.name)
@@ -190,11 +191,12 @@ def _too_early(mention: EntryMention, named: Sequence[EntryMention]) -> Diagnost
     return Diagnostic("unset-entry", mention.span, message, related)
 
 
-def _not_given(view: View, tree: str, mention: EntryMention) -> Diagnostic:
-    """An entry of a tree that is run without it."""
+def _not_given(view: View, tree: str, mention: EntryMention, need: str) -> Diagnostic:
+    """An entry of a tree that is run without it; need: as `_need` says."""
     name = mention.name
     message = f"nothing in `{tree}` writes `{name}`, which is read here, and no SubTree passes it"
-    return Diagnostic("unset-entry", mention.span, message, view.ask(_runs_without, tree, name))
+    related = view.ask(_runs_without, tree, name)
+    return Diagnostic("unset-entry", mention.span, message, related, severity=_SEVERITIES[need])
 
 
 def _runs_without(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> tuple[Related, ...]:
@@ -217,38 +219,55 @@ def _not_passed(view: View) -> Iterator[Diagnostic]:
             continue
         for name in dict.fromkeys(touch.name for touch in view.ask(handling, call.tree).touches):
             is_passed = call.passed(name) is not None or name in call.values or name[:1] == "@"
-            if is_passed or near(name, [*call.given, *call.values]) or not view.ask(_is_expected, call.tree, name):
+            if is_passed or near(name, [*call.given, *call.values]):
+                continue
+            if not (need := view.ask(_expected, call.tree, name)):
                 continue
             if not view.ask(inputs.is_complete):
                 return
             message = f"`{call.tree}` reads `{name}`, which this SubTree does not pass to it, and another one does"
             related = view.ask(_passing, call.tree, name)
-            yield Diagnostic("unset-entry", resolved.node.head.span, message, related)
+            severity = _SEVERITIES[need]
+            yield Diagnostic("unset-entry", resolved.node.head.span, message, related, severity=severity)
 
 
-def _is_expected(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
-    """Whether a tree needs an entry that only those can give it that run it, and one of them does."""
+def _expected(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> str:
+    """The need of a tree, as `_need` says, for an entry that only those can give it that run it, and one of them
+    does."""
     view = View(store, viewpoint)
     use = view.ask(below, tree).use_of(name)
     if not name.isidentifier() or use & (EntryUse.WRITTEN | EntryUse.OPEN | EntryUse.STRANGE):
-        return False
+        return ""
     if port_named(declared_ports(view, tree), name) is not None or name in view.ask(cpp_lookups.set_in_cpp).names:
-        return False
-    return bool(view.ask(_passing, tree, name)) and view.ask(_needs, tree, name)
+        return ""
+    return view.ask(_need, tree, name) if view.ask(_passing, tree, name) else ""
 
 
 def _passing(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> tuple[Related, ...]:
     """The first tree that gives an entry to one that it runs."""
     view = View(store, viewpoint)
     calls = calls_of(view, tree)
-    caller = next((caller for caller, call in calls if name in call.given or name in call.values), None)
+    caller = next(
+        (
+            caller
+            for caller, call in calls
+            if name in call.given or name in call.values or (call.shares and view.ask(_has_entry, caller, name))
+        ),
+        None,
+    )
     return view.declared_at(Kind.TREE, caller, f"passes `{name}` to `{tree}`") if caller is not None else ()
+
+
+def _has_entry(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
+    """Whether an entry is a port of a tree, or a node of it writes it."""
+    handled = store.ask(handling, viewpoint, tree)
+    return name in handled.ports or any(touch.name == name and touch.writes for touch in handled.touches)
 
 
 def _never_set(view: View, mentions: Sequence[EntryMention]) -> Iterator[Diagnostic]:
     """The diagnostics for entries of the root blackboard: a warning for each if the entries that the program sets are
     known; else one hint for all."""
-    if view.ask(lookups.outside_entries):
+    if view.ask(lookups.is_of_navigator):
         for mention in mentions:
             message = f"nothing writes `{mention.name}` before it is read here, and bt_navigator does not set it"
             yield Diagnostic("unset-entry", mention.span, message)
@@ -293,10 +312,44 @@ def _needs(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> boo
     mentions = view.ask(_mentions_by_name, tree).get(name, ())
     if any(not mention.node.is_subtree and _is_needed(view, mention) for mention in mentions):
         return True
+    return any(view.ask(_needs, *entry) for entry in _given_below(view, tree, name))
+
+
+@on_circle("")
+def _need(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> str:
+    """As `_needs`, also of ports with defaults: the engine uses none where the XML names an entry.
+
+    Returns: empty if it is not needed, `_LIKELY` if C++ is not seen to fail without it, else `_CERTAIN`.
+    """
+    view = View(store, viewpoint)
+    if view.ask(_needs, tree, name):
+        return _CERTAIN
+    mentions = view.ask(_mentions_by_name, tree).get(name, ())
+    needs = {_need_with_default(view, mention) for mention in mentions if not mention.node.is_subtree}
+    needs.update(view.ask(_need, *entry) for entry in _given_below(view, tree, name))
+    return max(needs, key=("", _LIKELY, _CERTAIN).index, default="")
+
+
+def _need_with_default(view: View, mention: EntryMention) -> str:
+    """The need of a custom node whose input has a default, as `_need` says."""
+    resolved = mention.node
+    if resolved.behavior is not None or resolved.id is None:
+        return ""
+    needs = {""}
+    for port in _ports_of(view, mention):
+        if port is not None and port.direction == "input" and port.default:
+            without = view.ask(cpp_lookups.without, Kind.MODEL, resolved.id.text)
+            is_certain = without is None or dict(without).get(port.name) == "fails"
+            needs.add(_CERTAIN if is_certain else _LIKELY)
+    return max(needs, key=("", _LIKELY, _CERTAIN).index)
+
+
+def _given_below(view: View, tree: str, name: str) -> list[tuple[str, str]]:
+    """The trees that get an entry from a tree, each with its name there."""
     calls = view.ask(handling, tree).calls
     below = {(call.tree, port) for call in calls for port, passed in call.given.items() if passed == name}
     below |= {(call.tree, name) for call in calls if call.passed(name) == name}
-    return any(view.ask(_needs, *entry) for entry in sorted(below))
+    return sorted(below)
 
 
 def _mentions_by_name(store: Store[Workspace], viewpoint: str, tree: str) -> dict[str, list[EntryMention]]:
@@ -310,13 +363,17 @@ def _is_needed(view: View, mention: EntryMention) -> bool:
     """Whether the node of a mention needs the value of the entry."""
     if mention.in_script or mention.node.kind is not None:
         return True
+    return any(port is not None and port.required for port in _ports_of(view, mention))
+
+
+def _ports_of(view: View, mention: EntryMention) -> list[PortKind | None]:
+    """The ports of a custom node that are given the entry of a mention; None for one that nothing declares."""
     pairs = [pair for pair in mention.node.node.attributes if pair.value is not None and is_pointer(pair.value.text)]
-    ports = [
+    return [
         port_of(view, mention.node, pair.key.text)
         for pair in pairs
         if pair.span.start <= mention.span.start < pair.span.end
     ]
-    return any(port is not None and port.required for port in ports)
 
 
 def _first_mentions(mentions: Sequence[EntryMention], excluded: set[str]) -> dict[str, EntryMention]:
@@ -401,3 +458,5 @@ def _is_passed(store: Store[Workspace], viewpoint: str, tree: str, name: str) ->
 
 
 _MOST = 5
+_LIKELY, _CERTAIN = "likely", "certain"
+_SEVERITIES = {_LIKELY: Severity.HINT, _CERTAIN: None}

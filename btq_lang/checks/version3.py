@@ -36,8 +36,12 @@ def version_3_file(view: View) -> Iterator[Diagnostic]:
         if is_refused
         else "if it runs version 4, write `_autoremap`, and braces round the names of entries"
     )
+    of_nav2 = '`nodes = ["nav2-humble"]`'
+    advice = f'write `engine = "{VERSION_3}"` or {of_nav2} into btq.toml'
+    if project.pinned:
+        advice = f'write `engine = "{VERSION_3}"` into btq.toml, or {of_nav2} into the factory that loads this file'
     notes = (
-        f'if the robot runs version 3, write `engine = "{VERSION_3}"` or `nodes = ["nav2-humble"]` into btq.toml',
+        f"if the robot runs version 3, {advice}",
         instead,
     )
     severity = Severity.ERROR if declared and is_refused else None

@@ -10,8 +10,9 @@ import os
 import posixpath
 import shlex
 from collections import Counter
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from functools import cache, partial
+from importlib.util import find_spec
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2 import ENGINES, PACKAGED
@@ -31,6 +32,7 @@ from btq_lang.commands.packages import Packages, packages_of
 from btq_lang.projects.files import Files
 from btq_lang.projects.messages import CommandOutput
 from btq_lang.projects.options import Refused
+from btq_lang.projects.tree_servers import TreeServer
 from btq_lang.projects.xml_below import XmlBelow
 from btq_lang.syntax.tree import Tree
 from btq_lang.util.record import Record, replace
@@ -65,8 +67,8 @@ def init_from_xml(top: str, converts: bool, messages: CommandOutput) -> int:
     workspace = _xml_below(folder)
     if not workspace.files:
         raise Refused(f"no BehaviorTree.CPP XML below {top}; nothing was written")
-    factories = [*_factories(workspace, folder, messages)]
     packages = packages_of(folder)
+    factories = [*_factories(workspace, packages, folder, messages)]
     if converts and (code := _convert(workspace, target, packages, messages)):
         return code
     engine = _engine_line(workspace, packages) if packages.product or not converts else _ENGINES
@@ -187,14 +189,11 @@ def _xml_below(folder: str) -> Workspace:
     return Workspace(files, replace(project, pools=(folder,)))
 
 
-def _factories(workspace: Workspace, folder: str, messages: CommandOutput) -> Iterator[_Together]:
+def _factories(workspace: Workspace, packages: Packages, folder: str, messages: CommandOutput) -> Iterator[_Together]:
     """The files that belong together; if two files define the same tree, they do not."""
-    trees_in, models = _by_kind(workspace)
-    of_groot = (posixpath.relpath(path, folder) for path in models if path.endswith(GROOT_SUFFIX))
-    xml = [path for path in models if not path.endswith(GROOT_SUFFIX)]
-    nodes = (*(f"{pattern}.xml" for pattern in patterns(folder, xml, trees_in)), *of_groot)
+    trees_in, _ = _by_kind(workspace)
     names: set[str] = set()
-    groups = _connected(workspace)
+    groups = _connected(workspace, packages.programs.servers)
     grouped = {path for paths in groups for path in paths}
     for paths in groups:
         trees = [name for path in paths for name in workspace.files[path].names_of(Kind.TREE)]
@@ -215,9 +214,40 @@ def _factories(workspace: Workspace, folder: str, messages: CommandOutput) -> It
         names.add(name)
         items = [facts for path in paths for facts in workspace.files[path].facts.values()]
         called = {other for facts in items if isinstance(facts.item, Tree) for other in facts.runs}
-        main = tuple(sorted(tree for tree in trees if tree not in called))
+        targets = [target for target in packages.programs.targets if target in trees]
+        main = dict.fromkeys((*targets, *sorted(tree for tree in trees if tree not in called)))
         others = [path for path in trees_in if path not in paths]
-        yield _Together(name, tuple(patterns(folder, paths, others)), main, nodes)
+        nodes = _nodes_of(workspace, packages, folder, paths)
+        if nodes is None:
+            messages.remark(f"the factory `{name}` has no `nodes`, because all models are of other packages")
+        yield _Together(name, tuple(patterns(folder, paths, others)), tuple(main), nodes or ())
+
+
+def _nodes_of(workspace: Workspace, packages: Packages, folder: str, paths: Sequence[str]) -> tuple[str, ...] | None:
+    """The models in the packages of some files and outside of packages, or else the C++ of the packages whose libraries
+    a server loads for these files; None if all models are of other packages."""
+    trees_in, models = _by_kind(workspace)
+    homes = {_package_of(path, folder) for path in paths}
+    own = [path for path in models if "" in homes or _package_of(path, folder) in ("", *homes)]
+    if not own and models:
+        loaded = [
+            posixpath.relpath(package, folder)
+            for server in packages.programs.servers
+            if any(posixpath.dirname(path) in server.folders for path in paths)
+            for package in server.packages
+        ]
+        is_read = find_spec("tree_sitter_cpp") is not None
+        return (packages.sources_in(loaded) if is_read else ()) or None
+    of_groot = (posixpath.relpath(path, folder) for path in own if path.endswith(GROOT_SUFFIX))
+    xml = [path for path in own if not path.endswith(GROOT_SUFFIX)]
+    others = [path for path in (*trees_in, *models) if path not in own]
+    return (*(f"{pattern}.xml" for pattern in patterns(folder, xml, others)), *of_groot)
+
+
+def _package_of(path: str, top: str) -> str:
+    """The folder of the package that a file below a folder is in; empty if it is in none."""
+    around = (place for place in _folders(path, top) if os.path.isfile(f"{place}/package.xml"))
+    return max(around, key=len, default="")
 
 
 def _outside(
@@ -288,8 +318,9 @@ def _by_kind(workspace: Workspace) -> tuple[list[str], list[str]]:
     return trees, [path for path in workspace.files if path not in trees]
 
 
-def _connected(workspace: Workspace) -> list[list[str]]:
-    """The files with trees that need each other beyond what they include, or are in a project of Groot2, in groups."""
+def _connected(workspace: Workspace, servers: Iterable[TreeServer]) -> list[list[str]]:
+    """The files with trees that need each other beyond what they include, or are in a project of Groot2, or in folders
+    that one server registers, in groups."""
     group = {path: {path} for path in workspace.files}
     needing = {path for path in workspace.files if path.endswith(GROOT_SUFFIX)}
 
@@ -308,6 +339,11 @@ def _connected(workspace: Workspace) -> list[list[str]]:
             if len(definitions) == 1:
                 join(path, definitions[0].path)
                 needing.add(path)
+    for server in servers:
+        registered = [path for path in workspace.files if posixpath.dirname(path) in server.folders]
+        needing.update(registered)
+        for path in registered[1:]:
+            join(registered[0], path)
     groups = {id(members): members for members in group.values()}
     needed = [sorted(members) for members in groups.values() if not needing.isdisjoint(members)]
     with_trees = [[path for path in members if workspace.files[path].of_type(Tree)] for members in needed]

@@ -16,6 +16,7 @@ from typing import Final
 from btq_lang.catalog.versions import MOVEIT_PRO, PRODUCTS, VERSION_3, VERSIONS
 from btq_lang.nav2.parameters import read_parameters
 from btq_lang.nav2.yaml_reader import YamlMissing, YamlProblem
+from btq_lang.projects.tree_servers import TreePrograms, tree_programs
 from btq_lang.util.record import Record
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.file import CPP_SUFFIXES, YAML_SUFFIXES
@@ -34,6 +35,8 @@ class Packages(Record):
         parameters: files with the parameters of a bt_navigator, each with the distribution of Nav2 that it is for, if
             that is clear.
         named: the names of XML files in Python and in launch files.
+        programs: the servers of trees in parameter files, and the trees that clients name.
+        registering: the C++ of `sources`.
     """
 
     engines: tuple[str, ...] = ()
@@ -43,6 +46,13 @@ class Packages(Record):
     registered: frozenset[str] = frozenset()
     parameters: Mapping[str, str | None] = MappingProxyType({})
     named: frozenset[str] = frozenset()
+    programs: TreePrograms = TreePrograms()
+    registering: tuple[str, ...] = ()
+
+    def sources_in(self, packages: Iterable[str]) -> tuple[str, ...]:
+        """As `sources`, those below some folders, which are relative to that of the packages."""
+        folders = tuple(f"{package}/" for package in packages)
+        return tuple(_patterns([path for path in self.registering if path.startswith(folders)]))
 
 
 def packages_of(folder: str) -> Packages:
@@ -62,7 +72,18 @@ def packages_of(folder: str) -> Packages:
     named = {name for path, text in below.items() if path.endswith(_PROGRAMS) for name in _XML(text)}
     engines = (PRODUCTS[product],) if product else _ENGINES.get(depends_on, ())
     registered = frozenset([name for path in sources for name in _REGISTERED(cpp[path])])
-    return Packages(engines, depends_on, product, tuple(_patterns(sources)), registered, parameters, frozenset(named))
+    programs = tree_programs([text for path, text in below.items() if path.endswith(YAML_SUFFIXES)], folder)
+    return Packages(
+        engines,
+        depends_on,
+        product,
+        tuple(_patterns(sources)),
+        registered,
+        parameters,
+        frozenset(named),
+        programs,
+        tuple(sources),
+    )
 
 
 def _distribution(text: str) -> str | None:

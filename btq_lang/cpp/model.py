@@ -76,7 +76,7 @@ class CppNode(Record):
         complete: whether these are all of its ports.
         unread: ports that its code never names.
         undeclared: reads and writes of ports that it does not provide.
-        without: what its code does without an input that has no default: see `PortUse.without`.
+        without: what its code does if it gets no value of an input, as where an entry has none: see `PortUse.without`.
         at_once: whether it is seen to end within the tick that starts it.
         nav2_base: the class of nav2_behavior_tree from which its class derives; empty if from none.
     """
@@ -96,7 +96,7 @@ class CppNode(Record):
 
     def goes_on_without(self, port: CppPort) -> bool:
         """Whether the code is seen to go on if an input is not given."""
-        return dict(self.without).get(port.name) == "goes on"
+        return port.default is None and dict(self.without).get(port.name) == "goes on"
 
 
 class Unseen(Record):

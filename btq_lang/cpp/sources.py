@@ -86,6 +86,10 @@ class CppSources:
         """The function outside of a class that a name means at a place."""
         return self._nearest(self._methods.get(_last(name), []), name, scope, path, place)
 
+    def functions(self, name: str, scope: tuple[str, ...], path: str) -> list[Function]:
+        """The functions outside of classes that a name may mean, which differ in their parameters."""
+        return self._all_nearest(self._methods.get(_last(name), []), name, scope, path)
+
     def ancestry(self, bound: BoundClass) -> Iterator[BoundClass]:
         """A class and all that it derives from, the nearest first; those that are not in the sources too."""
         waiting, seen = [bound], {bound.name}
@@ -217,8 +221,17 @@ class CppSources:
         Args:
             candidates: those with the last part of the name.
         """
-        if not candidates:
+        fitting = self._all_nearest(candidates, name, scope, path)
+        if len(fitting) > 1 and isinstance(fitting[0], Class):
+            places = ", ".join(sorted(f"{each.path}:{each.node.start_point[0] + 1}" for each in fitting))
+            self.report(f"`{name}` may be any of several classes: {places}", place)
             return None
+        return fitting[0] if fitting else None
+
+    def _all_nearest(self, candidates: list[T], name: str, scope: tuple[str, ...], path: str) -> list[T]:
+        """The candidates that a name may mean which are equally near."""
+        if not candidates:
+            return []
         usings: list[str] = self.files[path].usings
         names = [*_in_scopes(name, scope), *(f"{using}::{name}" for using in usings)]
         fitting = next(
@@ -227,17 +240,11 @@ class CppSources:
         )
         if fitting is None:
             fitting = [candidate for candidate in candidates if _whole(candidate).endswith(f"::{name}")]
-        if len(fitting) > 1:
-            near = [source.path for source in self._near(path)]
-            least = min(near.index(candidate.path) for candidate in fitting)
-            fitting = [candidate for candidate in fitting if near.index(candidate.path) == least]
-            if len(fitting) > 1 and isinstance(fitting[0], Class):
-                places = ", ".join(
-                    sorted(f"{candidate.path}:{candidate.node.start_point[0] + 1}" for candidate in fitting)
-                )
-                self.report(f"`{name}` may be any of several classes: {places}", place)
-                return None
-        return fitting[0] if fitting else None
+        if len(fitting) < 2:
+            return fitting
+        near = [source.path for source in self._near(path)]
+        least = min(near.index(candidate.path) for candidate in fitting)
+        return [candidate for candidate in fitting if near.index(candidate.path) == least]
 
     def _near(self, path: str) -> list[CppSource]:
         """All files, the nearest first: the file itself, what it includes, directly or not, and the others."""

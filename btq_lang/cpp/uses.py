@@ -1,8 +1,8 @@
 """Which ports the code of a class reads and writes, and what it does if one is not given.
 
 One invariant: a port is called unread only if all code of the class and of its bases is in the sources, its name is
-nowhere in it, and no other code reads a port of that name, and what the code does without a port is said only where the
-place of the read shows it.
+nowhere in it or in the functions that it calls, and no other code reads a port of that name, and what the code does
+without a port is said only where the place of the read shows it.
 """
 
 from __future__ import annotations
@@ -14,12 +14,15 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.catalog.cpp_classes import ENGINE
 from btq_lang.cpp.grammar import LAMBDAS, arguments, callee, contents, enclosing, field, literal, text_of, walk
 from btq_lang.cpp.model import CppPort, PortUse
-from btq_lang.cpp.source import ACCESSES
+from btq_lang.cpp.source import ACCESSES, Function
 from btq_lang.cpp.sources import BoundClass, CppSources
 from btq_lang.cpp.values import Frame, string
 
 if TYPE_CHECKING:
     from tree_sitter import Node
+
+
+_OWN: Final = frozenset(("this",))
 
 
 class Uses:
@@ -36,6 +39,7 @@ class Uses:
         self._sources: Final = sources
         self._strings: Final[set[str]] = set()
         self._identifiers: Final[set[str]] = set()
+        self._followed: Final[set[tuple[Node, frozenset[str]]]] = set()
 
     @classmethod
     def of_class(cls, sources: CppSources, bound: BoundClass) -> Uses:
@@ -75,8 +79,8 @@ class Uses:
         return tuple(use for use in self.all if use.port not in names and not use.falls_back)
 
     def without_each(self, ports: Iterable[CppPort]) -> tuple[tuple[str, str], ...]:
-        """The effect of each missing input that has no default: see `PortUse.without`."""
-        inputs = (port for port in ports if port.direction != "output" and port.default is None)
+        """The effect of each input for which there is no value: see `PortUse.without`."""
+        inputs = (port for port in ports if port.direction != "output")
         return tuple((port.name, self._without(port)) for port in inputs)
 
     def _without(self, port: CppPort) -> str:
@@ -85,30 +89,67 @@ class Uses:
             return "fails"
         return next((each for each in ("", _IGNORES, "goes on") if each in effects), "")
 
-    def _read(self, body: Node, frame: Frame) -> None:
+    def _read(self, body: Node, frame: Frame, names: frozenset[str] = _OWN) -> None:
+        """Read some code; names: those that the object with the ports has in it."""
         for node in walk(body):
             if node.type in ("string_literal", "raw_string_literal"):
                 self._strings.add(literal(node) or "")
             elif node.type in ("identifier", "field_identifier"):
                 self._identifiers.add(text_of(node))
             elif node.type == "call_expression":
-                self._call(node, frame)
+                self._access(node, frame, names is _OWN)
+                self._follow(node, frame, names)
+            if node.type in ("identifier", "this") and text_of(node) in names and self._escapes(node, frame):
+                self.complete = False
 
-    def _call(self, call: Node, frame: Frame) -> None:
+    def _access(self, call: Node, frame: Frame, is_own: bool) -> None:
+        """Take a read or a write of a port; is_own: by the class or the function itself."""
         name, passed = callee(call)[1], arguments(call)
         if name in ACCESSES and passed:
             port = string(self._sources, passed[0], frame)
-            if port is not None:
+            if port is None:  # the name of a parameter is in a string of the code that calls this
+                self.complete = self.complete and _is_parameter(passed[0])
+            elif is_own:
                 writes = name == "setOutput"
                 without = "" if writes else _without(call)
                 self.all.append(PortUse(port, writes, without, self._sources.place_of(frame.path, call)))
-            elif not _is_parameter(passed[0]):  # else the name is in a string of the code that calls this
-                self.complete = False
-        elif _FALLS_BACK(name):
+        elif is_own and _FALLS_BACK(name):
             for port in filter(None, map(literal, passed)):
                 self.all.append(
                     PortUse(port, False, "goes on", self._sources.place_of(frame.path, call), falls_back=True)
                 )
+
+    def _follow(self, call: Node, frame: Frame, names: frozenset[str]) -> None:
+        """Read the functions outside of classes that a call may mean, which have the object as some parameters."""
+        passed = [_is_object(argument, names) for argument in arguments(call)]
+        for function in self._functions(call, frame):
+            parameters = map(text_of, _parameters(function.node))
+            inner = frozenset(name for name, is_object in zip(parameters, passed, strict=False) if is_object)
+            if (function.node, inner) not in self._followed:
+                self._followed.add((function.node, inner))
+                self._read(function.node, Frame(None, function.scope, function.path), inner)
+
+    def _functions(self, call: Node, frame: Frame) -> list[Function]:
+        """The functions that a call may mean, but for methods of objects."""
+        scope, name, _ = callee(call)
+        called = field(call, "function")
+        if called is None or called.type == "field_expression":
+            return []
+        whole = f"{scope}::{name}" if scope else name
+        functions = self._sources.functions(whole, frame.scope, frame.path)
+        return [function for function in functions if scope or "::" not in function.name]
+
+    def _escapes(self, name: Node, frame: Frame) -> bool:
+        """Whether code that is not in the sources may get the object that has a name."""
+        node = name
+        while (around := node.parent) is not None and around.type in ("pointer_expression", "parenthesized_expression"):
+            node = around
+        if around is None or around.type in _HARMLESS:
+            return False
+        call = around.parent if around.type == "argument_list" else None
+        if call is None or call.type != "call_expression":
+            return True
+        return callee(call)[1] != "bind" and not self._functions(call, frame)
 
 
 def _function(sources: CppSources, argument: Node, frame: Frame) -> tuple[Node, Frame] | None:
@@ -124,6 +165,21 @@ def _function(sources: CppSources, argument: Node, frame: Frame) -> tuple[Node, 
             return (value, frame) if value is not None and value.type == "lambda_expression" else None
     function = sources.function(text_of(argument), frame.scope, frame.path, sources.place_of(frame.path, argument))
     return None if function is None else (function.node, Frame(None, function.scope, function.path))
+
+
+def _parameters(function: Node) -> list[Node | None]:
+    """The name of each parameter of a function; None for one without a name."""
+    listed = next((node for node in walk(function) if node.type == "parameter_list"), None)
+    return [
+        next((node for node in reversed([*walk(each)]) if node.type == "identifier"), None) for each in contents(listed)
+    ]
+
+
+def _is_object(argument: Node, names: frozenset[str]) -> bool:
+    """Whether an argument is an object with some name, or a pointer to it."""
+    while argument.type in ("pointer_expression", "parenthesized_expression"):
+        argument = contents(argument)[-1]
+    return text_of(argument) in names
 
 
 def _is_handed_on(function: Node) -> bool:
@@ -227,6 +283,7 @@ def _leaves(branch: Node) -> bool:
     return any(each.type in ("return_statement", "throw_statement") for each in walk(branch, LAMBDAS))
 
 
+_HARMLESS: Final = ("field_expression", "lambda_capture_specifier", "reference_declarator", "pointer_declarator")
 _IGNORES: Final = "ignores"
 _PROVIDES: Final = re.compile(r"provided\w*Ports").fullmatch
 _FALLS_BACK: Final = re.compile(r"get\w*Or[A-Z]\w*").fullmatch

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os.path
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from typing import Final
 
 from btq_lang.catalog.nav2.libraries import LIBRARIES
@@ -113,9 +113,7 @@ class OwnLibraries(Record):
 def own_libraries(workspaces: Iterable[Workspace]) -> OwnLibraries:
     """The libraries that are made of the C++ in some workspaces."""
     files = {path: file for workspace in workspaces for path, file in workspace.files.items() if file.is_cpp}
-    targets: dict[str, frozenset[str]] = {}
-    for folder in {above for path in files for above in _folders(path)}:
-        targets.update(_targets(folder))
+    targets = _targets_around(files)
     of_node: dict[str, set[str]] = {}
     for library, sources in targets.items():
         for path in sources & files.keys():
@@ -123,6 +121,24 @@ def own_libraries(workspaces: Iterable[Workspace]) -> OwnLibraries:
                 of_node.setdefault(node, set()).add(library)
     whole = frozenset(library for library, sources in targets.items() if sources and sources <= files.keys())
     return OwnLibraries({node: frozenset(libraries) for node, libraries in of_node.items()}, whole)
+
+
+def unloaded_sources(paths: Iterable[str], loaded: Collection[str]) -> frozenset[str]:
+    """The C++ sources that are only in libraries that are not loaded."""
+    targets = _targets_around(paths)
+    in_loaded = {
+        path for library, sources in targets.items() if library in loaded or "$" in library for path in sources
+    }
+    in_any: set[str] = set().union(*targets.values())
+    return frozenset(in_any.intersection(paths) - in_loaded)
+
+
+def _targets_around(paths: Iterable[str]) -> dict[str, frozenset[str]]:
+    """The libraries of the packages of some sources, each with its own sources."""
+    targets: dict[str, frozenset[str]] = {}
+    for folder in {above for path in paths for above in _folders(path)}:
+        targets.update(_targets(folder))
+    return targets
 
 
 def _folders(path: str) -> Iterator[str]:

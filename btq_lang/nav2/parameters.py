@@ -155,7 +155,7 @@ def read_parameters(text: str) -> Parameters:
         YamlMissing: PyYAML is not installed.
     """
     top = read_yaml(text)
-    nodes = [*_nodes(top)]
+    nodes = [*nodes_with_parameters(top)]
     values: dict[str, tuple[YamlValue, YamlValue]] = {}
     own: set[str] = set()
     goals: dict[ParameterText, None] = {}
@@ -174,7 +174,7 @@ def read_parameters(text: str) -> Parameters:
     return Parameters(values, place, tuple(goals), frozenset(values.keys() - own), misspelt, is_of_humble)
 
 
-def _nodes(top: YamlValue) -> Iterator[tuple[YamlValue, YamlValue]]:
+def nodes_with_parameters(top: YamlValue) -> Iterator[tuple[YamlValue, YamlValue]]:
     """The names of nodes with their parameters, in any namespaces."""
     around = reached([top], lambda value: [below for _, below in value.entries if below.get(_PARAMETERS) is None])
     for key, below in (entry for value in around for entry in value.entries):

@@ -6,7 +6,7 @@ their contents.  Of command lines, only options are known here.
     files.py         the files of a command line or a program, in their projects, cached until they change
     factory_files.py, nav2_factory.py   the files of each factory, those that parameter files of Nav2 name among them
     xml_below.py     which XML below a folder is the engine's
-    created_trees.py which trees of XML the C++ around it creates
+    created_trees.py which trees of XML the programs around it create; `tree_servers.py`, servers in parameter files
     cpp_files.py     C++ sources as files with the models of their nodes; `node_writers.py` writes such models
     external_files.py   files with the requirements of other tools
     opening.py       a folder as a workspace

@@ -56,7 +56,12 @@ class ProjectSources(Record):
     def declared_in(self, factory: Factory) -> Factory:
         """A factory whose `node_files` have its own C++ sources, too."""
         own = tuple(path for path in factory.cpp_files if path in self.files)
-        return replace(factory, node_files=(*factory.node_files, *own)) if own else factory
+        factory = replace(factory, node_files=(*factory.node_files, *own)) if own else factory
+        if not factory.nav2:
+            return factory
+        from btq_lang.nav2.libraries import unloaded_sources  # few projects are for Nav2
+
+        return replace(factory, unloaded=unloaded_sources(self.files, factory.libraries))
 
 
 class CppFiles:

@@ -1,23 +1,27 @@
-"""Trees of XML that C++ around it creates, as far as a string tells, also where no project file names that C++.
+"""Trees of XML that programs around it create, where no project file names these programs: C++, as far as a string
+tells, and servers that parameter files describe.
 
-One invariant: C++ is read only if XML has several trees and does not name the main one.
+One invariant: C++ and parameter files are read only if XML has several trees and does not name the main one.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from typing import Final
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.workspace.config import Project
-from btq_lang.workspace.file import CPP_SUFFIXES
+from btq_lang.projects.tree_servers import tree_programs
+from btq_lang.util.record import replace
+from btq_lang.workspace.file import CPP_SUFFIXES, YAML_SUFFIXES
 from btq_lang.workspace.loader import collect, read
 from btq_lang.workspace.workspace import Workspace
 
 
-def created_trees(workspace: Workspace, paths: Iterable[str], pools: Iterable[str], project: Project) -> frozenset[str]:
-    """The trees of some files that the C++ of some folders names, if it creates trees by name."""
+def with_created_trees(workspace: Workspace, paths: Iterable[str], pools: Collection[str]) -> Workspace:
+    """A workspace whose project names the trees of some files that the C++ of some folders names, if it creates trees
+    by name, and the folders from which a server there creates any tree."""
+    project = workspace.project
     asked_for = {
         name
         for path in paths
@@ -25,10 +29,16 @@ def created_trees(workspace: Workspace, paths: Iterable[str], pools: Iterable[st
         for name in workspace.files[path].names.by_kind[Kind.TREE]
     }
     if not asked_for:
-        return frozenset()
-    texts = [read(path)[0] or "" for pool in pools for path in collect([pool], project, CPP_SUFFIXES)[0]]
-    strings = {name for text in texts for name in _STRING(text)} if any(map(_CREATES, texts)) else ()
-    return frozenset(asked_for.intersection(strings))
+        return workspace
+
+    def texts(suffixes: tuple[str, ...]) -> list[str]:
+        return [read(path)[0] or "" for pool in pools for path in collect([pool], project, suffixes)[0]]
+
+    cpp = texts(CPP_SUFFIXES)
+    strings = {name for text in cpp for name in _STRING(text)} if any(map(_CREATES, cpp)) else ()
+    servers = tree_programs(texts(YAML_SUFFIXES), next(iter(pools))).servers
+    served = tuple([folder for server in servers for folder in server.folders])
+    return workspace.with_project(replace(project, created=frozenset(asked_for.intersection(strings)), served=served))
 
 
 _CREATES: Final = re.compile(r"\bcreateTree\s*\(").search

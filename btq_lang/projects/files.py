@@ -212,7 +212,7 @@ class Files:
         if group.given or not groups:
             has_xml = any(group.workspace.files[path].is_foreign for path in group.given)
             if pools and has_xml:
-                group = _with_created(self._with_pools(group, pools, project_of), pools)
+                group = _with_created(self._with_pools(group, pools, project_of), tuple(pools))
             groups.append(group)
         return groups, problems
 
@@ -430,16 +430,13 @@ def _with_cpp(group: FileGroup, folders: Iterable[str]) -> FileGroup:
     return replace(group, cpp=cpp) if cpp else group
 
 
-def _with_created(group: FileGroup, pools: Iterable[str]) -> FileGroup:
-    """The group with the main trees that C++ of its pools creates."""
+def _with_created(group: FileGroup, pools: tuple[str, ...]) -> FileGroup:
+    """The group with the main trees that programs of its pools create."""
     if all(len(group.workspace.files[path].names.by_kind[Kind.TREE]) < 2 for path in group.given):
         return group
-    from btq_lang.projects.created_trees import created_trees  # most files have one tree
+    from btq_lang.projects.created_trees import with_created_trees  # most files have one tree
 
-    created = created_trees(group.workspace, group.given, pools, group.project)
-    if not created:
-        return group
-    return replace(group, workspace=group.workspace.with_project(replace(group.project, created=created)))
+    return replace(group, workspace=with_created_trees(group.workspace, group.given, pools))
 
 
 def lacking_names(workspace: Workspace, paths: Iterable[str]) -> frozenset[str]:

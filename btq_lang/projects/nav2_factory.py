@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.nav2 import FILES, distribution_among
 from btq_lang.diagnostics.model import Diagnostic, Place
 from btq_lang.nav2.findings import NavigatorTree, findings, wrong_goals
+from btq_lang.nav2.libraries import NAMES
 from btq_lang.nav2.loaded import Load, Loads, goals_in
 from btq_lang.nav2.names import distribution_unknown, file_findings
 from btq_lang.nav2.parameters import Parameters, read_parameters
@@ -106,6 +107,7 @@ class ParameterFile(Record):
             nav2=self.path,
             has_gaps=distribution is None or not load.is_whole or bool(load.refused),
             entries=parameters.entries(distribution) if parameters is not None and distribution is not None else (),
+            libraries=tuple(each.text for each in (parameters.texts(NAMES) if parameters is not None else None) or ()),
         )
 
 

@@ -78,7 +78,8 @@ def as_html(cpp_nodes: CppNodes, sources: str) -> str:
 
 
 def _meaning(node: CppNode, port: CppPort) -> str:
-    remarks = [_WITHOUT[what] for name, what in node.without if name == port.name and what in _WITHOUT]
+    of_port = [what for name, what in node.without if name == port.name and port.default is None]
+    remarks = [_WITHOUT[what] for what in of_port if what in _WITHOUT]
     return " ".join([port.text, *remarks, *(["The code never names it."] if port in node.unread else [])])
 
 

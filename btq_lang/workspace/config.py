@@ -49,6 +49,7 @@ class Project(Record):
         folders: working folders: an editor's, or the current one.
         pools: folders in which an XML file finds the trees and models that it lacks; the loader finds them.
         created: the trees of XML that C++ in the pools names, and probably creates.
+        served: the folders from whose XML a server in the pools creates any tree by its ID.
         evidence: its table about logs, if it has one.
         requirements: its table about requirements, if it has one.
         external_requirements: those that the files of this table have; None without any.
@@ -79,6 +80,7 @@ class Project(Record):
     folders: tuple[str, ...] = ()
     pools: tuple[str, ...] = ()
     created: frozenset[str] = frozenset()
+    served: tuple[str, ...] = ()
     evidence: EvidenceSettings | None = None
     requirements: RequirementSettings | None = None
     external_requirements: ExternalRequirements | None = None

@@ -48,6 +48,8 @@ class Factory(Record):
         has_gaps: whether bt_navigator registers files that are not here; its parameter file has the diagnostics.
         entries: of the root blackboard, which the program sets or reads, if it is known to be bt_navigator.
         goals: what is wrong with trees that nodes name for goals, by this name.
+        libraries: those that the parameters name for bt_navigator to load.
+        unloaded: the C++ sources of libraries that it does not load.
     """
 
     name: str
@@ -62,6 +64,8 @@ class Factory(Record):
     has_gaps: bool = False
     entries: tuple[OutsideEntry, ...] = ()
     goals: tuple[tuple[str, Diagnostic], ...] = ()
+    libraries: tuple[str, ...] = ()
+    unloaded: frozenset[str] = frozenset()
 
 
 def read_factories(tables: object) -> tuple[tuple[Factory, ...], list[Complaint]]:

@@ -18,7 +18,8 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nav2 import ENGINES, FILES, ports_of
+from btq_lang.catalog.nav2 import ENGINES, FILES, PACKAGED, distribution_among, ports_of
+from btq_lang.catalog.versions import VERSIONS, is_before_4
 from btq_lang.syntax.tree import Include, Model, Qualities, Root
 from btq_lang.util.record import replace
 from btq_lang.workspace.config import Project, include_candidates
@@ -135,7 +136,7 @@ class Workspace:
         """The workspace of a factory: those of the files that it registers."""
         named = (*factory.files, *factory.node_files, *self.project.node_files)
         inside = dict.fromkeys(each for path in named if path in self.files for each in self.closure(path))
-        return Workspace({path: self.files[path] for path in inside}, self.project, factory)
+        return Workspace({path: self.files[path] for path in inside}, _project_of(factory, self.project), factory)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Workspace) and (self.files, self.project, self.factory) == (
@@ -211,7 +212,8 @@ class Workspace:
         """The scope of some files, and of the models in others."""
         nodes = dict.fromkeys((*node_files, *self.project.node_files))
         beside = tuple(path for path in nodes if path in self.files and path not in paths)
-        return Scope(paths, self, beside, is_known)
+        unloaded: frozenset[str] = self.factory.unloaded if self.factory is not None else frozenset()
+        return Scope(paths, self, beside, is_known, unloaded)
 
     @property
     def registered(self) -> tuple[str, ...]:
@@ -352,16 +354,29 @@ class Scope:
     """
 
     def __init__(
-        self, paths: tuple[str, ...], workspace: Workspace, node_paths: tuple[str, ...] = (), is_known: bool = True
+        self,
+        paths: tuple[str, ...],
+        workspace: Workspace,
+        node_paths: tuple[str, ...] = (),
+        is_known: bool = True,
+        unloaded: frozenset[str] = frozenset(),
     ) -> None:
-        """is_known: whether all of the scope's files are known."""
+        """Look up names in some files.
+
+        Args:
+            is_known: whether all of the scope's files are known.
+            unloaded: C++ whose models count only if there are no others, as the program does not load its library.
+        """
         self.paths = paths
         self.node_paths = node_paths
         self._files = [workspace.files[path] for path in paths]
         of_models = [*self._files, *(workspace.files[path] for path in node_paths)]
         cpp = [file for file in of_models if file.is_cpp]  # what registers a node counts first
-        self._of_models = [*cpp, *(file for file in of_models if not file.is_cpp)] if cpp else of_models
+        self._of_models = (
+            sorted(of_models, key=lambda file: (file.path in unloaded, not file.is_cpp)) if cpp else of_models
+        )
         self._cpp = frozenset([file.path for file in cpp])
+        self._unloaded = unloaded
         self.complete = (
             is_known
             and all(
@@ -421,6 +436,9 @@ class Scope:
         for file in self.files(kind):
             if key in file.names.definitions:
                 definitions += file.definitions(kind, name)
+        if kind is Kind.MODEL and self._unloaded and definitions:
+            loaded = tuple([each for each in definitions if each.path not in self._unloaded])
+            definitions = loaded or definitions
         if kind is Kind.MODEL and len(definitions) > 1 and self.node_paths:
             # Nothing says more than C++ but what is known of Nav2's nodes.
             definitions = _richest_first(
@@ -428,6 +446,15 @@ class Scope:
             )
         self._definitions[key] = definitions
         return definitions
+
+
+def _project_of(factory: Factory, project: Project) -> Project:
+    """The project as it holds for a factory: a distribution that a factory names determines its engine, whichever the
+    project names for its other programs."""
+    distribution = distribution_among([PACKAGED[name] for name in factory.nodes if name in PACKAGED])
+    if distribution is None or is_before_4(ENGINES[distribution]) == is_before_4(project.target):
+        return project
+    return replace(project, engines=VERSIONS, names_all=False)
 
 
 def _may_be_of_nav2(target: object, name: str) -> bool:

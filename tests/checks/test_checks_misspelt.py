@@ -208,12 +208,17 @@ def test_the_subtree_of_xml_to_which_an_entry_is_to_be_added(tmp_path: Path) -> 
     ("first", "second", "rest", "is_told"),
     [
         ("SubTree Stop (spot = {a})", "SubTree Stop", "Go (place = {spot})", True),
-        ("SubTree Stop (spot = 3)", "SubTree Stop (other = {spot})", "Go (place = {spot} id = {other})", True),
+        (
+            "SubTree Stop (spot = 3 other = 1)",
+            "SubTree Stop (other = {spot})",
+            "Go (place = {spot} id = {other})",
+            True,
+        ),
         ("SubTree Stop (spot = {a})", "SubTree Stop", "Below", False),
         ("SubTree Stop (spot = {a})", "SubTree Stop", "SubTree Below (spot = {spot})", True),
         ("SubTree Stop (spot = {a})", "SubTree Stop (_autoremap = true)", "Go (place = {spot})", False),
         ("SubTree Stop (spot = {a})", "SubTree Stop (spots = {a})", "Go (place = {spot})", False),
-        ("SubTree Stop (spot = {a})", "SubTree Stop", "Go (place = there id = {spot})", False),
+        ("SubTree Stop (spot = {a})", "SubTree Stop", "Go (place = there id = {spot})", True),
         ("SubTree Stop (spot = {a})", "SubTree Stop", "Find (place = {spot})", False),
         ("SubTree Stop (spot = {a})", "SubTree Stop", "Go (place = {@spot})", False),
         ("SubTree Stop (spot = {a})", "SubTree Stop", "Stranger (place = {spot})", False),
@@ -230,3 +235,18 @@ def test_an_entry_that_one_of_several_subtrees_does_not_pass(first: str, second:
     assert show(text, found) == [f"10:17 warning unset-entry «Stop» {message}"] * is_told
     related = [f"{each.message}" for problem in found for each in problem.related]
     assert related == ["passes `spot` to `Stop`"] * is_told
+
+
+@pytest.mark.parametrize(
+    ("before", "is_told"),
+    [("Find (place = {spot})", True), ("Find (place = {other})", False), ("Go (place = {spot})", False)],
+)
+def test_an_entry_that_one_of_several_subtrees_passes_with_all_others(before: str, is_told: bool) -> None:
+    text = (
+        "Action Go\n    input place\nAction Find\n    output place\n"
+        f"BehaviorTree Main\n    ->\n        {before}\n        SubTree Stop (_autoremap = true)\n        SubTree Stop\n"
+        "BehaviorTree Stop\n    Go (place = {spot})\n"
+    )
+    message = "`Stop` reads `spot`, which this SubTree does not pass to it, and another one does"
+    diagnostics = [each for each in problems(text, "unset-entry") if "another one" in each.message]
+    assert show(text, diagnostics) == [f"9:17 warning unset-entry «Stop» {message}"] * is_told

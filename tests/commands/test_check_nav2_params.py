@@ -285,3 +285,29 @@ def test_a_diff_with_a_revision_uses_its_parameters(robot: Path) -> None:
     (robot / "trees/dock.btq").write_text("BehaviorTree Dock\n    UndockRobot\n")
     code, out, _ = run_btq("diff", "--git", "HEAD", "trees/dock.btq", cwd=robot)
     assert (code, "UndockRobot" in out) == (1, True)
+
+
+def test_what_bt_navigator_does_not_set_is_said_of_its_trees_alone(tmp_path: Path) -> None:
+    delay = '<Delay delay_msec="{lost}"><Spin spin_dist="1"/></Delay>'
+    xml = f'<root BTCPP_format="4">\n<BehaviorTree ID="M">\n{delay}\n</BehaviorTree>\n</root>\n'
+    (tmp_path / "t.xml").write_text(xml)
+    (tmp_path / "p.yaml").write_text("bt_navigator:\n  ros__parameters:\n    bt_loop_duration: 10\n")
+    (tmp_path / "own.btq").write_text("Action Own\n")
+    nodes = 'nodes = ["nav2-jazzy"]\n'
+    factory = '[[factory]]\nname = "r"\nload = ["t.xml"]\nmain = "M"\n'
+    navigator = '[[factory]]\nname = "r"\nnav2 = "p.yaml"\nload = ["t.xml"]\n'
+    place = "t.xml:3:21: "
+    hint = f"{place}hint[unset-entry] nothing here writes `lost` before it is read"
+    certain = (
+        f"{place}warning[unset-entry] nothing writes `lost` before it is read here, and bt_navigator does not set it"
+    )
+    for project, expected in (
+        (nodes, certain),
+        (f"{nodes}{navigator}", certain),
+        (f"{nodes}{factory}", hint),
+        (f'{nodes}[[factory]]\nname = "s"\nload = ["own.btq"]\n', hint),
+        (f'{factory}nodes = ["nav2-jazzy", "own.btq"]\n', hint),
+    ):
+        (tmp_path / "btq.toml").write_text(project)
+        _, out, _ = run_btq("check", "--output-format", "concise", "t.xml", cwd=tmp_path)
+        assert [line for line in out.splitlines() if "unset-entry" in line] == [expected], project

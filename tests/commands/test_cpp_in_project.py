@@ -97,6 +97,22 @@ def test_checks_know_the_nodes_and_hold_the_code_against_them(robot: Path) -> No
     assert check(robot, "trees/m.btq", "src") == [*IN_MISSION, UNUSED, UNDECLARED]
 
 
+def test_a_helper_of_a_helper_reads_a_port(robot: Path) -> None:
+    helpers = """\
+namespace {
+void read(BT::TreeNode & node, const char * port, double & value) { node.getInput(port, value); }
+void readAll(BT::TreeNode & node, double & value) { read(node, "speed", value); }
+}
+"""
+    tick = 'getInput("sped", speed_);'
+    write(robot, "src/drive.cpp", (helpers + SOURCE).replace(tick, "readAll(*this, speed_);"))
+    assert check(robot) == IN_MISSION
+    write(robot, "src/drive.cpp", (helpers + SOURCE).replace(tick, "read(*this, kName, speed_);"))
+    assert check(robot) == [*IN_MISSION, f"src/drive.cpp:11:20: {OF_UNUSED}"]
+    write(robot, "src/drive.cpp", (helpers + SOURCE).replace(tick, "elsewhere(*this);"))
+    assert check(robot) == IN_MISSION
+
+
 def test_a_node_of_version_3_may_have_the_name_of_a_built_in_of_version_4(robot: Path) -> None:
     ports = 'BT::PortsList providedPorts() { return { BT::InputPort<double>("sleep_time") }; }'
     node = f"struct Sleep : BT::SyncActionNode {{ static {ports} }};\n"
@@ -625,3 +641,26 @@ def test_a_node_that_derives_from_nav2s_needs_what_they_need(
     if distribution != "humble":
         write(robot, "trees/m.btq", mission.format(" (_autoremap = true)"))
         assert check(robot, "trees") == []
+
+
+@pytest.mark.parametrize(
+    ("read", "severity"),
+    [
+        ('fast_ = getInput<bool>("fast").value();', "warning"),
+        ('if(!getInput("fast", fast_)) { fast_ = false; }', "hint"),
+        ('getInput("fast", fast_);', "hint"),
+    ],
+)
+def test_a_default_does_not_count_for_an_entry_that_nothing_sets(robot: Path, read: str, severity: str) -> None:
+    source = SOURCE.replace('if(!getInput("fast", fast_)) { fast_ = false; }', read).replace('"sped"', '"speed"')
+    write(
+        robot, "src/drive.cpp", source.replace('BT::InputPort<bool>("fast")', 'BT::InputPort<bool>("fast", true, "")')
+    )
+    node = "    Drive (goal = {place} fast = {hasty})\n"
+    main = "    ->\n        SubTree Go (place = there hasty = true)\n        SubTree Go (place = there)\n"
+    write(robot, "trees/m.btq", f"BehaviorTree Main\n{main}BehaviorTree Go\n{node}")
+    message = "`Go` reads `hasty`, which this SubTree does not pass to it, and another one does"
+    assert check(robot) == [f"trees/m.btq:4:17: {severity}[unset-entry] {message}"]
+    write(robot, "trees/m.btq", f"BehaviorTree Main\n{main.replace(' hasty = true', '')}BehaviorTree Go\n{node}")
+    message = "nothing in `Go` writes `hasty`, which is read here, and no SubTree passes it"
+    assert check(robot) == [f"trees/m.btq:6:35: {severity}[unset-entry] {message}"]

@@ -105,6 +105,26 @@ def test_every_command_decides_alike(tmp_path: Path, case: str) -> None:
         assert f"{engine}\n" == ('engine = "3.8"\n' if is_old else ALL)
 
 
+def test_a_distribution_of_a_factory_counts_before_the_engine_of_the_project(tmp_path: Path) -> None:
+    for name, number, node in (("old", 3, '<Wait wait_duration="3"/>'), ("new", 4, '<Script code="a := 1"/>')):
+        root = f'<root BTCPP_format="{number}">\n<BehaviorTree ID="{name}">\n{node}\n</BehaviorTree>\n</root>\n'
+        (tmp_path / f"{name}.xml").write_text(root)
+    old = 'old.xml:1:2: warning[version-3-file] this file is for version 3 of the engine: it has `BTCPP_format="3"`'
+
+    def check(project: str) -> list[str]:
+        (tmp_path / "btq.toml").write_text(project)
+        return run_btq("check", "--output-format", "concise", cwd=tmp_path)[1].splitlines()[:-1]
+
+    engine, factory = 'engine = ["4.6", "4.8", "4.10"]\n', '[[factory]]\nname = "r"\nload = ["old.xml"]\n'
+    assert check(engine)[0] == f"{old}, but btq.toml names 4.10"
+    assert check(f"{engine}{factory}")[0] == f"{old}, but btq.toml names 4.10"
+    assert check(f'{engine}{factory}nodes = ["nav2-humble"]\n') == []
+    script = "new.xml:3:2: error[newer-engine-node] `Script` requires BehaviorTree.CPP 4; 3.8 does not have it"
+    of_new = factory.replace("old", "new")
+    assert check(f'engine = "3.8"\n{of_new}') == [script]
+    assert check(f'engine = "3.8"\n{of_new}nodes = ["nav2-jazzy"]\n') == []
+
+
 def test_a_word_of_version_3_that_a_pinned_engine_loads_is_said_once_and_kept(tmp_path: Path) -> None:
     (tmp_path / "btq.toml").write_text('engine = "4.10"\n')
     (tmp_path / "t.xml").write_text(tree(MAIN, '<SubTree ID="Place" frame="frame"/>').replace('Action ID="Say"', "Say"))

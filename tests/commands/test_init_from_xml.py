@@ -242,3 +242,70 @@ def test_one_file_does_not_keep_a_folder_from_being_a_pattern(tmp_path: Path, wr
     text = (tmp_path / "btq.toml").read_text()
     assert "alone.xml" not in text
     assert '    "trees/strategy_9.xml"\n]\nmain = [\n    "strategy_number_0",\n' in text
+
+
+SERVER = """\
+/robot:
+  server:
+    ros__parameters:
+      plugins: [behaviortree_cpp/bt_plugins, {plugins}/bt_plugins]
+      behavior_trees: [robot/trees, elsewhere/trees]
+  client:
+    ros__parameters:
+      target_tree: Dock
+"""
+REGISTRATION = 'void f() { factory.registerSimpleAction("Go", go, {}); }'
+
+
+def test_a_server_registers_whole_folders_and_creates_trees_by_their_names(tmp_path: Path, write: Write) -> None:
+    pytest.importorskip("yaml", reason="PyYAML is not installed: pip install -e '.[nav2]'")
+    write("src/robot/trees/a.xml", "Patrol: Dock", "Charge")
+    write("src/robot/trees/b.xml", "Dock")
+    write("src/robot/trees/c.xml", "Alone", "Lone")
+    write("src/robot/others/d.xml", "Other", "Another")
+    (tmp_path / "src/robot/package.xml").write_text("<package><name>robot</name></package>")
+
+    def mains() -> list[str]:
+        out = run_btq("check", "--output-format", "concise", cwd=tmp_path)[1]
+        return [line.partition(":")[0] for line in out.splitlines() if "unknown-main-tree" in line]
+
+    assert mains() == ["src/robot/others/d.xml", "src/robot/trees/c.xml"]
+    (tmp_path / "src/robot/params.yaml").write_text(SERVER.format(plugins="robot"))
+    assert mains() == ["src/robot/others/d.xml"]
+    assert run_btq("init", "--from-xml", cwd=tmp_path)[0] == 0
+    main = '["Dock", "Alone", "Charge", "Lone", "Patrol"]'
+    table = f'[[factory]]\nname = "trees"\nload = ["src/robot/trees/*.xml"]\nmain = {main}\n'
+    assert (tmp_path / "btq.toml").read_text() == f"{HEAD}\n{table}"
+    assert mains() == ["src/robot/others/d.xml"]
+
+
+@pytest.mark.parametrize(
+    ("models", "plugins", "nodes", "remark"),
+    [
+        ("src/robot/models.xml", "nodes", 'nodes = ["src/robot/models.xml"]\n', ""),
+        ("models.xml", "nodes", 'nodes = ["models.xml"]\n', ""),
+        ("src/nodes/models.xml", "nodes", 'nodes = ["src/nodes/*.cpp"]\n', ""),
+        (
+            "src/nodes/models.xml",
+            "unknown",
+            "",
+            "the factory `trees` has no `nodes`, because all models are of other packages\n",
+        ),
+    ],
+)
+def test_the_models_of_a_factory_are_those_of_its_package(
+    tmp_path: Path, write: Write, models: str, plugins: str, nodes: str, remark: str
+) -> None:
+    for missing in ("yaml", "tree_sitter_cpp"):
+        pytest.importorskip(missing, reason=f"{missing} is not installed: pip install -e '.[cpp,nav2]'")
+    write("src/robot/trees/a.xml", "Patrol: Dock")
+    write("src/robot/trees/b.xml", "Dock")
+    for package in ("robot", "nodes"):
+        (tmp_path / "src" / package).mkdir(exist_ok=True)
+        (tmp_path / "src" / package / "package.xml").write_text(f"<package><name>{package}</name></package>")
+    (tmp_path / "src/nodes/go.cpp").write_text(REGISTRATION)
+    (tmp_path / models).write_text('<root><TreeNodesModel><Action ID="Go"/></TreeNodesModel></root>')
+    (tmp_path / "params.yaml").write_text(SERVER.format(plugins=plugins))
+    assert run_btq("init", "--from-xml", cwd=tmp_path)[2] == remark
+    table = '[[factory]]\nname = "trees"\nload = ["src/robot/trees/*.xml"]\nmain = ["Dock", "Patrol"]\n'
+    assert (tmp_path / "btq.toml").read_text().partition("\n\n")[2] == table + nodes

@@ -713,6 +713,42 @@ def test_a_port_is_not_unread_if_other_code_reads_it_or_a_name_is_made() -> None
     assert unread('auto x = get<int>("near");') == ["far"]
 
 
+HELPERS = """
+    namespace {
+      bool read(BT::TreeNode& node, const char* port) { return node.getInput<int>(port).has_value(); }
+      bool read(BT::TreeNode& node, int number) { return read(node, "far"); }
+      bool readOne(BT::TreeNode& node) { return one(node, "near"); }
+      bool one(BT::TreeNode& node, const char* port) { return node.getInput<int>(port).has_value(); }
+      bool readAll(BT::TreeNode& node) { return read(node, "near") && read(node, 1); }
+      bool handOn(BT::TreeNode* node) { return elsewhere(node); }
+      bool ignore(BT::TreeNode&) { return true; }
+    }
+"""
+
+
+@pytest.mark.parametrize(
+    ("tick", "unread"),
+    [
+        ("readAll(*this);", []),
+        ("readOne(*this);", ["far"]),
+        ("read(*this, 1);", ["near"]),
+        ("ignore(*this);", ["near", "far"]),
+        ("handOn(this);", []),
+        ("elsewhere(*this);", []),
+        ("reader_.read(*this);", []),
+        ("Reader reader(*this);", []),
+        ("elsewhere(3);", ["near", "far"]),
+        ("subscribe(std::bind(&Move::take, this));", ["near", "far"]),
+        ("later([this] { this->take(); });", ["near", "far"]),
+    ],
+)
+def test_helpers_are_followed_to_any_depth_unless_they_are_not_in_the_sources(tick: str, unread: list[str]) -> None:
+    ports = 'static BT::PortsList providedPorts() { return { BT::InputPort("near"), BT::InputPort("far") }; }'
+    (node,) = read(HELPERS + move(f"{ports} BT::NodeStatus tick() {{ {tick} }}")).nodes
+    assert [port.name for port in node.unread] == unread
+    assert node.undeclared == ()
+
+
 SIMPLE = """
     BT::NodeStatus speak(BT::TreeNode& self) {
       if (!self.getInput("text", text)) { return BT::NodeStatus::FAILURE; }
@@ -755,7 +791,7 @@ def test_the_function_of_a_simple_node_is_held_against_its_ports() -> None:
             ["inout level : int", "input gain : double = '1.0' # of the microphone"],
             ["gain"],
             [],
-            ["fails"],
+            ["fails", ""],
         ),
         ("Speak", ["input text : std::string", "output length : int"], ["length"], ["lenght"], ["fails"]),
         ("Whole", ["input a : int"], [], [], [""]),

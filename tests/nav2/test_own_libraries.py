@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 from in_process import run_btq
 
+from btq_lang.nav2.libraries import unloaded_sources
+
 CPP = """\
 #include "behaviortree_cpp/bt_factory.h"
 class {0} : public BT::SyncActionNode {{
@@ -72,3 +74,33 @@ def test_sources_by_a_pattern(robot: Path, pattern: str) -> None:
 def test_what_no_program_loads(robot: Path) -> None:
     cmake = "add_library(core STATIC src/say.cpp src/hear.cpp)\nadd_library(nodes SHARED src/main.cpp)\n"
     assert unloaded(robot, cmake, "nodes") == []
+
+
+def test_a_node_in_place_of_one_of_nav2_counts_where_its_library_is_loaded(robot: Path) -> None:
+    port = 'return {BT::InputPort<int>("times")};'
+    spin = (
+        CPP.format("Spin").replace("return {};", port).replace("{ return BT", '{ getInput("times", times_); return BT')
+    )
+    (robot / "src/say.cpp").write_text(spin)
+    xml = (robot / "t.xml").read_text()
+    (robot / "t.xml").write_text(xml.replace("<Say/><Hear/><Spin/>", '<Spin spin_dist="1"/>\n<Spin times="1"/>'))
+
+    def unknown(*libraries: str) -> list[str]:
+        unloaded(robot, CMAKE, *libraries)
+        _, out, _ = run_btq("check", "--output-format", "concise", cwd=robot)
+        return [line for line in out.splitlines() if "unknown-port" in line]
+
+    times = "t.xml:2:7: error[unknown-port] `Spin` has no port `times`"
+    assert unknown() == unknown("hearing") == [times]
+    assert unknown("my_robot_nodes") == []
+    (robot / "btq.toml").write_text('nodes = ["nav2-jazzy", "src/*.cpp"]\n')
+    assert unknown() == []  # which program loads the tree is unknown
+    (robot / "t.xml").write_text(xml.replace("<Spin/>", '<Spin spin_dst="1"/>'))
+    assert unknown() == ["t.xml:1:74: error[unknown-port] `Spin` has no port `spin_dst`; did you mean `spin_dist`?"]
+
+
+def test_sources_of_libraries_that_are_not_loaded(robot: Path) -> None:
+    (robot / "CMakeLists.txt").write_text(CMAKE + "add_library(${name} src/hear.cpp)\n")
+    say, hear, other = (f"{robot}/src/{name}.cpp" for name in ("say", "hear", "other"))
+    assert unloaded_sources([say, hear, other], ["hearing"]) == {say}
+    assert unloaded_sources([say, hear, other], ["my_robot_nodes"]) == frozenset()
