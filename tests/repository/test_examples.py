@@ -53,6 +53,7 @@ def test_examples_are_found() -> None:
         "navigation",
         "paper",
         "pick-and-place",
+        "published",
     ]
     for folder in FOLDERS:
         assert (folder / "README.md").is_file()
