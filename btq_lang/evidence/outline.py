@@ -104,6 +104,7 @@ def _meaning(part: object) -> str:
 # Verdicts that are kept on the disk have the digest of these words: they stay, whatever the classes are called.
 _WORDS: Final[dict[type, str]] = {
     Unit: "Unit",
+    model.Age: "Age",
     model.Aggregate: "Aggregate",
     model.All: "All",
     model.Any: "Any",

@@ -77,6 +77,8 @@ def test_a_summary_counts_as_the_judge_does(tmp_path: Path) -> None:
         (kept,) = found
         assert kept.outcomes == judged.outcomes, f"seed {seed}"
         of_judged = {each.id: in_order(each.clauses) for each in judged.requirements}
+        for name in [name for name, clauses in of_judged.items() if all(each.why == MISTAKE for each in clauses)]:
+            del of_judged[name]  # of a claim with a mistake a store keeps nothing
         of_kept = {each.id: in_order(each.clauses) for each in kept.requirements}
         assert of_kept.keys() == of_judged.keys(), f"seed {seed}"
         for name, clauses in of_judged.items():
@@ -88,6 +90,7 @@ def test_a_summary_counts_as_the_judge_does(tmp_path: Path) -> None:
     assert seen.keys() >= {"violated", "satisfied", "undecided", "unknown", "never exercised"}
 
 
+MISTAKE = "it has a mistake; run btq check"
 MISSION = "QualityReq quick : safety\n    Move takes at most 15 ms\n" + MAIN
 SLOW, QUICK = "1R 2R 20 2S 3R 25 3S 1S 26 2I 3I 1I", "1R 2R 12 2S 3R 25 3S 1S 26 2I 3I 1I"
 
