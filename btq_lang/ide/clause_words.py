@@ -186,7 +186,7 @@ def _is_answer(words: Sequence[str]) -> bool:
 def _without_other_events(words: Sequence[str]) -> list[str]:
     """The words without what happens in each of several events but the last."""
     return [
-        word for word, after in zip(words, [*words[1:], ""], strict=True) if word not in HAPPENINGS or after != "or"
+        word for word, after in zip(words, [*words[1:], ""], strict=False) if word not in HAPPENINGS or after != "or"
     ]
 
 

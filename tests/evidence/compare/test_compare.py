@@ -84,7 +84,7 @@ def keep(
     tables: dict[str, list[tuple[object, ...]]] = {name: [] for name in ROWS}
     of = (mission, robot)
     clause = (requirement, "Be quick", f"Move takes at most {bound:g} s", "Move", "", "activations", "s")
-    tables["clauses"].append((*of, 0, *clause, *[None] * 7, True, 0, "", None, None, None))
+    tables["clauses"].append((*of, 0, *clause, *[None] * 7, True, 0, "", *[None] * 10))
     for number, (move, dock, succeeded) in enumerate(runs, start=1):
         begin = start + number * 60_000_000
         middle, end = begin + round(move * 1e6), begin + round((move + dock) * 1e6)
@@ -94,7 +94,7 @@ def keep(
         of_dock = (3, "Dock::3", "Dock", "Dock", True, middle, end, outcome, "exact", middle)
         tables["activations"] += [(*of, number, *of_move), (*of, number, *of_dock)]
         verdict, at = ("violated", middle) if move > bound else ("satisfied", None)
-        tables["verdicts"].append((0, number, "Move::2", begin, middle, verdict, True, at, move, bound, None, None))
+        tables["verdicts"].append((0, number, "Move::2", begin, middle, verdict, True, at, move, bound, *[None] * 6))
     for name, found in tables.items():
         with open(file_of(str(folder), name), "w", encoding="utf-8", newline="") as file:
             csv.writer(file, lineterminator="\n").writerows(found)
