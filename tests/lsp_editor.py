@@ -158,6 +158,19 @@ class Editor:
         published: Message = self.wait_for(is_it)["params"]
         return published
 
+    def published_for(self, *names: str) -> list[Message]:
+        """What is published next for each of some files, in any order."""
+        messages: dict[str, Message] = {}
+        uris = [self.uri(name) for name in names]
+
+        def is_last(message: Message) -> bool:
+            if message.get("method") == "textDocument/publishDiagnostics":
+                messages.setdefault(message["params"]["uri"], message["params"])
+            return messages.keys() >= {*uris}
+
+        self.wait_for(is_last)
+        return [messages[uri] for uri in uris]
+
     def diagnostics(self, name: str) -> list[tuple[str, int, int, int]]:
         """As `published`: rule, line, first and last column."""
         return [

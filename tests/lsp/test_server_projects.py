@@ -137,14 +137,16 @@ def test_what_is_typed_counts_before_it_is_saved(editor: Editor) -> None:
     ((place, message),) = said(editor.published("robot/btq.toml")["diagnostics"])
     assert (place, message.partition("; ")[2]) == ((1, 0, 12), "did you mean `error`?")
     editor.change("robot/btq.toml", part((1, 18), (1, 18), "r"))
-    assert editor.published("robot/btq.toml")["diagnostics"] == []
-    assert [each["severity"] for each in editor.published("robot/main.btq")["diagnostics"]] == [1]
+    of_project, of_mission = editor.published_for("robot/btq.toml", "robot/main.btq")
+    assert of_project["diagnostics"] == []
+    assert [each["severity"] for each in of_mission["diagnostics"]] == [1]
     editor.change("robot/btq.toml", part((0, 0), (0, 0), "x = 1\n"))
     told = editor.published("robot/btq.toml")
     assert (said(told["diagnostics"]), told["version"]) == ([((0, 0, 1), "unknown key `x`")], 3)
     editor.shut("robot/btq.toml")  # without saving: there is no such file
-    assert editor.published("robot/btq.toml")["diagnostics"] == []
-    assert [each["severity"] for each in editor.published("robot/main.btq")["diagnostics"]] == [2]
+    of_project, of_mission = editor.published_for("robot/btq.toml", "robot/main.btq")
+    assert of_project["diagnostics"] == []
+    assert [each["severity"] for each in of_mission["diagnostics"]] == [2]
 
 
 def test_a_project_file_is_no_mission(editor: Editor) -> None:
