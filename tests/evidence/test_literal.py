@@ -10,14 +10,14 @@ from btq_lang.catalog.verbs import VERBS
 
 CASES = 150
 USUAL = 600
-# In these every verb comes to every verdict.
+# With these every verb comes to every verdict: each one has a verdict that no other case below has.
 RARE = (
-    *(4, 26, 37, 104, 122, 241, 255, 376, 513, 586, 766, 767, 843, 861, 882, 1072, 1113, 1145, 1290, 1329, 1389),
-    *(1761, 1804, 2001, 2032, 2179),
-    *(185, 306, 466, 762),  # shares of time
-    *(1, 3, 10, 13, 14, 15, 19, 39, 53, 58, 82, 110, 112, 130, 143, 159, 357, 384, 667, 839, 1336),  # counts
-    *(68, 93, 107, 148, 423, 515, 1940, 2729),  # means
-    *(208, 445, 469, 543, 1759),  # failure rates
+    *(37, 104),  # from … until
+    *(182, 302, 325, 396, 456),  # shares of time
+    *(58, 255, 357, 839),  # counts
+    *(159, 515, 518, 1940, 2729, 4470),  # means
+    *(445, 543, 1759),  # failure rates
+    *(861, 1292),  # followed, visits
 )
 # In these the two judges once differed.
 DIFFERED = (
