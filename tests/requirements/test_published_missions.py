@@ -20,7 +20,7 @@ BY_PEOPLE = {"every_two_hours", "easy_to_use"}
 )
 def test_each_requirement_demands_something(name: str, count: int) -> None:
     path = (FOLDER / name).as_posix()
-    resolved = requirements(open_workspace(FOLDER), path).all
+    resolved = requirements(open_workspace(str(FOLDER)), path).all
     assert len(resolved) == count
     assert {each.name for each in resolved.values() if not each.claims} == BY_PEOPLE & resolved.keys()
     assert {each.name: each.unread for each in resolved.values() if each.unread} == {}
