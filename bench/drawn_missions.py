@@ -14,7 +14,7 @@ import datetime
 import sys
 from collections.abc import Callable, Iterator, Sequence
 
-from drawn_requirements import clause_line, condition, node_clause, quality, reference, requirement
+from drawn_requirements import clause_line, condition, hazard, node_clause, quality, reference, requirement
 from drawn_words import AFTERWARDS, BREAK, CONDITIONS, KEYS, MEASURED, PROSE, SCRIPTS, TYPES, Hand, Line
 
 SYMBOLS = {
@@ -126,6 +126,7 @@ def _items(hand: Hand, nodes: int) -> list[Line]:
         [_signal(hand, name) for name in hand.chance.sample(list(MEASURED), min(len(MEASURED), some))],
         [_context(hand) for _ in hand.some(some, 0.6)],
         _models(hand, 2 + some),
+        [hazard(hand) for _ in hand.some(some, 0.25)],
         [requirement(hand) for _ in hand.some(2 * some, 0.85)],
         [_tree(hand, name, size) for name, size in zip(trees, sizes, strict=True)],
         [_application(hand) for _ in hand.some(4, 0.4)],

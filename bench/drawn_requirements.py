@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from drawn_words import MEASURED, Hand, Line
+from drawn_words import KEYS, MEASURED, Hand, Line
 
 QUALITIES = ["safety", "reliability", "performance-efficiency.time-behaviour", "time-behaviour", "comfort"]
 QUALITIES += ["safety.operational-constraint", "interaction-capability", "energy-autonomy", "pose-accuracy"]
@@ -16,6 +16,9 @@ QUALITIES += [
 ]
 CLASSIC_QUALITIES = ("performance", "performance <time-behavior>", "usability", "safety", "reliability", "security")
 EVENTS = ("starts", "succeeds", "fails", "finishes", "halts")
+SOURCES = ("ISO 13482, 5.10.2", "FMEA-12", "https://example.org/spec#4.2", "risk assessment 4, row 1", "customer")
+WAYS = {"monitor": "", "test": "TC-", "analysis": "FTA ", "review": "R-"}
+PRIORITIES = ("must", "should", "high", "low", '"nice to have"')
 FUNCTIONS = ("max", "min", "mean", "p95", "stddev", "change", "count")
 
 
@@ -30,9 +33,9 @@ def quality(hand: Hand) -> str:
 # ---- requirements ---------------------------------------------------------------------------------------------------
 
 
-def requirement(hand: Hand) -> Line:
+def requirement(hand: Hand, lists: bool = True) -> Line:
     """A requirement as an item: its clauses on its line, in its block, or in both."""
-    drawn = clauses(hand)
+    drawn = clauses(hand, lists)
     inline = hand.pick({0: 85, 1: 5, len(drawn): 10})
     head = _head(hand, hand.new("requirement"), titled=bool(inline) or hand.maybe(0.7))
     line = Line(hand.words(head, *drawn[:inline]), [Line(clause) for clause in drawn[inline:]])
@@ -48,11 +51,12 @@ def _head(hand: Hand, name: str, titled: bool = True) -> str:
         return _classic(hand, name)
     parameters = ""
     if hand.maybe(0.12):
-        default = hand.pair(" ", hand.quantity("speed")).rstrip() if hand.maybe(0.7) else ""
+        default = hand.pair(" ", _bounded(hand, "speed")).rstrip() if hand.maybe(0.7) else ""
         more = f", patience : s{hand.equals}{hand.quantity('time')}" if hand.maybe(0.2) else ""
         parameters = f"(limit : m/s{default}{more})"
     colon = hand.pick({" : ": 12, ": ": 3, " :": 0.5})
-    about = colon + quality(hand) if hand.maybe(0.85) else ""
+    qualities = [quality(hand) for _ in range(hand.pick({1: 12, 2: 2, 3: 0.3}))]
+    about = colon + hand.words(" and ".join(qualities)) if hand.maybe(0.85) else ""
     return hand.words(f"QualityReq {name}{parameters}{about}", hand.prose() if titled else "")
 
 
@@ -63,26 +67,73 @@ def _classic(hand: Hand, name: str) -> str:
     return hand.words(hand.pair("QualityReq ID", f'"{name}"'), hand.pair("description", f'"{text}"'))
 
 
-def clauses(hand: Hand) -> list[str]:
-    """The clauses of a requirement: mostly one claim, then what qualifies it."""
-    claims = [_claim(hand)] if hand.maybe(0.92) else []
+def clauses(hand: Hand, lists: bool = True) -> list[str]:
+    """The clauses of a requirement: mostly one claim, then what qualifies it.
+
+    On a line with `satisfies`, and in brackets, a comma belongs to the list of requirements: no lists in clauses there.
+    """
+    claims = [_claim(hand, lists)] if hand.maybe(0.92) else []
+    most = 3 if lists else 1
     others: dict[float, Callable[[], str]] = {
         0.20: lambda: f"{hand.pick(('while', 'when'))} {condition(hand)}",
+        0.04: lambda: f"from {_event(hand)} until {_event(hand)}",
+        0.05: lambda: f"assuming {condition(hand)}",
+        0.03: lambda: "on average",
         0.18: lambda: _odds(hand),
         0.08: lambda: f"confidence {hand.pick(('95 %', '99 %', '90%', '99.9 %'))}",
         0.10: lambda: f"over last {_window(hand)}",
         0.35: lambda: f"on violation {hand.pick({'fail': 4, 'halt': 2, 'warn': 2, 'log': 1})}",
         0.15: lambda: f"goal {_bounded(hand, 'time')}",
         0.25: lambda: f"because {hand.prose()}",
-        0.12: lambda: f"verified by {hand.pick(('monitor', 'analysis', 'test', 'review'))}",
+        0.14: lambda: f"verified by {_several(hand, lambda: _way(hand), most)}",
+        0.12: lambda: _source(hand),
+        0.07: lambda: f"refines {_several(hand, lambda: hand.name('requirement'), most)}",
+        0.09: lambda: f"mitigates {_several(hand, lambda: hand.name('hazard'), most)}",
+        0.11: lambda: f"priority {hand.pick(PRIORITIES)}",
+        0.06: lambda: _approval(hand),
     }
     drawn = claims + [clause() for share, clause in others.items() if hand.maybe(share)]
     if hand.maybe(0.1):
         hand.chance.shuffle(drawn)
+    drawn.sort(key=lambda clause: clause[0] not in "\"'")  # after `verified by test` a string would be its ID
     return drawn
 
 
-def _claim(hand: Hand) -> str:
+def _several(hand: Hand, draw: Callable[[], str], most: int) -> str:
+    """One, or a list of up to so many."""
+    return hand.listed(draw() for _ in range(min(most, hand.pick({1: 8, 2: 3, 3: 1}))))
+
+
+def _way(hand: Hand) -> str:
+    way = hand.pick({"monitor": 3, "test": 4, "analysis": 1, "review": 2})
+    number = hand.string(f"{WAYS[way]}{hand.chance.randint(1, 99)}")
+    return hand.words(way, number if hand.maybe(0.1 if way == "monitor" else 0.6) else "")
+
+
+def _source(hand: Hand) -> str:
+    return f"source {hand.string(hand.pick(SOURCES))}"
+
+
+def _approval(hand: Hand) -> str:
+    """With the fingerprint that `btq approve` writes, or without one."""
+    who = f"approved by {hand.string(hand.pick(('Kim', 'R. Diaz', 'safety board')))}"
+    day = f"on {hand.string(f'2026-{hand.chance.randint(10, 12)}-{hand.chance.randint(10, 28)}')}"
+    return hand.words(who, day, f"of {hand.string(f'1:{hand.chance.getrandbits(48):012x}')}" if hand.maybe(0.8) else "")
+
+
+def hazard(hand: Hand) -> Line:
+    """A hazard as an item: where it is from, why it is one, how severe it is."""
+    title = hand.string(hand.pick(("Collision with a person", "The load falls", "Nobody is called")))
+    line = Line(hand.words("hazard", hand.new("hazard"), title if hand.maybe(0.85) else ""))
+    severity = hand.pick(("critical", "high", "low", "S2", '"very low"'))
+    drawn = {_source(hand): 0.5, f"severity {severity}": 0.6, f"because {hand.prose()}": 0.2}
+    line.block += [Line(clause) for clause, share in drawn.items() if hand.maybe(share)]
+    if hand.maybe(0.2):
+        hand.chance.shuffle(line.block)
+    return line
+
+
+def _claim(hand: Hand, lists: bool = True) -> str:
     verbs = {
         "takes": 10,
         "succeeds": 4,
@@ -95,19 +146,31 @@ def _claim(hand: Hand) -> str:
         "runs": 2,
         "starts": 1,
         "ends": 1,
+        "ends with": 1,
         "follows": 1,
+        "counts": 2,
+        "fails": 0.7,
+        "visits": 1 if lists else 0,
+        "each": 2,
     }
-    return hand.words(_subject(hand) if hand.maybe(0.25) else "", _verb(hand, hand.pick(verbs)))
+    verb = hand.pick(verbs)
+    if verb == "each":
+        answer = _event(hand) if hand.maybe(0.6) else condition(hand)
+        within = f"within {_bounded(hand, 'time')}" if hand.maybe(0.7) else ""
+        return hand.words(f"each {_event(hand)} is followed by {answer}", within)
+    return hand.words(_subject(hand) if hand.maybe(0.25) else "", _verb(hand, verb))
 
 
 def _subject(hand: Hand) -> str:
-    kind = hand.pick({"path": 6, "mission": 2, "every": 3, "from": 2, "sum": 1})
+    kind = hand.pick({"path": 6, "mission": 2, "every": 3, "from": 2, "sum": 1, "word": 0.1})
     if kind == "every":
         return f"every {hand.name('model')}"
     if kind == "from":
         return f"from {_event(hand)} to {_event(hand)}"
     if kind == "sum":
         return "sum of " + hand.listed([hand.path(), hand.path(), *(hand.path() for _ in hand.some(2))])
+    if kind == "word":  # which begins a clause where no verb follows
+        return hand.pick(("source", "priority", "source/" + hand.name("label")))
     return "mission" if kind == "mission" else hand.path()
 
 
@@ -116,8 +179,9 @@ def _verb(hand: Hand, verb: str) -> str:
         return f"takes {_bound(hand, 'time')}"
     if verb == "succeeds":
         return f"succeeds within {_bounded(hand, 'time')}" if hand.maybe(0.7) else "succeeds"
-    if verb in ("needs", "keeps", "never", "leaves"):
-        return f"{verb} {condition(hand)}"
+    if verb in ("needs", "keeps", "never", "leaves", "ends with"):
+        stretch = f"for more than {_bounded(hand, 'time')}" if verb == "never" and hand.maybe(0.25) else ""
+        return hand.words(f"{verb} {condition(hand)}", stretch)
     if verb == "uses":
         return f"uses {_bound(hand, 'energy')} of {hand.name('signal')}"
     if verb == "tries":
@@ -125,17 +189,44 @@ def _verb(hand: Hand, verb: str) -> str:
     if verb == "runs":
         often = f"runs {_bound(hand, 'number')} per {hand.quantity('time')}"
         return f"runs every {_bounded(hand, 'time')}" if hand.maybe(0.6) else often
-    return (
-        f"follows {_event(hand)}"
-        if verb == "follows"
-        else f"{verb} within {_bounded(hand, 'time')} after {_event(hand)}"
-    )
+    if verb == "follows":
+        return f"follows {_event(hand)}"
+    if verb == "visits":
+        return _visits(hand)
+    if verb in ("counts", "fails"):
+        return _count(hand, rate=verb == "fails")
+    return f"{verb} within {_bounded(hand, 'time')} after {_event(hand)}"
+
+
+def _visits(hand: Hand) -> str:
+    """Nodes, some of them with values of their ports, as those of one skill are told apart."""
+    nodes = []
+    for _ in range(hand.pick({2: 5, 3: 4, 5: 1})):
+        keys = hand.chance.sample(KEYS, hand.pick({1: 4, 2: 1}))
+        values = hand.listed(hand.pair(key, hand.value()) for key in keys)
+        nodes.append(hand.words(hand.path(), f"({values})" if hand.maybe(0.4) else ""))
+    return hand.words("visits", hand.listed(nodes), "in order" if hand.maybe(0.4) else "")
+
+
+def _count(hand: Hand, rate: bool) -> str:
+    """How often something happens in a run or at a node; or how often a node fails in a time."""
+    if rate:
+        of = f"of {hand.path()}" if hand.maybe(0.3) else ""
+        return hand.words(f"fails at most {hand.chance.randint(0, 9)} per {hand.quantity('time')}", of)
+    verb = hand.pick({"succeeds": 5, "starts": 3, "fails": 3, "finishes": 2})
+    bound = "at most" if verb == "fails" else hand.pick(("at least", "at most"))
+    return f"{verb} {bound} {hand.chance.randint(0, 40)} per {'run' if hand.maybe(0.6) else hand.path()}"
 
 
 def _event(hand: Hand) -> str:
+    """One event, or any of several; a condition comes last."""
+    drawn = [
+        f"{hand.path() if hand.maybe(0.85) else 'mission'} {hand.pick(EVENTS)}"
+        for _ in range(hand.pick({1: 12, 2: 2, 3: 0.5}))
+    ]
     if hand.maybe(0.15):
-        return f"when {comparison(hand)}"
-    return f"{hand.path() if hand.maybe(0.85) else 'mission'} {hand.pick(EVENTS)}"
+        drawn[-1] = f"when {comparison(hand) if hand.maybe(0.8) else condition(hand)}"
+    return " or ".join(drawn)
 
 
 def _bound(hand: Hand, measure: str) -> str:
@@ -146,8 +237,11 @@ def _bound(hand: Hand, measure: str) -> str:
 
 
 def _bounded(hand: Hand, measure: str) -> str:
-    if hand.maybe(0.93):
-        return _simple(hand, measure)
+    return _simple(hand, measure) if hand.maybe(0.93) else _cases(hand, measure)
+
+
+def _cases(hand: Hand, measure: str) -> str:
+    """A value for each situation."""
     cases = [f"{_simple(hand, measure)} if {_case(hand)}" for _ in range(hand.pick({1: 4, 2: 1}))]
     return f"{', '.join(cases)} else {_simple(hand, measure)}"
 
@@ -162,7 +256,7 @@ def _simple(hand: Hand, measure: str) -> str:
 
 def _odds(hand: Hand) -> str:
     share = hand.pick(("98 %", "99 %", "99.9 %", "80%", "50 %"))
-    of = f"of {hand.pick(('activations', 'runs'))}"
+    of = f"of {hand.pick({'activations': 5, 'runs': 5, 'time': 2, 'occurrences': 1})}"
     said = f"with probability {hand.pick(('>=', '>'))} {share}" + (f" {of}" if hand.maybe(0.4) else "")
     return f"in at least {share} {of}" if hand.maybe(0.7) else said
 
@@ -205,7 +299,9 @@ def comparison(hand: Hand) -> str:
     if measure == "text":
         return f"{signal} {hand.pick(('==', '!='))} {hand.string(hand.pick(('lobby', 'ward 3', 'auto')))}"
     sign = hand.pick({"<": 4, "<=": 5, ">": 3, ">=": 5, "==": 1, "!=": 1})
-    value = hand.quantity(measure)
+    if hand.maybe(0.03):
+        return f"age({signal}) {hand.pick(('<', '<='))} {hand.quantity('time')}"
+    value = hand.quantity(measure) if hand.maybe(0.95) else f"({_cases(hand, measure)})"
     if hand.maybe(0.08):
         return f"{value} {hand.pick(('<', '<='))} {signal} {hand.pick(('<', '<='))} {hand.quantity(measure)}"
     return f"{_expression(hand, signal, measure)}{hand.pick({f' {sign} ': 20, sign: 1})}{value}"
@@ -244,20 +340,21 @@ def _use(hand: Hand) -> str:
     if hand.classic:
         return _classic(hand, hand.new("requirement"))
     if hand.maybe(0.05):
-        return hand.words(_head(hand, hand.new("requirement")), _claim(hand), *clauses(hand)[1:2])
+        head = _head(hand, hand.new("requirement"))
+        return hand.words(head, _claim(hand, lists=False), *clauses(hand, lists=False)[1:2])
     return reference(hand)
 
 
 def reference(hand: Hand) -> str:
     """A requirement by name, with its arguments."""
-    argument = f"({hand.pair('limit', hand.quantity('speed'))})" if hand.maybe(0.08) else ""
+    argument = f"({hand.pair('limit', _bounded(hand, 'speed'))})" if hand.maybe(0.08) else ""
     return hand.name("requirement") + argument
 
 
 def clause_line(hand: Hand) -> Line:
     """Clauses on a line of their own, perhaps with a requirement that has a block."""
     if hand.maybe(0.06):
-        line = requirement(hand)
+        line = requirement(hand, lists=False)
         before = f"{hand.name('requirement')}, " if hand.maybe(0.3) and not hand.classic else ""
         line.text = f"satisfies {before}{line.text}"
         return line

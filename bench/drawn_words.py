@@ -160,6 +160,7 @@ class Hand:
         known = self.names.setdefault(kind, [])
         makers: dict[str, Callable[[], str]] = {
             "requirement": lambda: f"{self.pick(('rq', 'rq-', 'nfr_', 'limit'))}{len(known) + 1}",
+            "hazard": lambda: f"{self.pick(('H', 'H-', 'hazard_'))}{len(known) + 1}",
             "tree": self._tree,
             "context": lambda: f"{self.pick(THINGS).lower()}_{self.pick(STATES).lower()}",
             "tag": lambda: self.pick(VERBS).lower() + "ing",
