@@ -352,7 +352,9 @@ def bound_follows(cursor: Cursor, index: int) -> bool:
     first = cursor.raws[index]
     if first == "between" or (first, *cursor.raws[index + 1 : index + 2]) in RELATIONS:
         return True
-    return first != "within" and any(tuple(cursor.raws[index : index + length]) in BOUNDS for length in (1, 2, 3, 4, 5))
+    if first == "within" or (first == "over" and cursor.is_word(index + 1, "last")):
+        return False
+    return any(tuple(cursor.raws[index : index + length]) in BOUNDS for length in (1, 2, 3, 4, 5))
 
 
 def report_slip(cursor: Cursor) -> bool:
@@ -394,6 +396,8 @@ def followed_ahead(cursor: Cursor) -> int:
     """The token `followed` of a clause that begins here; 0 if none does."""
     raws = cursor.raws
     for index in range(cursor.index + 2, len(raws) - 1):
+        if raws[index] == "QualityReq" and raws[index - 1] == ",":
+            return 0
         if raws[index] == "followed" and (raws[index - 1] == "is" or raws[index + 1] == "by"):
             return index
     return 0

@@ -10,6 +10,8 @@ import random
 from hashlib import sha256
 from pathlib import Path
 
+import pytest
+
 from btq_lang.btcpp.importing import import_xml
 from btq_lang.parser import parse
 from btq_lang.syntax.tree import How, Word
@@ -153,6 +155,18 @@ def test_drawn_missions_are_read_as_1_0_read_them() -> None:
     assert [parse(text).diagnostics for text in texts if parse(text).diagnostics] == []
     batches = [texts[begin : begin + 100] for begin in range(0, len(texts), 100)]
     assert [digest([read(text) for text in batch]) for batch in batches] == [KEPT[digest(batch)] for batch in batches]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "QualityReq a succeeds over last 7 d\n",
+        "BehaviorTree T\n    A satisfies QualityReq a every M keeps z, QualityReq b each A fails is followed by z\n",
+        "QualityReq a\n    starts within 2 s after A fails over last 20 runs\n",
+    ],
+)
+def test_a_clause_ends_where_another_begins(text: str) -> None:
+    assert parse(text).diagnostics == ()
 
 
 def test_examples_are_read_as_1_0_read_them() -> None:
