@@ -12,6 +12,7 @@ from btq_lang.catalog.versions import PORTS_OF_SUBTREE
 from btq_lang.checks import lookups
 from btq_lang.checks.entries import handling
 from btq_lang.checks.flow import below, calls_of
+from btq_lang.checks.results import is_filled_in
 from btq_lang.checks.view import View, declared_ports
 from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.syntax.tree import Tree, port_named
@@ -56,7 +57,10 @@ def unread_port(view: View) -> Iterator[Diagnostic]:
             if port.id is None or not is_port_name(name) or view.ask(_is_named, tree, name):
                 continue
             if view.ask(_is_given, tree, name):
-                message = f"nothing in `{tree}` reads `{name}`, which SubTrees give it"
+                is_output = port.direction.raw == "output"
+                wanted = "writes" if is_output else "reads"
+                given = "for which SubTrees name an entry" if is_output else "which SubTrees give it"
+                message = f"nothing in `{tree}` {wanted} `{name}`, {given}"
                 yield Diagnostic("unread-argument", port.id.span, message)
 
 
@@ -78,6 +82,8 @@ def _is_named(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> 
     view = View(store, viewpoint)
     own, definition = view.ask(handling, tree), view.ask(inputs.definition, Kind.TREE, tree)
     if own.is_open or own.has_strangers or definition is None or name in view.ask(_words, tree):
+        return True
+    if isinstance(item := definition[1].item, Tree) and is_filled_in(view, tree, item):
         return True
     if any(resolved.kind is None and not resolved.is_subtree for resolved in view.seen_in(*definition).all):
         from btq_lang.catalog.nav2.navigator import ENTRIES  # few arguments are not named

@@ -60,16 +60,16 @@ def _of_tree(store: Store[Workspace], viewpoint: str, tree: str) -> Results:
     """The possible results of a tree by its name; all, if it runs itself."""
     definition = store.ask(inputs.definition, viewpoint, Kind.TREE, tree)
     item = definition[1].item if definition is not None else None
-    if definition is None or not isinstance(item, Tree) or _is_filled_in(View(store, viewpoint), tree, item):
+    if definition is None or not isinstance(item, Tree) or is_filled_in(View(store, viewpoint), tree, item):
         return UNKNOWN
     roots = [child for child in item.children if isinstance(child, Node)]
     return _of_nodes(store, viewpoint, *definition)[id(roots[0])] if len(roots) == 1 else UNKNOWN
 
 
-def _is_filled_in(view: View, name: str, tree: Tree) -> bool:
+def is_filled_in(view: View, name: str, tree: Tree) -> bool:
     """Whether a tree does nothing because the program replaces it: its name is like `__BringUp__`, or C++ of the
     project has that name."""
-    is_stub = len(tree.children) < 2 and all(isinstance(child, Node) and _succeeds(child) for child in tree.children)
+    is_stub = all(isinstance(node, Node) and (node.children or _succeeds(node)) for node in tree.walk())
     return is_stub and (_TEMPLATE(name) is not None or view.ask(cpp_lookups.is_in_cpp, name))
 
 

@@ -104,7 +104,10 @@ class _Reader:
         uses = Uses.of_function(self.sources, passed[1], body.frame) if len(passed) > 1 else Uses(self.sources)
         undeclared = uses.undeclared(ports) if complete else ()
         category, without = _SIMPLE[call.name], uses.without_each(ports)
-        return CppNode(name, category, "", place, place, ports, complete, uses.unread(ports), undeclared, without)
+        unread, ends_at_once = uses.unread(ports), category == "Action"  # else the engine throws
+        return CppNode(
+            name, category, "", place, place, ports, complete, unread, undeclared, without, at_once=ends_at_once
+        )
 
     def _manifest(self, call: RegistrationCall, body: Body, manifest: Node) -> CppNode | None:
         """`registerBuilder(CreateManifest<T>("Name", ports), builder)`"""

@@ -270,8 +270,8 @@ def _kept(declared: Node) -> str:
 
 
 def _fails(branch: Node) -> bool:
-    """Whether a branch throws, ends the program, or returns FAILURE."""
-    for node in walk(branch, LAMBDAS):
+    """Whether a branch throws, ends the program, or returns FAILURE, and not only in a case of several."""
+    for node in walk(branch, _CASES):
         if node.type == "throw_statement" or (node.type == "call_expression" and callee(node)[1] in _ENDS):
             return True
         if node.type == "return_statement" and text_of(node).rstrip("; ").endswith("NodeStatus::FAILURE"):
@@ -283,6 +283,7 @@ def _leaves(branch: Node) -> bool:
     return any(each.type in ("return_statement", "throw_statement") for each in walk(branch, LAMBDAS))
 
 
+_CASES: Final = LAMBDAS | {"if_statement", "switch_statement", "while_statement", "for_statement", "for_range_loop"}
 _HARMLESS: Final = ("field_expression", "lambda_capture_specifier", "reference_declarator", "pointer_declarator")
 _IGNORES: Final = "ignores"
 _PROVIDES: Final = re.compile(r"provided\w*Ports").fullmatch

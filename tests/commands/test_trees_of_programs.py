@@ -75,7 +75,7 @@ def test_a_main_tree_that_another_file_of_the_package_names(tmp_path: Path) -> N
         ("__BringUp__", '<Action ID="AlwaysSuccess" name="later"/>', True),
         ("Patrol", "<AlwaysSuccess/>", True),  # a string in the C++
         ("BringUp", "<AlwaysSuccess/>", False),
-        ("__BringUp__", "<Sequence><AlwaysSuccess/></Sequence>", False),
+        ("__BringUp__", "<Sequence><AlwaysSuccess/></Sequence>", True),
         ("__BringUp__", '<Script code="n := 1"/>', False),
     ],
 )
@@ -86,3 +86,23 @@ def test_a_tree_that_a_program_fills_in(tmp_path: Path, name: str, body: str, is
 """
     rules = [line.partition("[")[2].partition("]")[0] for line in found(tmp_path, xml)]
     assert rules == ([] if is_filled_in else ["unreachable-child"])
+
+
+@pytest.mark.parametrize(
+    ("direction", "name", "body", "messages"),
+    [
+        ("input", "Watch", "<Say/>", ["nothing in `Watch` reads `event`, which SubTrees give it"]),
+        ("output", "Watch", "<Say/>", ["nothing in `Watch` writes `event`, for which SubTrees name an entry"]),
+        ("output", "__Watch__", "<Sequence><AlwaysSuccess/></Sequence>", []),  # the program puts nodes into it
+    ],
+)
+def test_a_port_that_nothing_in_its_tree_names(
+    tmp_path: Path, direction: str, name: str, body: str, messages: list[str]
+) -> None:
+    xml = f""" main_tree_to_execute="Main">
+<BehaviorTree ID="Main"><SubTree ID="{name}" event="{{event}}"/></BehaviorTree>
+<BehaviorTree ID="{name}">{body}</BehaviorTree>
+<TreeNodesModel><SubTree ID="{name}"><{direction}_port name="event"/></SubTree></TreeNodesModel>
+"""
+    lines = [line for line in found(tmp_path, xml) if "unread-argument" in line]
+    assert [line.partition("] ")[2] for line in lines] == messages

@@ -658,6 +658,9 @@ WITHOUT = {
     'check(getInput<int>("p"));': "",
     'if (!getInput("p", p)) { p = 3; } getInput("p", p);': "ignores",
     'if (!getInput("p", p)) { throw 1; } getInput("p", p);': "fails",
+    'auto r = getInput<int>("p"); if (r) { use(*r); } else { if (!x) { return NodeStatus::FAILURE; } }': "",
+    'auto r = getInput<int>("p"); if (r) { use(*r); } else if (x) { go(); } else { return NodeStatus::FAILURE; }': "",
+    'if (!getInput("p", p)) { auto x = other(); if (!x) { throw 1; } }': "",
 }
 
 
@@ -769,6 +772,10 @@ SIMPLE = """
       factory.registerSimpleAction("Bound", std::bind(&Robot::go, &robot), { BT::InputPort<int>("b") });
     }
 """
+
+
+def test_a_simple_action_ends_at_once() -> None:
+    assert [node.name for node in read(SIMPLE).nodes if node.at_once] == ["Bound", "Speak", "Whole"]
 
 
 def test_the_function_of_a_simple_node_is_held_against_its_ports() -> None:
