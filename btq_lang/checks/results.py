@@ -69,13 +69,13 @@ def _of_tree(store: Store[Workspace], viewpoint: str, tree: str) -> Results:
 def is_filled_in(view: View, name: str, tree: Tree) -> bool:
     """Whether a tree does nothing because the program replaces it: its name is like `__BringUp__`, or C++ of the
     project has that name."""
-    is_stub = all(isinstance(node, Node) and (node.children or _succeeds(node)) for node in tree.walk())
+    is_stub = all(isinstance(node, Node) and (node.children or _does_nothing(node)) for node in tree.walk())
     return is_stub and (_TEMPLATE(name) is not None or view.ask(cpp_lookups.is_in_cpp, name))
 
 
-def _succeeds(node: Node) -> bool:
+def _does_nothing(node: Node) -> bool:
     kind = lookup(node.kind.text) if node.kind is not None else None
-    return kind is not None and kind.flow == "succeeds" and not kind.ports
+    return kind is not None and kind.flow in ("succeeds", "fails") and not kind.ports
 
 
 def _of_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> dict[int, Results]:

@@ -93,7 +93,8 @@ def test_a_tree_that_a_program_fills_in(tmp_path: Path, name: str, body: str, is
     [
         ("input", "Watch", "<Say/>", ["nothing in `Watch` reads `event`, which SubTrees give it"]),
         ("output", "Watch", "<Say/>", ["nothing in `Watch` writes `event`, for which SubTrees name an entry"]),
-        ("output", "__Watch__", "<Sequence><AlwaysSuccess/></Sequence>", []),  # the program puts nodes into it
+        ("output", "__Watch__", "<Sequence><AlwaysSuccess/></Sequence>", []),
+        ("output", "__Watch__", "<AlwaysFailure/>", []),  # the program puts nodes into it
     ],
 )
 def test_a_port_that_nothing_in_its_tree_names(
