@@ -199,7 +199,7 @@ def _verb(hand: Hand, verb: str) -> str:
 
 
 def _visits(hand: Hand) -> str:
-    """Nodes, some of them with values of their ports, as those of one skill are told apart."""
+    """Nodes, some with values of their ports: these distinguish nodes of one kind."""
     nodes = []
     for _ in range(hand.pick({2: 5, 3: 4, 5: 1})):
         keys = hand.chance.sample(KEYS, hand.pick({1: 4, 2: 1}))

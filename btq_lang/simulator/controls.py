@@ -36,9 +36,17 @@ def tick_fallback(machine: Machine, node: SimulatedNode) -> int:
     return _in_order(machine, node, SUCCESS, FAILURE)
 
 
-def _in_order(machine: Machine, node: SimulatedNode, ends: int, goes_on: int) -> int:
-    """Tick children in order until one has the result `ends`; those before it had the result `goes_on`."""
-    counts_skips = machine.dialect.counts_skips
+def tick_sequence_with_memory(machine: Machine, node: SimulatedNode) -> int:
+    """As a Sequence, but goes on at the child that failed or was halted."""
+    return _in_order(machine, node, FAILURE, SUCCESS, keeps_place=True)
+
+
+def _in_order(machine: Machine, node: SimulatedNode, ends: int, goes_on: int, keeps_place: bool = False) -> int:
+    """Tick children in order until one has the result `ends`; those before it had the result `goes_on`.
+
+    Args:
+        keeps_place: it begins again at the child that ended it, and resets only that one and later ones.
+    """
     if node.status == IDLE:
         node.skipped = 0
         node.is_on = True  # all results so far were skips, for versions that do not count them
@@ -52,40 +60,10 @@ def _in_order(machine: Machine, node: SimulatedNode, ends: int, goes_on: int) ->
         if result == RUNNING:
             return RUNNING
         if result == ends:
-            reset_children(machine, node)
-            node.index = 0
-            return ends
-        node.index += 1
-        if result == SKIPPED:
-            node.skipped += 1
-        elif node.rules.yields and before == IDLE and node.index < len(node.children):
-            machine.is_woken = True
-            return RUNNING
-    all_skipped = node.skipped == len(node.children) if counts_skips else node.is_on
-    reset_children(machine, node)
-    node.index = 0
-    node.skipped = 0
-    return SKIPPED if all_skipped else goes_on
-
-
-def tick_sequence_with_memory(machine: Machine, node: SimulatedNode) -> int:
-    """As a Sequence, but goes on at the child that failed or was halted."""
-    if node.status == IDLE:
-        node.skipped = 0
-        node.is_on = True
-    set_status(machine, node, RUNNING)
-    while node.index < len(node.children):
-        child = node.children[node.index]
-        before = child.status
-        result = execute_tick(machine, child)
-        if result != SKIPPED:
-            node.is_on = False
-        if result == RUNNING:
-            return RUNNING
-        if result == FAILURE:
-            for later in node.children[node.index :]:
+            for later in node.children[node.index if keeps_place else 0 :]:
                 reset_child(machine, later)
-            return FAILURE
+            node.index = node.index if keeps_place else 0
+            return ends
         node.index += 1
         if result == SKIPPED:
             node.skipped += 1
@@ -96,7 +74,7 @@ def tick_sequence_with_memory(machine: Machine, node: SimulatedNode) -> int:
     reset_children(machine, node)
     node.index = 0
     node.skipped = 0
-    return SKIPPED if all_skipped else SUCCESS
+    return SKIPPED if all_skipped else goes_on
 
 
 def tick_reactive_sequence(machine: Machine, node: SimulatedNode) -> int:
