@@ -22,7 +22,7 @@ class Write(Record):
     type: str
 
 
-class Behavior(Record):
+class GivenActivation(Record):
     """What a skill does in one activation, as far as it is given.
 
     Attributes:
@@ -38,19 +38,19 @@ class Behavior(Record):
     times: int = 0
 
 
-class Given(Record):
+class GivenSkill(Record):
     """What some nodes do, their activations counted together in the order of their starts.
 
     Attributes:
         uids: the numbers of the nodes.
         rank: how specific it is; for each aspect the most specific one counts.
-        behaviors: of successive activations.
+        activations: in the order of their starts; the last one repeats.
         answers: of successive ticks of conditions; the last one repeats.
     """
 
     uids: frozenset[int]
     rank: int
-    behaviors: tuple[Behavior, ...] = ()
+    activations: tuple[GivenActivation, ...] = ()
     answers: tuple[bool, ...] = ()
 
 
@@ -76,7 +76,7 @@ class Skills:
         machine: whose leaves they are; to be set before the first tick.
     """
 
-    def __init__(self, givens: Iterable[Given], conditions: Iterable[str]) -> None:
+    def __init__(self, givens: Iterable[GivenSkill], conditions: Iterable[str]) -> None:
         """Take what is given; `conditions`: the registered names of conditions."""
         self.machine: Machine
         self.assumed: Final[set[str]] = set()
@@ -130,14 +130,14 @@ class Skills:
         writes: tuple[Write, ...] | None = None
         is_given = False
         for index, given in enumerate(self._givens):
-            if not given.behaviors or node.uid not in given.uids:
+            if not given.activations or node.uid not in given.uids:
                 continue
             is_given = True
             number = self._starts[index] = self._starts.get(index, -1) + 1
-            behavior = _of_number(given.behaviors, number)
-            result = behavior.result if result is None else result
-            takes = behavior.takes if takes is None else takes
-            writes = behavior.writes if writes is None else writes
+            of_this = _of_number(given.activations, number)
+            result = of_this.result if result is None else result
+            takes = of_this.takes if takes is None else takes
+            writes = of_this.writes if writes is None else writes
         if not is_given:
             self.assumed.add(node.path)
         end = NEVER if result == RUNNING else self.machine.now + (takes or 0)
@@ -152,10 +152,10 @@ class _Activation(Record):
     writes: tuple[Write, ...]
 
 
-def _of_number(behaviors: tuple[Behavior, ...], number: int) -> Behavior:
-    """The behavior of an activation by its number, from 0; the last one repeats."""
-    for behavior in behaviors[:-1]:
-        if number < (behavior.times or 1):
-            return behavior
-        number -= behavior.times or 1
-    return behaviors[-1]
+def _of_number(activations: tuple[GivenActivation, ...], number: int) -> GivenActivation:
+    """What is given of an activation by its number, from 0; the last one repeats."""
+    for activation in activations[:-1]:
+        if number < (activation.times or 1):
+            return activation
+        number -= activation.times or 1
+    return activations[-1]

@@ -6,6 +6,7 @@ means is unknown here.
 
     tree.py          the tree: entries and items, with all classes below
     words.py, clauses.py, node_clauses.py, nodes.py   words with their positions, clauses made of them, and nodes
+    scenarios.py     scenarios: what is given, what happens, what is expected
     tokens.py        the kinds of tokens
     scan.py          runs of characters: names, numbers, blanks
     indentation.py   the open blocks around a line

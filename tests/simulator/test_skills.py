@@ -9,7 +9,7 @@ from btq_lang.simulator.blackboard import STRING
 from btq_lang.simulator.drivers import tick_while_running
 from btq_lang.simulator.loading import load
 from btq_lang.simulator.nodes import FAILURE, RUNNING, SUCCESS, Machine
-from btq_lang.simulator.skills import Behavior, Given, Skills, Unanswered, Write
+from btq_lang.simulator.skills import GivenActivation, GivenSkill, Skills, Unanswered, Write
 from btq_lang.simulator.versions import Dialect
 
 DELIVER = (
@@ -19,7 +19,7 @@ DELIVER = (
 READY, GO = frozenset({2}), frozenset({4})
 
 
-def run(*givens: Given) -> tuple[int, Machine, Skills]:
+def run(*givens: GivenSkill) -> tuple[int, Machine, Skills]:
     document = read(f'<root BTCPP_format="4"><BehaviorTree ID="Main">{DELIVER}</BehaviorTree></root>').document
     assert document is not None
     skills = Skills(givens, ("Cond",))
@@ -29,19 +29,22 @@ def run(*givens: Given) -> tuple[int, Machine, Skills]:
 
 
 def test_a_failure_and_then_a_success_that_writes() -> None:
-    fails, arrives = Behavior(FAILURE, 2_000, times=1), Behavior(SUCCESS, 3_000, (Write("place", "B", STRING),))
-    result, machine, skills = run(Given(GO, 1, (fails, arrives)), Given(READY, 1, answers=(True,)))
+    fails, arrives = (
+        GivenActivation(FAILURE, 2_000, times=1),
+        GivenActivation(SUCCESS, 3_000, (Write("place", "B", STRING),)),
+    )
+    result, machine, skills = run(GivenSkill(GO, 1, (fails, arrives)), GivenSkill(READY, 1, answers=(True,)))
     assert (result, machine.now, skills.assumed) == (SUCCESS, 5_000, set())
 
 
 def test_aspects_come_from_the_most_specific() -> None:
-    every, own = Given(GO, 0, (Behavior(FAILURE, 1_000),)), Given(GO, 1, (Behavior(takes=500),))
-    result, machine, _ = run(every, own, Given(READY, 1, answers=(True,)))
+    every, own = GivenSkill(GO, 0, (GivenActivation(FAILURE, 1_000),)), GivenSkill(GO, 1, (GivenActivation(takes=500),))
+    result, machine, _ = run(every, own, GivenSkill(READY, 1, answers=(True,)))
     assert (result, machine.now) == (FAILURE, 1_500)
 
 
 def test_one_that_does_not_end() -> None:
-    result, machine, _ = run(Given(GO, 1, (Behavior(RUNNING),)), Given(READY, 1, answers=(True,)))
+    result, machine, _ = run(GivenSkill(GO, 1, (GivenActivation(RUNNING),)), GivenSkill(READY, 1, answers=(True,)))
     assert (result, machine.now) == (RUNNING, 10)
 
 
@@ -52,7 +55,7 @@ def test_a_condition_is_never_assumed() -> None:
 
 
 def test_an_action_is_assumed_and_listed() -> None:
-    *_, skills = run(Given(READY, 1, answers=(False, True)))
+    *_, skills = run(GivenSkill(READY, 1, answers=(False, True)))
     assert skills.assumed == set()
     with pytest.raises(Exception, match="Variable not found: place"):
-        run(Given(READY, 1, answers=(True,)))
+        run(GivenSkill(READY, 1, answers=(True,)))
