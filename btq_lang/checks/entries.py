@@ -273,6 +273,8 @@ def _bare_values(nodes: Iterable[ResolvedNode]) -> Iterator[str]:
     """The values that look like names, of custom nodes and of built-in ones that remove entries."""
     for resolved in nodes:
         for pair in resolved.node.attributes if not resolved.is_subtree else ():
+            if not is_port_name(pair.key.text):
+                continue
             port = resolved.kind.port(pair.key.text) if resolved.kind is not None else None
             text = pair.value.text.removeprefix("@") if pair.value is not None else ""
             if text.isidentifier() and (resolved.kind is None or (port is not None and port.removes)):

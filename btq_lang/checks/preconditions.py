@@ -82,9 +82,14 @@ def skipped_condition(view: View) -> Iterator[Diagnostic]:
 
 def _skipped(resolved: ResolvedNode) -> tuple[ResolvedNode, ResolvedNode | None]:
     """The topmost node that is skipped with a node, and its parent, which handles that."""
-    while resolved.parent is not None and resolved.parent.flow in _PASS_SKIPPED_ON:
-        resolved = resolved.parent
-    return resolved, resolved.parent
+    while (parent := resolved.parent) is not None and (parent.flow in _PASS_SKIPPED_ON or _is_only_reactive(parent)):
+        resolved = parent
+    return resolved, parent
+
+
+def _is_only_reactive(parent: ResolvedNode) -> bool:
+    """A ReactiveSequence or ReactiveFallback with one child is skipped with it, in a later tick, too."""
+    return parent.kind is not None and parent.kind.reactive and len(parent.node.children) == 1
 
 
 def _takes_for_success(parent: ResolvedNode, step: ResolvedNode) -> bool:

@@ -9,6 +9,7 @@ from btq_lang.checks import cpp_lookups, lookups
 from btq_lang.checks.clauses import with_blanks
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Model, Port, written
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.workspace.symbols import may_be_one_type
@@ -27,7 +28,12 @@ def stale_model(view: View) -> Iterator[Diagnostic]:
             fix = replace_fix(f"Replace it with `{of_code.category.raw}`", model.category.span, of_code.category.raw)
             registered = (Related(other.place, _IN_CPP),)
             message = f"{node} is of category {is_here}, and {is_there}"
-            yield Diagnostic(_RULE, model.category.span, message, registered, fixes=(fix,))
+            is_harmless = {model.category.raw, of_code.category.raw} == {
+                "Action",
+                "Condition",
+            }  # one leaf to the engine
+            severity = Severity.HINT if is_harmless else None
+            yield Diagnostic(_RULE, model.category.span, message, registered, fixes=(fix,), severity=severity)
         for port in model.ports:
             if port.id is not None:
                 yield from _of_port(view, model, port, other)

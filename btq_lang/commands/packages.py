@@ -155,7 +155,7 @@ _MENTIONS: Final = (
     ),
 )
 _REGISTERS: Final = re.compile(
-    r"\b(?:registerNodeType|registerBuilder|registerSimple(?:Action|Condition|Decorator)|BT_REGISTER_(?:ROS_)?NODES)\b"
+    r"\b(?:registerNodeType|registerBuilder|registerSimple(?:Action|Condition|Decorator)|BT_REGISTER_(?:ROS_)?NODES|CreateRosNodePlugin)\b"
 ).search
 _PORTS: Final = re.compile(r"\bprovidedPorts\s*\(").search
 _PROGRAMS: Final = (".py", ".launch.xml", ".launch")

@@ -30,7 +30,7 @@ def findings(nodes: CppNodes, texts: Mapping[str, str]) -> dict[str, tuple[Diagn
 
 def nothing_registered(texts: Mapping[str, str]) -> str:
     """The message for some files that register no node."""
-    advice = "also pass the files that call BT_REGISTER_NODES, registerNodeType or registerBuilder"
+    advice = "also pass the files that call BT_REGISTER_NODES, registerNodeType, registerBuilder or CreateRosNodePlugin"
     if (macro := next(uncalled(texts), None)) is not None:
         advice = f"the macro `{macro.name}` in {macro.path} registers its argument: also pass the files that use it"
     return f"no node is registered in {counted(len(texts), 'C++ file')}; {advice}"

@@ -243,6 +243,12 @@ def test_decorators_pass_it_on() -> None:
     assert len(findings(text, WHILE)) == 1
 
 
+def test_a_reactive_node_passes_on_that_its_only_child_is_skipped() -> None:
+    text = tree("->", "    R->", f"        {WATCHED}", "    Condition Next")
+    message = "when `_while` becomes false, `Work` is halted and `->` continues as if it had succeeded"
+    assert findings(text, WHILE) == [f"4 warning «_while» {message}"]
+
+
 @pytest.mark.parametrize(
     "lines",
     [
@@ -256,6 +262,7 @@ def test_decorators_pass_it_on() -> None:
         ("TryCatch", "    Action Try", f"    {WATCHED}"),
         ("->", "    KeepRunningUntilFailure", f"        {WATCHED}", "    Action Next"),
         ("Custom", f"    {WATCHED}", "    Action Next"),
+        ("R->", f"    {WATCHED}"),
     ],
     ids=" ".join,
 )

@@ -366,7 +366,7 @@ def test_what_keeps_nodes_from_being_known_is_said_once_in_the_project_file(
     write(robot, "btq.toml", 'nodes = ["include/*.hpp"]\n')
     assert check(robot) == [
         "btq: btq.toml:1:10: no node is registered in 1 C++ file; also pass the files that call BT_REGISTER_NODES, "
-        "registerNodeType or registerBuilder"
+        "registerNodeType, registerBuilder or CreateRosNodePlugin"
     ]
     from btq_lang.cpp import grammar
 
@@ -497,7 +497,7 @@ def test_cpp_counts_before_a_stale_model(shared: Path, tmp_path: Path) -> None:
     assert shown.count("= help: Replace `path_topic` with `route`") == 2
 
 
-STALE = "trees/m.btq:{}: warning[stale-model] {}"
+STALE = "trees/m.btq:{}: {}[stale-model] {}"
 
 
 @pytest.mark.parametrize(
@@ -533,7 +533,8 @@ STALE = "trees/m.btq:{}: warning[stale-model] {}"
 def test_a_model_that_says_otherwise_than_the_cpp_is_stale(robot: Path, model: str, found: list[str]) -> None:
     write(robot, "trees/m.btq", f"{model}\n\nBehaviorTree M\n    ->\n        IsOpen\n        Drive (goal = {{g}})\n")
     findings = check(robot, "trees/m.btq", "--ignore", "unset-entry")
-    assert findings == ([STALE.format(*found)] if found else [])
+    severity = "hint" if "category" in "".join(found) else "warning"
+    assert findings == ([STALE.format(found[0], severity, found[1])] if found else [])
 
 
 def test_a_stale_model_in_a_file_of_models_declares_no_port(robot: Path) -> None:
@@ -664,3 +665,13 @@ def test_a_default_does_not_count_for_an_entry_that_nothing_sets(robot: Path, re
     write(robot, "trees/m.btq", f"BehaviorTree Main\n{main.replace(' hasty = true', '')}BehaviorTree Go\n{node}")
     message = "nothing in `Go` writes `hasty`, which is read here, and no SubTree passes it"
     assert check(robot) == [f"trees/m.btq:6:35: {severity}[unset-entry] {message}"]
+
+
+@pytest.mark.parametrize("condition", ["_successIf", "_failureIf", "_skipIf", "_while"])
+def test_the_condition_of_a_node_of_cpp_reads_an_entry_by_its_bare_name(robot: Path, condition: str) -> None:
+    tree = f'    IsOpen ({condition} = "is_placed")\n'
+    write(robot, "trees/m.btq", f"BehaviorTree Main\n    SubTree Go\nBehaviorTree Go\n{tree}")
+    column = tree.index("is_placed") + 1
+    message = "nothing in `Go` writes `is_placed`, which is read here, and no SubTree passes it"
+    unset = f"trees/m.btq:4:{column}: warning[unset-entry] {message}"
+    assert check(robot, "trees") == [unset]

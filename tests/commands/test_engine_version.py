@@ -256,7 +256,7 @@ def test_init_proposes_sources_and_parameters(tmp_path: Path) -> None:
     navigator = ["", heading, '# name = "navigator"', '# nav2 = "config/nav.yaml"']
     assert lines_of_init(tmp_path) == ['nodes = ["src/*.cpp"]  # C++ that registers nodes', *navigator]
     (tmp_path / "src" / "nodes.cpp").write_text("// registerNodeType is called elsewhere\n")
-    where = "also pass the files that call BT_REGISTER_NODES, registerNodeType or registerBuilder"
+    where = "also pass the files that call BT_REGISTER_NODES, registerNodeType, registerBuilder or CreateRosNodePlugin"
     why = f"no node is registered in 2 C++ files; {where}"
     proposed = f'# nodes = ["src/*.cpp"]  # C++ that registers nodes; {why}'
     assert lines_of_init(tmp_path) == [proposed, *navigator]

@@ -225,6 +225,15 @@ def test_the_engine_is_that_of_the_files(tmp_path: Path, beside: str, engine: st
     assert (tmp_path / "btq.toml").read_text().splitlines()[1].partition("  #")[0] == f"engine = {engine}"
 
 
+def test_the_plugin_of_a_ros_node_is_cpp_that_registers(tmp_path: Path, write: Write) -> None:
+    pytest.importorskip("tree_sitter_cpp", reason="tree_sitter_cpp is not installed: pip install -e '.[cpp]'")
+    write("go.xml", "Main")
+    (tmp_path / "go.cpp").write_text('CreateRosNodePlugin(robot::Go, "Go");\n')
+    assert run_btq("init", "--from-xml", cwd=tmp_path)[0] == 0
+    nodes = 'nodes = ["*.cpp"]  # C++ that registers nodes'
+    assert (tmp_path / "btq.toml").read_text().splitlines()[2] == nodes
+
+
 def test_one_file_does_not_keep_a_folder_from_being_a_pattern(tmp_path: Path, write: Write) -> None:
     """Unless it defines a tree of the others; and a long list has a line for each item."""
     for number in range(10):

@@ -54,7 +54,7 @@ def test_btq_nodes_of_the_shared_file(shared: Path, tmp_path: Path) -> None:
         ),
         (
             "#define TWICE(x) x x",
-            "also pass the files that call BT_REGISTER_NODES, registerNodeType or registerBuilder",
+            "also pass the files that call BT_REGISTER_NODES, registerNodeType, registerBuilder or CreateRosNodePlugin",
         ),
     ],
 )
