@@ -20,7 +20,8 @@ from btq_lang.btcpp.marks import MARK
 from btq_lang.catalog.units import Unit
 from btq_lang.diagnostics.model import Place
 from btq_lang.requirements import model
-from btq_lang.requirements.model import Applied, InContext, NodeTarget, ResolvedRequirement, ResolvedSignal
+from btq_lang.requirements.applied import Applied
+from btq_lang.requirements.model import InContext, NodeTarget, ResolvedRequirement, ResolvedSignal
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.tree import Apply, Context, Entry, Hazard, Qualities, QualityDecl, Satisfices, Tree

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.rejudging import Shown
     from btq_lang.evidence.verdicts import RequirementVerdict
     from btq_lang.graph.missions import MeasuredBy
-    from btq_lang.requirements.model import Applied
+    from btq_lang.requirements.applied import Applied
     from btq_lang.requirements.resolve import Requirements
 
     _Key: TypeAlias = tuple[str, str, int | str]

@@ -24,9 +24,9 @@ from btq_lang.evidence.evaluate import MissionEvaluation
 from btq_lang.evidence.model import LogSession
 from btq_lang.evidence.odds import lower_limit, upper_limit
 from btq_lang.evidence.verdicts import ClauseVerdict
+from btq_lang.requirements.applied import Applied
 from btq_lang.requirements.model import (
     Age,
-    Applied,
     Compare,
     DurationSum,
     Interval,
