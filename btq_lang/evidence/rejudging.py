@@ -61,7 +61,7 @@ def shown_now(requirements: Requirements, judged: Iterable[RequirementVerdict]) 
     )
     by_text = grouped(((name, clause.text), clause) for name, clause in verdicts if clause.measures is None)
     for demand in demands(requirements):
-        name, subject = demand.requirement.name, demand.applied.subject if demand.applied is not None else None
+        name, subject = demand.requirement.name, demand.subject
         edge = edge_of(within(demand.claim, demand.requirement.scopes), subject, demand.requirement)  # as it was judged
         # Several of a requirement with arguments may be at one node: they are in one order.
         if clauses := by_place.get((name, key_of(demand.requirement, demand.claim, edge), demand.place)):
