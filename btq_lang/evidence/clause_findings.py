@@ -223,8 +223,8 @@ class Recent:
             surplus = sum(len(judgements) for _, judgements in kept) - count
             while surplus > 0:
                 judgements = kept[0][1]
-                surplus, gone = surplus - len(judgements), min(surplus, len(judgements))
-                del judgements[:gone]
+                surplus, dropped = surplus - len(judgements), min(surplus, len(judgements))
+                del judgements[:dropped]
                 if not judgements:
                     del kept[0]
 

@@ -77,9 +77,9 @@ def _is_named(clause: ClauseVerdict, subject: Subject | None) -> bool:
     if not isinstance(subject, NodeTarget):
         return True
     name, kind, head = subject.node.node.name, subject.node.kind, subject.node.node.head
-    wanted = name.text if name is not None else kind.tag if kind is not None else head.text
+    subject_name = name.text if name is not None else kind.tag if kind is not None else head.text
     paths = (_PLACE.sub("", path) for path in clause.path.split(", "))
-    return any(without_number(path.rpartition("/")[2]) == wanted for path in paths)
+    return any(without_number(path.rpartition("/")[2]) == subject_name for path in paths)
 
 
 _PLACE: Final = re.compile(r" \(\d+ of \d+\)$")  # as in `rows.node_names`

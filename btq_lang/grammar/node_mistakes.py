@@ -266,8 +266,8 @@ def label_after_brackets(cursor: Cursor, kind: Word | None, has_label: bool) -> 
     if has_label or kind is None:
         cursor.expected("the end of the line", ("a node has one label, before its brackets",))
         return
-    gone = Span(cursor.last_end() + cursor.base, cursor.here().end)
-    changes = (FixEdit(Place(Span(opened, opened)), f"{cursor.raw} "), FixEdit(Place(gone), ""))
+    label = Span(cursor.last_end() + cursor.base, cursor.here().end)
+    changes = (FixEdit(Place(Span(opened, opened)), f"{cursor.raw} "), FixEdit(Place(label), ""))
     if cursor.text[opened - 1] not in " \t":
         changes = (FixEdit(Place(Span(opened, opened)), f" {cursor.raw} "), changes[1])
     fix = Fix(f"Move `{shown(cursor.raw)}` before the brackets", changes)

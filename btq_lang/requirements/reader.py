@@ -119,22 +119,22 @@ class Reader(PathReader):
 
     # ---- values ----
 
-    def bounded(self, written: syntax.Bounded | None, wanted: Wanted | None) -> model.Bounded | None:
-        """A value, or a table of values, of the wanted kind; None: any."""
+    def bounded(self, written: syntax.Bounded | None, expected: Wanted | None) -> model.Bounded | None:
+        """A value, or a table of values, of the expected kind; None: any."""
         if written is None:
             return None
         if isinstance(written, syntax.Amount):
-            term = self._amount(written, wanted)
-            fits = term is not None and (wanted is None or self._fits(term, wanted))
+            term = self._amount(written, expected)
+            fits = term is not None and (expected is None or self._fits(term, expected))
             return simple(term.value) if term is not None and fits else None
         cases = []
         for case in written.cases:
-            value = self.bounded(case.value, wanted)
+            value = self.bounded(case.value, expected)
             condition = self.condition(case.condition) if case.condition is not None else None
             if value is None or isinstance(value, model.ResolvedTable) or condition is None:
                 return None
             cases.append(model.ResolvedCase(value, condition))
-        otherwise = self.bounded(written.otherwise, wanted)
+        otherwise = self.bounded(written.otherwise, expected)
         if otherwise is None or isinstance(otherwise, model.ResolvedTable):
             return None
         return model.ResolvedTable((*cases, model.ResolvedCase(otherwise, None)))
@@ -155,17 +155,17 @@ class Reader(PathReader):
                 return None
         return bounded
 
-    def quantity(self, word: syntax.Word | None, wanted: Wanted) -> model.Quantity | None:
+    def quantity(self, word: syntax.Word | None, expected: Wanted) -> model.Quantity | None:
         """A quantity or a number by itself."""
         term = self._number(word, False) if word is not None else None
-        if term is None or not self._fits(term, wanted):
+        if term is None or not self._fits(term, expected):
             return None
         return term.value if isinstance(term.value, model.Quantity) else None
 
-    def _amount(self, amount: syntax.Amount, wanted: Wanted | None) -> Term | None:
+    def _amount(self, amount: syntax.Amount, expected: Wanted | None) -> Term | None:
         if amount.word.kind in (NUMBER, QUANTITY):
             return self._number(amount.word, amount.negative)
-        return self._named(amount.word, unit=wanted.unit if wanted is not None else None, in_bound=True)
+        return self._named(amount.word, unit=expected.unit if expected is not None else None, in_bound=True)
 
     def _number(self, word: syntax.Word, negative: bool) -> Term | None:
         raw = f"-{word.raw}" if negative else word.raw
@@ -194,7 +194,7 @@ class Reader(PathReader):
 
         Args:
             beside: what it is compared with.
-            unit: wanted, if it is not compared with anything.
+            unit: expected, if it is not compared with anything.
             in_bound: whether no subtraction can be written there.
         """
         name = word.text
@@ -261,22 +261,22 @@ class Reader(PathReader):
     def _is_declared(self, name: str) -> bool:
         return self._is_value(name) or self.is_context(name)
 
-    def _fits(self, term: Term, wanted: Wanted) -> bool:
-        """Whether a value is of the wanted kind; else that is reported."""
+    def _fits(self, term: Term, expected: Wanted) -> bool:
+        """Whether a value is of the expected kind; else that is reported."""
         if term.sort != "number":
-            self._unexpected(wanted.what, term)
+            self._unexpected(expected.what, term)
             return False
         if term.dimension is None:
             return True
-        if term.dimension in wanted.dimensions:
-            if wanted.level == "difference" and term.level == "level":
+        if term.dimension in expected.dimensions:
+            if expected.level == "difference" and term.level == "level":
                 self._level(term)
                 return False
             return True
-        if term.is_bare and wanted.unit is not None:
-            self._bare(term, f"expected {wanted.what}", wanted.unit)
+        if term.is_bare and expected.unit is not None:
+            self._bare(term, f"expected {expected.what}", expected.unit)
         else:
-            self._unexpected(wanted.what, term)
+            self._unexpected(expected.what, term)
         return False
 
     def _unexpected(self, what: str, term: Term) -> None:
