@@ -13,7 +13,8 @@ from typing import Final, TypeAlias
 
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix, shifted
 from btq_lang.grammar.attributes import parse_pairs
-from btq_lang.grammar.claims import VERB_WORDS, report_slip
+from btq_lang.grammar.claim_mistakes import report_slip
+from btq_lang.grammar.claim_words import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS, METADATA_HEADS
 from btq_lang.grammar.cursor import Cursor
 from btq_lang.grammar.hazards import parse_hazard
@@ -30,7 +31,8 @@ from btq_lang.grammar.items import (
     parse_signal,
     parse_tree,
 )
-from btq_lang.grammar.nodes import found_xml, is_after_dashes, is_doc_string, no_block, other_comment, parse_verbatim
+from btq_lang.grammar.node_mistakes import found_xml, is_after_dashes, is_doc_string, other_comment
+from btq_lang.grammar.nodes import no_block, parse_verbatim
 from btq_lang.lexer import Lexer, State, tokens
 from btq_lang.syntax.scan import Maps, line_end, path_end
 from btq_lang.syntax.tokens import CATEGORIES, DIRECTIONS, NAME, NEWLINE, NODE_CLAUSES, OPEN, STRING, SYMBOL, Token

@@ -15,8 +15,8 @@ from btq_lang.catalog.qualities import EDITIONS, qualities
 from btq_lang.catalog.quality_words import ALIASES, AMBIGUOUS, PAPER_NAMES
 from btq_lang.catalog.units import SYMBOLS as UNITS
 from btq_lang.catalog.verbs import words
-from btq_lang.grammar.claims import HAPPENINGS
-from btq_lang.grammar.claims import VERB_WORDS as VERBS_OF_SUBJECTS
+from btq_lang.grammar.claim_words import HAPPENINGS
+from btq_lang.grammar.claim_words import VERB_WORDS as VERBS_OF_SUBJECTS
 from btq_lang.grammar.clauses import ACTIONS, AVERAGE, EXPERIMENTS, METHODS, TIME
 from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS, HEADS, METADATA_HEADS
 from btq_lang.grammar.hazards import HAZARD_HEADS

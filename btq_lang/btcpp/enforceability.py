@@ -13,9 +13,9 @@ from btq_lang.btcpp.conditions import NoScript, first_value_script, signal_scrip
 from btq_lang.btcpp.guards import ClauseGuard, NotEnforced
 from btq_lang.btcpp.wrappers import may_be_skipped
 from btq_lang.catalog.verbs import VERBS
+from btq_lang.requirements.applied import Applied
 from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.model import (
-    Applied,
     Interval,
     MissionRun,
     NodeTarget,

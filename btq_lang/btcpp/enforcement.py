@@ -27,7 +27,8 @@ from btq_lang.btcpp.marks import GUARDS_NOTE
 from btq_lang.btcpp.wrappers import START, Wrapper, first_values, leaf, wrapped
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Place
-from btq_lang.requirements.model import Applied, ResolvedClaim, ResolvedRequirement
+from btq_lang.requirements.applied import Applied
+from btq_lang.requirements.model import ResolvedClaim, ResolvedRequirement
 from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.resolved import ResolvedNode

@@ -21,7 +21,7 @@ def may_be_generated(text: str) -> bool:
 def without_generated(document: Document, changes: list[VersionNote]) -> int:
     """Remove the marks, in place; return the number of elements that a build had described."""
     document.contents[:] = [
-        each for each in document.contents if not (isinstance(each, XmlComment) and is_generated_mark(each.text))
+        part for part in document.contents if not (isinstance(part, XmlComment) and is_generated_mark(part.text))
     ]
     enforcing: list[Span] = []
     described: list[Span] = []

@@ -25,8 +25,8 @@ def as_written(xml: str) -> Document:
     models = [each for each in root.elements if each.tag == "TreeNodesModel"]
     defaults = {
         (model.get("ID") or "", port.get("name") or ""): default
-        for each in models
-        for model in each.elements
+        for palette in models
+        for model in palette.elements
         for port in model.elements
         if (default := port.get("default")) is not None
     }
@@ -37,8 +37,8 @@ def as_written(xml: str) -> Document:
             element.attributes = _attributes(element, prefix, defaults)
         tree.attributes = tuple(each for each in tree.attributes if each.name not in _ADDED)
         trees.setdefault(tree.get("ID") or "", tree)
-    for each in models:
-        each.children[:] = [model for model in each.elements if model.get("ID") not in BUILTINS]
+    for palette in models:
+        palette.children[:] = [model for model in palette.elements if model.get("ID") not in BUILTINS]
     root.children[:] = [*trees.values(), *(each for each in models if each.children)]
     if trees and root.get("main_tree_to_execute") is None:
         root.attributes += (Attribute("main_tree_to_execute", escape(next(iter(trees)))),)

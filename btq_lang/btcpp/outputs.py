@@ -170,7 +170,8 @@ def bundle(workspace: Workspace, path: str, *, verbatim: bool = False) -> Export
     """A file and all that is registered with it, XML files too, as one document; the others come first."""
     paths = workspace.registered_with(path)
     exports = [
-        export(workspace, each, verbatim=verbatim, included_as=lambda _: _IN_BUNDLE, is_bundled=True) for each in paths
+        export(workspace, member, verbatim=verbatim, included_as=lambda _: _IN_BUNDLE, is_bundled=True)
+        for member in paths
     ]
     main = exports[-1].document
     root = Element("root", main.root.attributes)

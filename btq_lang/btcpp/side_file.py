@@ -20,7 +20,8 @@ from btq_lang.btcpp.marks import MARK
 from btq_lang.catalog.units import Unit
 from btq_lang.diagnostics.model import Place
 from btq_lang.requirements import model
-from btq_lang.requirements.model import Applied, InContext, NodeTarget, ResolvedRequirement, ResolvedSignal
+from btq_lang.requirements.applied import Applied
+from btq_lang.requirements.model import InContext, NodeTarget, ResolvedRequirement, ResolvedSignal
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.tree import Apply, Context, Entry, Hazard, Qualities, QualityDecl, Satisfices, Tree
@@ -107,12 +108,12 @@ def side_file(workspace: Workspace, built: BuiltFile) -> str | None:
             ],
             "requirements": [_requirement(each, loose.get(each.name), place) for each in resolved.all.values()],
             "applied": [
-                _applied(each, built.clauses[index] if built.clauses else (), running, place)
-                for index, each in enumerate(resolved.applied)
+                _applied(applied, built.clauses[index] if built.clauses else (), running, place)
+                for index, applied in enumerate(resolved.applied)
             ],
             "traces": [
-                {"requirement": each.requirement, "nodes": running.uids(NodeTarget(each.node))}
-                for each in resolved.traces
+                {"requirement": trace.requirement, "nodes": running.uids(NodeTarget(trace.node))}
+                for trace in resolved.traces
             ],
             **_guards(built.documents[-1].root),
             "concerns": list(_concerns(resolved.nodes, running)),

@@ -13,7 +13,7 @@ from typing import Final
 
 from btq_lang.btcpp.document import unescape
 from btq_lang.catalog.nodes import BUILTINS, PLACEHOLDERS, xml_tag
-from btq_lang.grammar.claims import VERB_WORDS
+from btq_lang.grammar.claim_words import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.grammar.item_words import ITEM_WORDS
 from btq_lang.syntax.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES

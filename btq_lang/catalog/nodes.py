@@ -160,7 +160,7 @@ _WORDS: Final = (
 )
 
 # By word.
-KNOWN_WORDS: Final = {known.word: known for known in _WORDS}
+KNOWN_WORDS: Final = {entry.word: entry for entry in _WORDS}
 
 # Version 3's names of ports: (tag, port) to the port of today.
 OLD_PORTS: Final = {

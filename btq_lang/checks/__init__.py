@@ -408,8 +408,8 @@ def _reported(
         diagnostics = (*reported, *_on_sound_lines(diagnostics, entry, view.text))
     elif not diagnostics:
         return None
-    wanted = tuple(configured(view.project, viewpoint, trees.as_uncreated(view, diagnostics)))
-    return Reported(wanted, (viewpoint, facts.item)) if wanted else None
+    chosen = tuple(configured(view.project, viewpoint, trees.as_uncreated(view, diagnostics)))
+    return Reported(chosen, (viewpoint, facts.item)) if chosen else None
 
 
 def _errors_in(store: Store[Workspace], viewpoint: str) -> tuple[tuple[Place, str], ...]:

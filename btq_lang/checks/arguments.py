@@ -58,9 +58,9 @@ def unread_port(view: View) -> Iterator[Diagnostic]:
                 continue
             if view.ask(_is_given, tree, name):
                 is_output = port.direction.raw == "output"
-                wanted = "writes" if is_output else "reads"
+                use = "writes" if is_output else "reads"
                 given = "for which SubTrees name an entry" if is_output else "which SubTrees give it"
-                message = f"nothing in `{tree}` {wanted} `{name}`, {given}"
+                message = f"nothing in `{tree}` {use} `{name}`, {given}"
                 yield Diagnostic("unread-argument", port.id.span, message)
 
 

@@ -9,10 +9,11 @@ from math import ceil, inf, log
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.demanded import Demanded, PlacedDiagnostic, diagnostic_at, seconds, summed
 from btq_lang.diagnostics.model import Related
+from btq_lang.requirements.applied import Applied
 from btq_lang.requirements.budget_parts import Budget, port_seconds
 from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.durations import DurationTerm, Range, together
-from btq_lang.requirements.model import Applied, MissionRun, ResolvedClaim, ResolvedRequirement
+from btq_lang.requirements.model import MissionRun, ResolvedClaim, ResolvedRequirement
 from btq_lang.workspace.resolved import ResolvedNode
 
 

@@ -23,7 +23,7 @@ from btq_lang.checks.misplaced_children import (
 from btq_lang.checks.view import View, misspelt_clause
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.grammar.nodes import CHILD
+from btq_lang.grammar.node_mistakes import CHILD
 from btq_lang.syntax.suggestions import CHILDREN as BELOW
 from btq_lang.syntax.tree import Node, Tree, is_name, written
 from btq_lang.util.text import Span

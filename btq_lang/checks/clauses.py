@@ -208,9 +208,11 @@ def _removal(clause: syntax.NodeClause, places: list[Span], index: int, text: st
     """The fix that removes one of a clause's names, or the clause if it is the only one."""
     span = places[index]
     if len(places) == 1:
-        gone = with_blanks(text, clause)
+        removed = with_blanks(text, clause)
     elif index == 0:
-        gone = Span(span.start, places[1].start)
+        removed = Span(span.start, places[1].start)
     else:
-        gone = Span(places[index - 1].end, span.end)
-    return replace_fix(f"Remove `{' '.join(text[gone.start : gone.end].strip(' ,').split())}`", gone, "", safe=True)
+        removed = Span(places[index - 1].end, span.end)
+    return replace_fix(
+        f"Remove `{' '.join(text[removed.start : removed.end].strip(' ,').split())}`", removed, "", safe=True
+    )

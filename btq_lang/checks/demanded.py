@@ -9,10 +9,11 @@ from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
+from btq_lang.requirements.applied import Applied
 from btq_lang.requirements.attach import applied_in
 from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.durations import DurationTerm
-from btq_lang.requirements.model import Applied, Interval, ResolvedClaim, ResolvedSignal
+from btq_lang.requirements.model import Interval, ResolvedClaim, ResolvedSignal
 from btq_lang.requirements.nodes import mission
 from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts

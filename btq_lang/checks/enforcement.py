@@ -14,9 +14,10 @@ from btq_lang.checks.demanded import Demanded, PlacedDiagnostic, diagnostic_at, 
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
+from btq_lang.requirements.applied import Applied
 from btq_lang.requirements.attach import claimed_of_no_tree, uses_of_nodes
 from btq_lang.requirements.budget_parts import port_count
-from btq_lang.requirements.model import Applied, NodeTarget, ResolvedClaim, signals_in
+from btq_lang.requirements.model import NodeTarget, ResolvedClaim, signals_in
 from btq_lang.requirements.nodes import callers, mission
 from btq_lang.workspace import inputs
 from btq_lang.workspace.node_names import wraps

@@ -22,7 +22,7 @@ from btq_lang.checks.missing_ids import missing_id
 from btq_lang.checks.view import COUNTS, SECOND, View, has_names, is_first_tree, misspelt_clause, near_names
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.grammar.claims import VERB_WORDS
+from btq_lang.grammar.claim_words import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.syntax.tokens import CATEGORIES, NAME
 from btq_lang.syntax.tree import Model, Tree, Word, quote, written

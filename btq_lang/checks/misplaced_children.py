@@ -18,7 +18,7 @@ from btq_lang.checks import lookups
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place
 from btq_lang.grammar.cursor import QUOTES
-from btq_lang.grammar.nodes import CHILD
+from btq_lang.grammar.node_mistakes import CHILD
 from btq_lang.lexer import tokens
 from btq_lang.syntax.scan import line_end, line_start
 from btq_lang.syntax.suggestions import CHILDREN as CHILDREN_ON_LINES

@@ -13,7 +13,7 @@ from btq_lang.checks import lookups
 from btq_lang.checks.view import View, has_names
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.grammar.claims import VERB_WORDS
+from btq_lang.grammar.claim_words import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.syntax.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES
 from btq_lang.syntax.tree import Node, Pair, Tree, Word, is_name, quote

@@ -12,7 +12,7 @@ from typing import Final
 from btq_lang.checks.misplaced_children import is_node
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, write_fix
-from btq_lang.grammar.nodes import BARE
+from btq_lang.grammar.node_mistakes import BARE
 from btq_lang.syntax.scan import line_start
 from btq_lang.syntax.tree import Tree
 from btq_lang.util.record import replace

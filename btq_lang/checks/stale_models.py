@@ -69,12 +69,12 @@ def _unknown(view: View, model: Model, port: Port, other: lookups.Declaration, p
     assert port.id is not None, "the caller has looked"
     written_down = {model_port.id.text for model_port in model.ports if model_port.id is not None}
     free = [name for name, code_port in ports.items() if name not in written_down and _is_alike(code_port, port)]
-    gone = [
+    missing = [
         model_port.id.text
         for model_port in model.ports
         if model_port.id is not None and model_port.id.text not in ports
     ]
-    likely = near(port.id.text, free) or (tuple(free) if len(free) == len(gone) == 1 else ())
+    likely = near(port.id.text, free) or (tuple(free) if len(free) == len(missing) == 1 else ())
     fixes = [replace_fix(f"Replace `{port.id.text}` with `{name}`", port.id.span, written(name)) for name in likely]
     fixes.append(replace_fix(f"Remove the port `{port.id.text}`", with_blanks(view.text, port), ""))
     provided = ", ".join(f"`{name}`" for name in ports)

@@ -191,21 +191,21 @@ def _without_node(
 ) -> Diagnostic:
     """The diagnostic for a node that is gone; its notes say what else changes on the way, for the node that replaces
     it."""
-    gone = next(step for step in steps if ports_in(view, step, name.text) is None)
-    instead = INSTEAD.get((gone, name.text))
-    message = f"Nav2 has no `{name.text}` in {gone.title()}" + _called(renamed)
+    first_without = next(step for step in steps if ports_in(view, step, name.text) is None)
+    instead = INSTEAD.get((first_without, name.text))
+    message = f"Nav2 has no `{name.text}` in {first_without.title()}" + _called(renamed)
     fixes = (replace_fix(f"Replace `{name.text}` with `{renamed}`", name.span, renamed),) if renamed else ()
-    wanted = instead or ("a node of your own, or remove it" if renamed is None else "")
-    notes = (*([f"write {wanted}"] if wanted else ()), *differing)
+    advice = instead or ("a node of your own, or remove it" if renamed is None else "")
+    notes = (*([f"write {advice}"] if advice else ()), *differing)
     return Diagnostic("target-breaks", name.span, message, notes=notes, fixes=fixes)
 
 
 def _without_ports(
-    resolved: ResolvedNode, node: str, gone: frozenset[str], steps: tuple[str, ...]
+    resolved: ResolvedNode, node: str, missing: frozenset[str], steps: tuple[str, ...]
 ) -> Iterator[Diagnostic]:
     for pair in resolved.node.attributes:
         port = pair.key.text
-        if port not in gone:
+        if port not in missing:
             continue
         renamed = _first_in(RENAMED_PORTS, ((step, node, port) for step in steps))
         message = f"`{node}` has no port `{port}` in {steps[-1].title()}" + _called(renamed)

@@ -5,7 +5,7 @@ One invariant: 0 means clean, 1 findings, 2 a usage or I/O error; output files a
 `output.Terminal` prints messages as they come; only what runs until it is stopped, such as a preview, prints by itself.
 How to check, build or judge is unknown here; other packages do that.
 
-    arguments.py       the command line, and which module runs which command
+    arguments.py       the command line, and which module runs which command; suggesting_parser reads it
     output.py, progress.py, watch_mode.py   files and standard output, a line of progress, and `--watch`
     check.py           with project_files, parallel, fixing, ignoring, baseline, reporting, show_settings and target
     format.py, build.py, import_xml.py, diff.py, graph.py, nodes.py, schema.py, preview.py, approve.py   a command each

@@ -94,8 +94,8 @@ def _reason_against(groups: Iterable[FileGroup], name: str, definitions: Sequenc
     targets = [each.symbol.target for _, each in definitions]
     first = targets[0]
     if any(
-        isinstance(first, Requirement) and isinstance(each, Requirement) and not same_requirement(first, each)
-        for each in targets
+        isinstance(first, Requirement) and isinstance(target, Requirement) and not same_requirement(first, target)
+        for target in targets
     ):
         return f"`{name}` is defined differently at {', '.join(places)}; choose with --in"
     torn = [place for place, (_, each) in zip(places, definitions, strict=True) if each.entry.diagnostics]

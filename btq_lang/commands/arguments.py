@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-import re
-from argparse import ArgumentParser, ArgumentTypeError, RawDescriptionHelpFormatter
+from argparse import ArgumentTypeError, RawDescriptionHelpFormatter
 from collections.abc import Callable
 from functools import cache
-from typing import Any, Final, NoReturn, TypeAlias
+from typing import Final, TypeAlias
 
-from btq_lang.commands.verify_options import FORMATS as VERDICT_FORMATS
-from btq_lang.commands.verify_options import VerifyOptions
+from btq_lang.commands.suggesting_parser import SuggestingParser
+from btq_lang.commands.verify_options import VerifyOptions, add_verify_options
 from btq_lang.evidence.compare import FORMATS as COMPARISON_FORMATS
 from btq_lang.graph import DIRECTIONS
 from btq_lang.graph import FORMATS as GRAPH_FORMATS
@@ -18,7 +17,6 @@ from btq_lang.projects.options import CheckOptions, add_server_options
 from btq_lang.render import FORMATS
 from btq_lang.trace import FORMATS as TRACE_FORMATS
 from btq_lang.util.record import as_dict
-from btq_lang.util.spelling import near
 from btq_lang.util.version import __version__
 
 SEVERITIES = ("error", "warning", "info", "hint")
@@ -49,34 +47,6 @@ def build_parser() -> SuggestingParser:
         command.set_defaults(command=name, parser=command)
         add_options(command)
     return parser
-
-
-class SuggestingParser(ArgumentParser):
-    """A parser that suggests what an invalid choice was probably meant to be, as argparse does since Python 3.14."""
-
-    add = ArgumentParser.add_argument
-    _is_mixing = False
-
-    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """As in argparse, but a command's options and paths may come in any order, except with `--`."""
-        if self._subparsers is not None or self._is_mixing or "--" in args:
-            return super().parse_known_args(args, namespace)
-        self._is_mixing = True  # it parses twice: without paths, and what is left
-        try:
-            return self.parse_known_intermixed_args(args, namespace)
-        finally:
-            self._is_mixing = False
-
-    def flag(self, name: str, help: str) -> None:
-        """Add an option without a value."""
-        self.add(name, action="store_true", help=help)
-
-    def error(self, message: str) -> NoReturn:
-        """End the program with the usage and the error."""
-        if wrong := re.search(r"invalid choice: '([^']*)' \(choose from (.*)\)$", message):
-            close = near(wrong[1], wrong[2].replace("'", "").split(", "), limit=1)
-            message += f"; did you mean {close[0]}?" if close else ""
-        super().error(message)
 
 
 _Adder: TypeAlias = "Callable[[SuggestingParser], None]"
@@ -284,71 +254,7 @@ def _add_trace(parser: SuggestingParser) -> None:
     "  btq verify --live tcp://127.0.0.1:1667             a running robot, until Ctrl+C\n",
 )
 def _add_verify(parser: SuggestingParser) -> None:
-    parser.add(
-        "logs",
-        nargs="*",
-        metavar="LOG",
-        help="files of FileLogger2 (.btlog) or SqliteLogger (.db3), ROS 2 bags (.mcap, .db3, folders), folders;"
-        " default: `logs` in [evidence] of btq.toml",
-    )
-    parser.add(
-        "--mission",
-        action="append",
-        metavar="FILE",
-        help="the mission, may be repeated; default: all of the project, and those of side files beside the logs",
-    )
-    parser.add(
-        "--signals",
-        metavar="FILE",
-        help="samples as CSV or Parquet: seconds since the epoch, then one column for each signal or entry",
-    )
-    parser.add(
-        "--events",
-        metavar="FILE",
-        help="write the violations as messages of a bag (.mcap), for the timeline of Foxglove and for rqt_console",
-    )
-    parser.add(
-        "--live",
-        metavar="ADDRESS",
-        help="judge a running robot through its Groot2Publisher, until Ctrl+C, as in tcp://127.0.0.1:1667",
-    )
-    parser.add(
-        "--summary",
-        metavar="FILE",
-        help="for editors: write the verdicts as JSON with all that was measured, and progress to standard output",
-    )
-    parser.add("--run", type=int, metavar="N", help="for editors: print the run with this number in a log, as JSON")
-    kept = parser.add_argument_group("keeping verdicts")
-    store = kept.add_mutually_exclusive_group()
-    store.add_argument(
-        "--store",
-        metavar="DIR",
-        help="keep what is found in each log in a folder, as Parquet files; without logs: print what is kept there;"
-        " default: `store` in [evidence] of btq.toml",
-    )
-    store.add_argument("--no-store", action="store_true", help="keep nothing, also where btq.toml names a store")
-    kept.add_argument(
-        "--by",
-        action="append",
-        choices=("label", "robot"),
-        help="without logs: verdicts for each label or robot; may be repeated",
-    )
-    kept.add_argument("--engine", metavar="URL", help="without logs: ask another engine than DuckDB, through Ibis")
-    label, robot = kept.add_mutually_exclusive_group(), kept.add_mutually_exclusive_group()
-    label.add_argument("--label", metavar="NAME", help="of these runs, such as a version")
-    folders = ("folder", "folder-above")
-    label.add_argument(
-        "--label-by", choices=folders, help="label each log with the name of its folder, or of the folder above that"
-    )
-    robot.add_argument("--robot", metavar="NAME", help="whose logs these are; a bag's topics name the robot themselves")
-    robot.add_argument("--robot-by", choices=folders, help="name the robot of each log in the same way")
-    parser.add("--jobs", type=int, metavar="N", help="judge logs in N processes; default: 1")
-    parser.add("--format", choices=VERDICT_FORMATS, help="default: as the file of -o ends, else table")
-    parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
-    parser.flag("--verbose", "in the table, explain more violations of each clause")
-    fails = parser.add_mutually_exclusive_group()
-    fails.add_argument("--strict", action="store_true", help="exit 1 unless every requirement is satisfied")
-    fails.add_argument("--exit-zero", action="store_true", help="exit 0 also if a requirement is violated")
+    add_verify_options(parser)
     _add_config(parser)
     _add_color(parser)
     _set_defaults(parser, VerifyOptions())

@@ -97,13 +97,13 @@ def _updated_baseline(
     """The baseline after an update; files that were not checked keep their findings as long as they exist."""
     others = {key: count for key, count in before.items() if key[0] not in files and os.path.exists(key[0])}
     after = Counter(others) + checked
-    added, gone = (after - before).total(), (before - after).total()
+    added, removed = (after - before).total(), (before - after).total()
     try:
-        if added or gone or not os.path.exists(path):
+        if added or removed or not os.path.exists(path):
             write_whole(path, _text(after, os.path.dirname(path)))
     except OSError as error:
         return before, LoadProblem(path, f"cannot be written: {error.strerror}")
-    messages.remark(f"{shown(path)}: {added} added, {gone} removed, {after.total() - added} kept")
+    messages.remark(f"{shown(path)}: {added} added, {removed} removed, {after.total() - added} kept")
     return after, None
 
 

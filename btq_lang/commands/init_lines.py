@@ -128,9 +128,9 @@ def _of_engine(workspace: Workspace, engines: tuple[str, ...], used: Mapping[str
     project = replace(workspace.project, engines=engines or VERSIONS, names_all=engines == VERSIONS)
     users = [file for file in workspace.files.values() if not file.names_used(Kind.MODEL).isdisjoint(used)]
     signs = [file.signs for file in users if file.is_foreign]
-    wanted = {is_before_4((written_for(project, None, file_signs) or (VERSION_3,))[-1]) for file_signs in signs}
+    ages = {is_before_4((written_for(project, None, file_signs) or (VERSION_3,))[-1]) for file_signs in signs}
     for distribution in DISTRIBUTIONS:
-        if wanted <= {is_before_4(ENGINES[distribution])}:
+        if ages <= {is_before_4(ENGINES[distribution])}:
             yield distribution
 
 

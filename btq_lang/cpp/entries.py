@@ -43,7 +43,9 @@ def _setters(source: str) -> frozenset[str]:
 def _setter(source: str, at: int, name: str) -> str:
     """The function around a place whose first parameter has a name; empty if there is none."""
     around = [
-        each[1] for each in _FUNCTION.finditer(source, 0, at) if each[2] == name and _is_open(source[each.end() : at])
+        function[1]
+        for function in _FUNCTION.finditer(source, 0, at)
+        if function[2] == name and _is_open(source[function.end() : at])
     ]
     return next((each for each in reversed(around) if each not in _STATEMENTS), "")
 

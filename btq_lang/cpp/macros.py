@@ -84,10 +84,10 @@ class Macros:
     def __init__(self, macros: Iterable[Macro]) -> None:
         self._by_name: Final = grouped((macro.name, macro) for macro in macros)
         words = {macro: frozenset(_WORD(macro.body)) for every in self._by_name.values() for macro in every}
-        wanted = {macro.name for macro in words if _is_wanted(macro)}
-        while more := {macro.name for macro, names in words.items() if macro.name not in wanted and names & wanted}:
-            wanted |= more
-        self._wanted: Final = frozenset(wanted)
+        expanded = {macro.name for macro in words if _is_wanted(macro)}
+        while more := {macro.name for macro, names in words.items() if macro.name not in expanded and names & expanded}:
+            expanded |= more
+        self._wanted: Final = frozenset(expanded)
 
     def needed_by(self, text: str) -> tuple[Macro, ...]:
         """The macros that are to be expanded in a text, and those that they use."""

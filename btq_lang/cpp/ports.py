@@ -177,9 +177,9 @@ class Body:
         elif statement.type == "for_range_loop":
             self._loop(statement)
         elif statement.type == "compound_statement":
-            for each in contents(statement):
-                self.run(each)
-        elif self.names_list(statement) or any(each.type == "return_statement" for each in walk(statement, LAMBDAS)):
+            for inner in contents(statement):
+                self.run(inner)
+        elif self.names_list(statement) or any(inner.type == "return_statement" for inner in walk(statement, LAMBDAS)):
             self.incomplete(statement)
 
     def _declare(self, node: Node) -> None:

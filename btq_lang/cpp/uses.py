@@ -171,7 +171,8 @@ def _parameters(function: Node) -> list[Node | None]:
     """The name of each parameter of a function; None for one without a name."""
     listed = next((node for node in walk(function) if node.type == "parameter_list"), None)
     return [
-        next((node for node in reversed([*walk(each)]) if node.type == "identifier"), None) for each in contents(listed)
+        next((node for node in reversed([*walk(parameter)]) if node.type == "identifier"), None)
+        for parameter in contents(listed)
     ]
 
 

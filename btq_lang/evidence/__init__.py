@@ -18,6 +18,7 @@ One invariant: what a log does not show is unknown, with the reason; nothing is 
     scopes.py      which activations count
     outline.py     the clauses of a mission and their places, which identify them in a later text
     clause_findings.py   the counts of a clause, also in a sliding window, and its verdict
+    clause_nodes.py   the nodes of a log that a clause holds for
     clause.py, evaluate.py   a clause, and all clauses of a mission, judged while a log is read
     edges.py, margins.py, rejudging.py   the counts for every bound, and a clause judged again with an edited one
     tally.py, odds.py   judgements counted, and confidence limits

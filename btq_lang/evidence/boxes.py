@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.rejudging import Shown
     from btq_lang.evidence.verdicts import RequirementVerdict
     from btq_lang.graph.missions import MeasuredBy
-    from btq_lang.requirements.model import Applied
+    from btq_lang.requirements.applied import Applied
     from btq_lang.requirements.resolve import Requirements
 
     _Key: TypeAlias = tuple[str, str, int | str]
@@ -89,7 +89,7 @@ def _bounds(demand: Demand) -> tuple[Quantity, ...]:
     limit = demand.claim.limit
     if limit is not None:
         return tuple(bound for bound in (limit.value, limit.upper) if isinstance(bound, Quantity))
-    edge = edge_of(demand.claim, demand.applied.subject if demand.applied is not None else None, demand.requirement)
+    edge = edge_of(demand.claim, demand.subject, demand.requirement)
     return (edge.value,) if edge is not None else ()
 
 

@@ -6,20 +6,20 @@ One invariant: a clause that cannot be judged is unknown with the reason, and ne
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+from collections.abc import Callable, Collection, Iterator, Sequence
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.verbs import POOLED, VERBS
 from btq_lang.evidence import margins
-from btq_lang.evidence.clause_findings import ClauseFindings, verdict_of
+from btq_lang.evidence.clause_findings import ClauseFindings, verdict_on
+from btq_lang.evidence.clause_nodes import events_in, judged_together
 from btq_lang.evidence.conditions import Measure
 from btq_lang.evidence.edges import WHILE_IT_RUNS, edge_of, key_of
-from btq_lang.evidence.history import History, Nearby, near
+from btq_lang.evidence.history import History, Nearby
 from btq_lang.evidence.model import (
     BEGUN_BEFORE,
     CLOCK_SET_BACK,
     CUT_BY_GAP,
-    ROOT,
     ROWS_LOST,
     UNKNOWN_BEGIN,
     Activation,
@@ -35,7 +35,7 @@ from btq_lang.evidence.signals import Signals, UnknownValue
 from btq_lang.evidence.tally import Run
 from btq_lang.evidence.verbs import JUDGES, OUT, Judgement, agreed
 from btq_lang.evidence.verbs import duration as lasted
-from btq_lang.evidence.verdicts import NEVER, VIOLATED, CauseLink, ClauseVerdict, Measures
+from btq_lang.evidence.verdicts import CauseLink, ClauseVerdict, Measures
 from btq_lang.evidence.wording import duration
 from btq_lang.requirements.model import (
     Age,
@@ -44,10 +44,8 @@ from btq_lang.requirements.model import (
     Interval,
     MissionRun,
     NodeTarget,
-    Quantity,
     ResolvedEachEvent,
     Running,
-    events_of,
     parts_in,
     signals_in,
 )
@@ -62,11 +60,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.odds import Limits
     from btq_lang.evidence.outline import Demand
     from btq_lang.requirements.model import (
-        ResolvedAnyEvent,
         ResolvedClaim,
-        ResolvedEvent,
-        ResolvedSpan,
-        Subject,
     )
 
 
@@ -98,8 +92,7 @@ class JudgedClause:
 
     def __init__(self, demand: Demand, limits: Limits = "one look", with_measures: bool = False) -> None:
         """Judge nothing yet; `limits`: those that decide about probabilities, except in a window."""
-        requirement, claim, applied = demand.requirement, demand.claim, demand.applied
-        subject = applied.subject if applied is not None else None
+        requirement, claim, subject = demand.requirement, demand.claim, demand.subject
         self.demand: Final = demand
         self.requirement: Final = requirement
         self.claim: Final = claim
@@ -117,7 +110,7 @@ class JudgedClause:
         self._edge: Final = edge_of(self.judged, subject, requirement) if with_measures else None
         self._extremes: Final = self._edge.extremes if self._edge is not None else ()
         self._with_measures: Final = with_measures
-        self._events: Final = _events(claim, subject, span)
+        self._events: Final = events_in(claim, subject, span)
         subjects = (subject, *(event.subject for event in self._events))
         self._is_about_mission: Final = any(isinstance(each, MissionRun) for each in subjects)
         scopes = (*requirement.scopes, *requirement.assumptions)
@@ -168,7 +161,7 @@ class JudgedClause:
         self._around.clear()
         self._places.clear()
         self._notes.clear()
-        for uids in self._own(joined) if self._is_judged else ():
+        for uids in self._groups(joined):
             others = nearby(uids[0])
             needed = [target_of(event) for event in self._events if event.condition is None]
             needed += [node for node in (self.claim.per, self.claim.of) if isinstance(node, NodeTarget)]
@@ -494,51 +487,13 @@ class JudgedClause:
         for record in self._records:
             record(judgement, begin, end, path)
 
-    def _own(self, joined: Joined) -> list[tuple[int, ...]]:
+    def _groups(self, joined: Joined) -> list[tuple[int, ...]]:
         """The nodes of a log that the clause holds for, in groups that are judged as one node."""
-        subject = self._subject
+        if not self._is_judged:
+            return []
         if self._is_about_mission and not joined.build.is_main:  # which did not run as a whole
             return []
-        if isinstance(subject, Interval):
-            firsts = self._instances_of(joined, subject.first)
-            groups: dict[tuple[tuple[int, ...], ...], tuple[int, ...]] = {}
-            lasts = [self._instances(joined, _node_of(atom.subject)) for atom in subject.last.atoms]
-            for uid in firsts:
-                together = tuple(near(uid, of_atom, joined.tree) for of_atom in lasts)
-                groups[together] = (*groups.get(together, ()), uid)
-            return [*groups.values()] if not self.findings.missing else []
-        if isinstance(subject, ResolvedEachEvent):
-            answers = self.claim.event.atoms if self.claim.event is not None else ()
-            firsts = [*self._instances_of(joined, subject.event)]
-            for atom in answers:
-                self._instances(joined, _node_of(atom.subject))
-            return [(uid,) for uid in firsts] if not self.findings.missing else []
-        if isinstance(subject, DurationSum):
-            uids = [uid for target in subject.targets for uid in self._instances(joined, target)]
-            return [tuple(uids)] if uids and not self.findings.missing else []
-        own = self._instances(joined, _node_of(subject))
-        if VERBS[self.claim.verb].operand == "failures":  # together, for they share the exposure
-            return [tuple(own)] if own else []
-        return [(uid,) for uid in own]
-
-    def _instances_of(self, joined: Joined, event: ResolvedEvent | ResolvedAnyEvent) -> Iterable[int]:
-        """The uids of the nodes of an event; that of the root for a condition."""
-        uids: dict[int, None] = {}
-        for atom in event.atoms:
-            own = self._instances(joined, _node_of(atom.subject)) if atom.condition is None else [ROOT]
-            uids.update(dict.fromkeys(own))
-        return uids
-
-    def _instances(self, joined: Joined, target: NodeTarget | None) -> list[int]:
-        """The uids of a node's instances; notes those missing from the log."""
-        uids: list[int] = []
-        for path, uid in joined.instances(target) if target is not None else ():
-            self.findings.paths[path] = None
-            if uid is not None:
-                uids.append(uid)
-            else:
-                self.findings.missing = self.findings.missing or joined.lost(path)
-        return uids
+        return judged_together(self.claim, self._subject, joined, self.findings)
 
     def _is_own(self, guard: Guard) -> bool:
         """Whether a guard enforces this clause; spans and sums have no guards."""
@@ -582,45 +537,9 @@ class JudgedClause:
 
     def verdict(self, open_run: Run | None = None) -> ClauseVerdict:
         """The verdict on all judgements so far, with those of the open run if that is given."""
-        findings = self.findings
         tally = self._tally.result() if open_run is None else self._tally.so_far(open_run, self.broken.values())
-        verdict, why = verdict_of(tally, findings.missing, findings.has_run)
-        if verdict == NEVER and findings.left_out["not_applicable"]:
-            why = f"its assumption did not hold ({counted(findings.left_out['not_applicable'], 'time')})"
-        if verdict == NEVER and findings.missed and self.claim.event is not None:
-            event = self.claim.text.partition(" after ")[2].removeprefix("when ")
-            why = f"it was not running when {event} ({counted(findings.missed, 'time')})"
-        verb = VERBS[self.claim.verb]
-        is_share = verb.operand == "condition" and verb.judged == "over the run"
-        is_of_run = is_share or (verb.operand == "count" and self.claim.per is None)
-        is_pooled = self.claim.verb in POOLED and self._judge_run is not None
-        is_once_a_run = isinstance(self._subject, DurationSum) or (is_of_run and len(findings.paths) == 1)
-        of_each: Literal["activations", "occurrences"] = "activations"
-        if isinstance(self._subject, ResolvedEachEvent):
-            of_each = "occurrences"
-        return ClauseVerdict(
-            text=self.text,
-            path=", ".join(findings.paths),
-            of=self.claim.subject_text if isinstance(self._subject, Interval | DurationSum | ResolvedEachEvent) else "",
-            verdict=verdict,
-            why=why,
-            unit="runs" if tally.counts_runs or is_once_a_run or is_pooled else of_each,
-            confidence=self.requirement.confidence,
-            histogram=tally.distribution.histogram(self.marks()),
-            timeline=findings.timeline if verdict == VIOLATED else None,
-            measures=self._measures() if self._with_measures else None,
-            failed=findings.left_out["failed"],
-            halted=findings.left_out["halted"],
-            idle=findings.left_out["idle"],
-            not_applicable=findings.left_out["not_applicable"],
-            **tally.fields(),
-        )
-
-    def marks(self) -> dict[str, Quantity]:
-        """What measured values are compared with, as in `Histogram`, as far as it does not vary."""
-        limit, goal = self.claim.limit, self.requirement.goal
-        marks = {"lower bound": limit.value, "upper bound": limit.upper} if limit is not None and limit.upper else {}
-        return {kind: value for kind, value in {**marks, "goal": goal}.items() if isinstance(value, Quantity)}
+        measures = self._measures() if self._with_measures else None
+        return verdict_on(self.demand, self.findings, tally, self.is_over_run, measures)
 
     def _measures(self) -> Measures:
         edge, odds = self._edge, self.requirement.odds
@@ -646,20 +565,6 @@ def _kind(judgement: Judgement | None, activation: Activation) -> int:
     if judgement is None:
         return margins.CUT_OFF if activation.outcome == "O" else margins.NOTHING
     return margins.UNKNOWN if judgement.holds is None else margins.KEPT if judgement.holds else margins.VIOLATED
-
-
-def _events(claim: ResolvedClaim, subject: Subject | None, span: ResolvedSpan | None) -> tuple[ResolvedEvent, ...]:
-    """The events that a clause names."""
-    events = (*events_of(subject), *([claim.event] if claim.event is not None else ()))
-    events += (span.first, span.last) if span is not None else ()
-    return tuple(atom for event in events for atom in event.atoms)
-
-
-def _node_of(subject: Subject | None) -> NodeTarget | None:
-    """The node of a subject, if the subject is a node."""
-    if isinstance(subject, MissionRun) and subject.node is not None:
-        return NodeTarget(subject.node)
-    return subject if isinstance(subject, NodeTarget) else None
 
 
 def _clocked(judgement: Judgement | None, root: Activation | None) -> Judgement | None:

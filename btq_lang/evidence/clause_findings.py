@@ -11,18 +11,22 @@ from bisect import insort
 from collections import Counter
 from collections.abc import Iterable
 from operator import itemgetter
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
+from btq_lang.catalog.verbs import POOLED, VERBS
 from btq_lang.evidence.margins import Margins
 from btq_lang.evidence.tally import Run, Tally
-from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED
+from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, ClauseVerdict
+from btq_lang.requirements.model import DurationSum, Interval, Quantity, ResolvedEachEvent
 from btq_lang.util.record import replace
+from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
     from btq_lang.evidence.odds import Limits
+    from btq_lang.evidence.outline import Demand
     from btq_lang.evidence.pools import Pool
     from btq_lang.evidence.verbs import Judgement
-    from btq_lang.evidence.verdicts import CauseLink, Timeline, Verdict
+    from btq_lang.evidence.verdicts import CauseLink, Measures, Timeline, Verdict
     from btq_lang.requirements.model import ResolvedOdds, ResolvedRequirement, ResolvedWindow
 
     _Entry: TypeAlias = tuple[Judgement, str, int, tuple[CauseLink, ...]]
@@ -85,6 +89,57 @@ def verdict_of(tally: Tally, missing: str, has_run: bool) -> tuple[Verdict, str]
         return NEVER, "nothing that it is about happened in any run" if has_run else "it did not start in any run"
     why = tally.why if verdict in (UNKNOWN, UNDECIDED) else ""
     return verdict, why or (tally.pool.shown().text if tally.pool is not None and verdict == UNKNOWN else "")
+
+
+def verdict_on(
+    demand: Demand, findings: ClauseFindings, tally: Tally, is_over_run: bool, measures: Measures | None
+) -> ClauseVerdict:
+    """The verdict on a clause, with all that the report says about it.
+
+    Args:
+        tally: of its judgements, perhaps with those of an open run.
+        is_over_run: whether it is judged at the end of a run.
+        measures: as of `ClauseVerdict`.
+    """
+    claim, requirement, left_out = demand.claim, demand.requirement, findings.left_out
+    verdict, why = verdict_of(tally, findings.missing, findings.has_run)
+    if verdict == NEVER and left_out["not_applicable"]:
+        why = f"its assumption did not hold ({counted(left_out['not_applicable'], 'time')})"
+    if verdict == NEVER and findings.missed and claim.event is not None:
+        event = claim.text.partition(" after ")[2].removeprefix("when ")
+        why = f"it was not running when {event} ({counted(findings.missed, 'time')})"
+    verb = VERBS[claim.verb]
+    is_share = verb.operand == "condition" and verb.judged == "over the run"
+    is_of_run = is_share or (verb.operand == "count" and claim.per is None)
+    is_pooled = claim.verb in POOLED and is_over_run
+    is_once_a_run = isinstance(demand.subject, DurationSum) or (is_of_run and len(findings.paths) == 1)
+    of_each: Literal["activations", "occurrences"] = "activations"
+    if isinstance(demand.subject, ResolvedEachEvent):
+        of_each = "occurrences"
+    return ClauseVerdict(
+        text=demand.text,
+        path=", ".join(findings.paths),
+        of=claim.subject_text if isinstance(demand.subject, Interval | DurationSum | ResolvedEachEvent) else "",
+        verdict=verdict,
+        why=why,
+        unit="runs" if tally.counts_runs or is_once_a_run or is_pooled else of_each,
+        confidence=requirement.confidence,
+        histogram=tally.distribution.histogram(marks_of(demand)),
+        timeline=findings.timeline if verdict == VIOLATED else None,
+        measures=measures,
+        failed=left_out["failed"],
+        halted=left_out["halted"],
+        idle=left_out["idle"],
+        not_applicable=left_out["not_applicable"],
+        **tally.fields(),
+    )
+
+
+def marks_of(demand: Demand) -> dict[str, Quantity]:
+    """What measured values are compared with, as in `Histogram`, as far as it does not vary."""
+    limit, goal = demand.claim.limit, demand.requirement.goal
+    marks = {"lower bound": limit.value, "upper bound": limit.upper} if limit is not None and limit.upper else {}
+    return {kind: value for kind, value in {**marks, "goal": goal}.items() if isinstance(value, Quantity)}
 
 
 class Recent:
@@ -168,8 +223,8 @@ class Recent:
             surplus = sum(len(judgements) for _, judgements in kept) - count
             while surplus > 0:
                 judgements = kept[0][1]
-                surplus, gone = surplus - len(judgements), min(surplus, len(judgements))
-                del judgements[:gone]
+                surplus, dropped = surplus - len(judgements), min(surplus, len(judgements))
+                del judgements[:dropped]
                 if not judgements:
                     del kept[0]
 

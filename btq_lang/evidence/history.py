@@ -95,8 +95,8 @@ class Nearby:
 
     def are_begins_known(self) -> bool:
         """Whether the log says when all of these nodes began in the run."""
-        known = (uids for uids in self._uids.values() if not isinstance(uids, UnknownValue))
-        return all(activation.is_begin_known for uids in known for activation in self._history.activations_of(uids))
+        all_uids = (uids for uids in self._uids.values() if not isinstance(uids, UnknownValue))
+        return all(activation.is_begin_known for uids in all_uids for activation in self._history.activations_of(uids))
 
     def runs(self, target: NodeTarget, moment: Moment, is_early: bool) -> bool | UnknownValue:
         """Whether a node runs; `is_early`: as in `History.runs`."""

@@ -16,7 +16,8 @@ from btq_lang.catalog.units import Unit
 from btq_lang.evidence.tally import Tally
 from btq_lang.evidence.verdicts import OPEN, UNKNOWN, ClauseVerdict
 from btq_lang.requirements import model
-from btq_lang.requirements.model import Applied, NodeTarget, ResolvedClaim, ResolvedRequirement
+from btq_lang.requirements.applied import Applied
+from btq_lang.requirements.model import NodeTarget, ResolvedClaim, ResolvedRequirement, Subject
 from btq_lang.util.record import Record, fields_of
 from btq_lang.workspace.resolved import ResolvedNode, ResolvedTree
 
@@ -38,6 +39,11 @@ class Demand(Record):
     claim: ResolvedClaim
     applied: Applied | None
     place: str
+
+    @property
+    def subject(self) -> Subject | None:
+        """What the clause is about; None: nothing."""
+        return self.applied.subject if self.applied is not None else None
 
     @property
     def text(self) -> str:

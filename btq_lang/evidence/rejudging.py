@@ -61,7 +61,7 @@ def shown_now(requirements: Requirements, judged: Iterable[RequirementVerdict]) 
     )
     by_text = grouped(((name, clause.text), clause) for name, clause in verdicts if clause.measures is None)
     for demand in demands(requirements):
-        name, subject = demand.requirement.name, demand.applied.subject if demand.applied is not None else None
+        name, subject = demand.requirement.name, demand.subject
         edge = edge_of(within(demand.claim, demand.requirement.scopes), subject, demand.requirement)  # as it was judged
         # Several of a requirement with arguments may be at one node: they are in one order.
         if clauses := by_place.get((name, key_of(demand.requirement, demand.claim, edge), demand.place)):
@@ -77,9 +77,9 @@ def _is_named(clause: ClauseVerdict, subject: Subject | None) -> bool:
     if not isinstance(subject, NodeTarget):
         return True
     name, kind, head = subject.node.node.name, subject.node.kind, subject.node.node.head
-    wanted = name.text if name is not None else kind.tag if kind is not None else head.text
+    subject_name = name.text if name is not None else kind.tag if kind is not None else head.text
     paths = (_PLACE.sub("", path) for path in clause.path.split(", "))
-    return any(without_number(path.rpartition("/")[2]) == wanted for path in paths)
+    return any(without_number(path.rpartition("/")[2]) == subject_name for path in paths)
 
 
 _PLACE: Final = re.compile(r" \(\d+ of \d+\)$")  # as in `rows.node_names`

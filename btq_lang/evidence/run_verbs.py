@@ -156,17 +156,19 @@ def _begin(activation: Activation, run: OverRun) -> Happening:
 def _followed(claim: ResolvedClaim, run: OverRun) -> Judgements:
     """`each e is followed by f within d`: for each event, whether the other one happens, or the condition holds, in
     time."""
-    each, answer = claim.subject, claim.event
-    assert isinstance(each, ResolvedEachEvent), "the verb has no other subject"
+    occurrences, answer = claim.subject, claim.event
+    assert isinstance(occurrences, ResolvedEachEvent), "the verb has no other subject"
     if answer is None:
         assert claim.condition is not None, "an event or a condition follows"
         next_of = _next_true(claim.condition, run)
-        events = [Happening(event.read, event.read, event.why) for event in run.happenings(each.event, is_own=True)]
+        events = [
+            Happening(event.read, event.read, event.why) for event in run.happenings(occurrences.event, is_own=True)
+        ]
     else:
-        is_by_row = each.event.condition is None and answer.condition is None
-        is_later = is_never_at_once(each.event, answer)
+        is_by_row = occurrences.event.condition is None and answer.condition is None
+        is_later = is_never_at_once(occurrences.event, answer)
         next_of = next_finder(run.happenings(answer, is_by_row=is_by_row), run, is_later=is_later)
-        events = run.happenings(each.event, is_own=True, is_by_row=is_by_row)
+        events = run.happenings(occurrences.event, is_own=True, is_by_row=is_by_row)
     for event in events:
         yield from _followed_by(claim, run, event, *next_of(event))
 

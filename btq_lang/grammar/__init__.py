@@ -14,7 +14,9 @@ meaning of names are unknown here.
     metadata.py      those of them that demand nothing
     hazards.py       hazards
     claims.py        what a clause demands
+    claim_words.py   the words of claims, and whether some are next
     conditions.py    the conditions in clauses
+    claim_mistakes.py, node_mistakes.py   what people write in place of claims and nodes, and reports of it
     prose.py, clause_slips.py   clauses in the words of other notations
     item_words.py    the words that begin items
 """

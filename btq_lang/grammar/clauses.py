@@ -9,16 +9,9 @@ from typing import Final
 
 from btq_lang.catalog.verbs import measured
 from btq_lang.diagnostics.model import Fix, FixEdit, Place, replace_fix, write_fix
-from btq_lang.grammar.claims import (
-    QUALITY_IN_HEAD,
-    VERB_WORDS,
-    is_time,
-    is_verb_ahead,
-    parse_bounded,
-    parse_claim,
-    parse_event,
-    report_slip,
-)
+from btq_lang.grammar.claim_mistakes import QUALITY_IN_HEAD, is_time, report_slip
+from btq_lang.grammar.claim_words import VERB_WORDS, is_verb_ahead
+from btq_lang.grammar.claims import parse_bounded, parse_claim, parse_event
 from btq_lang.grammar.conditions import HEADS, METADATA_HEADS, SUBJECT_HEADS, bound_ahead, parse_cond
 from btq_lang.grammar.cursor import Cursor
 from btq_lang.grammar.metadata import begins_metadata, list_goes_on, parse_metadata, parse_text

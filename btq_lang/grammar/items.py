@@ -10,7 +10,7 @@ from typing import Final
 
 from btq_lang.diagnostics.model import Fix, replace_fix, write_fix
 from btq_lang.grammar.attributes import parse_pairs
-from btq_lang.grammar.claims import blank_in_path, every_meant
+from btq_lang.grammar.claim_mistakes import blank_in_path, every_meant
 from btq_lang.grammar.conditions import parse_cond, parse_path, parse_simple
 from btq_lang.grammar.cursor import Cursor
 from btq_lang.grammar.nodes import no_block, parse_clause_block, parse_tree_block, parse_verbatim

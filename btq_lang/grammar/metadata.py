@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Final
 
 from btq_lang.diagnostics.model import Fix, replace_fix
-from btq_lang.grammar.claims import VERB_WORDS
+from btq_lang.grammar.claim_words import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS, METADATA_HEADS
 from btq_lang.grammar.cursor import Cursor
 from btq_lang.syntax.scan import line_end, path_end

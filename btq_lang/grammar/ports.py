@@ -112,7 +112,7 @@ def ports_in_brackets(cursor: Cursor, owner: str) -> None:
         line = line_end(cursor.text, cursor.starts[closing])
         below = _NEXT_MARGIN.match(cursor.text, line)
         step = below[1] if below else "    "
-        gone = FixEdit(Place(Span(cursor.last_end() + cursor.base, cursor.starts[closing] + 1)), "")
+        removal = FixEdit(Place(Span(cursor.last_end() + cursor.base, cursor.starts[closing] + 1)), "")
         lines = [
             f"\n{step}{port['direction'] or 'input'} {port['name']}"
             f"{f' : {type_}' if type_ else ''}{port['default'] or ''}"
@@ -121,7 +121,9 @@ def ports_in_brackets(cursor: Cursor, owner: str) -> None:
             for type_ in [port["type"] or port["before"]]
         ]
         if len(lines) == len(ports):
-            fixes = (Fix("Put them on lines of their own", (gone, FixEdit(Place(Span(line, line)), "".join(lines)))),)
+            fixes = (
+                Fix("Put them on lines of their own", (removal, FixEdit(Place(Span(line, line)), "".join(lines)))),
+            )
     cursor.complain(bracket, "ports do not go in brackets", *fixes, notes=(note,))
     cursor.go_to(len(cursor.kinds) - 1)
 

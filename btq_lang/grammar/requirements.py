@@ -10,7 +10,9 @@ from typing import Final
 
 from btq_lang.catalog.verbs import COUNTING
 from btq_lang.diagnostics.model import Diagnostic, Fix, FixEdit, Place, replace_fix, write_fix
-from btq_lang.grammar.claims import MEANT, VERB_WORDS, at_verb, followed_ahead, parse_bounded
+from btq_lang.grammar.claim_mistakes import MEANT
+from btq_lang.grammar.claim_words import VERB_WORDS, at_verb, followed_ahead
+from btq_lang.grammar.claims import parse_bounded
 from btq_lang.grammar.clauses import ENDS_CLAUSES, is_assumption, parse_clauses
 from btq_lang.grammar.conditions import HEADS, RELATIONS, close_group
 from btq_lang.grammar.cursor import Cursor

@@ -10,7 +10,8 @@ from typing import Final, TypeAlias
 
 from btq_lang.graph import draw
 from btq_lang.graph.figure import Box, Figure, MeasuredClause, Note, Outline
-from btq_lang.requirements.model import Applied, DurationSum, Interval, ResolvedClaim, ResolvedEachEvent
+from btq_lang.requirements.applied import Applied
+from btq_lang.requirements.model import DurationSum, Interval, ResolvedClaim, ResolvedEachEvent
 from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.syntax.tree import Node, NodeClause, QualityPath, Satisfices
 from btq_lang.util.grouping import grouped

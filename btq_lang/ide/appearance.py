@@ -10,7 +10,7 @@ from functools import lru_cache
 from typing import Final
 
 from btq_lang.catalog.nodes import lookup
-from btq_lang.grammar.claims import HAPPENINGS, VERB_WORDS
+from btq_lang.grammar.claim_words import HAPPENINGS, VERB_WORDS
 from btq_lang.grammar.clauses import ACTIONS as ON_VIOLATION
 from btq_lang.grammar.clauses import AVERAGE, EXPERIMENTS, METHODS, TIME
 from btq_lang.grammar.conditions import FUNCTIONS, HEADS, METADATA_HEADS

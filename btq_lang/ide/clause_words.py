@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from btq_lang.catalog.verbs import COUNTING, VERBS
 from btq_lang.catalog.verbs import words as words_of
-from btq_lang.grammar.claims import HAPPENINGS
+from btq_lang.grammar.claim_words import HAPPENINGS
 from btq_lang.grammar.clauses import ACTIONS, AVERAGE, EXPERIMENTS, METHODS, TIME
 from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS, METADATA_HEADS
 from btq_lang.syntax.tokens import BRACED, CLOSE, NAME, NUMBER, OPEN, QUANTITY, STRING, Token

@@ -204,7 +204,7 @@ def _unit(workspace: Workspace, path: str, place: CursorPlace, text: str, offset
     in_brackets = place.depth > 0 and place.node is not None
     if in_brackets and not (place.last == "=" or (place.group and place.group[-1].kind in (NUMBER, QUANTITY))):
         return None
-    wanted = MeasuredValue()
+    measured = MeasuredValue()
     if in_brackets and place.node is not None:
         before = [word.text for word in place.group if word.kind in (NAME, STRING, OPERATOR)]
         key = (
@@ -213,14 +213,14 @@ def _unit(workspace: Workspace, path: str, place: CursorPlace, text: str, offset
             else place.key or (before[-2] if len(before) > 1 else "")
         )
         unit = of_nodes.port_unit(workspace, path, place.node, key)
-        wanted = MeasuredValue("s" if unit == "ms" else unit, is_certain=True)  # btq adds the milliseconds
-        if begun[1] and wanted.unit is None:
+        measured = MeasuredValue("s" if unit == "ms" else unit, is_certain=True)  # btq adds the milliseconds
+        if begun[1] and measured.unit is None:
             return None  # `num_attempts = 6 |`: the next attribute
     else:
-        wanted = measured_at(workspace, path, place)
+        measured = measured_at(workspace, path, place)
     separator = "" if begun[1] else " "
     clause = [word.text for word in place.group]
-    fitting = () if not in_brackets and is_count(clause) else offer.units(wanted)
+    fitting = () if not in_brackets and is_count(clause) else offer.units(measured)
     units = tuple(replace(one, insert=f"{separator}{one.insert}") for one in fitting)
     following = () if not begun[1] else _unique(_in_code(workspace, path, place, offset))
     proposals = (*following, *units) if not in_brackets and is_window(clause) else (*units, *following)
@@ -382,28 +382,28 @@ def _visited(place: CursorPlace) -> LineNode | None:
     return LineNode(word_text(place.words[opened - 1]), place.words[opened - 1].kind == STRING, None)
 
 
-def _clause_words(workspace: Workspace, path: str, wanted: Expected, place: CursorPlace) -> Iterator[Proposal]:
+def _clause_words(workspace: Workspace, path: str, expectation: Expected, place: CursorPlace) -> Iterator[Proposal]:
     """What the grammar of clauses expects."""
-    yield from offer.words(wanted.words, "keyword")
-    if wanted.condition:
+    yield from offer.words(expectation.words, "keyword")
+    if expectation.condition:
         yield from offer.operands(workspace, path, place, MeasuredValue())
         yield from offer.words(("not", "node", *_FUNCTIONS), "keyword")
-    elif wanted.operand or wanted.value:
+    elif expectation.operand or expectation.value:
         yield from offer.operands(workspace, path, place, measured_at(workspace, path, place), contexts=False)
-        yield from offer.words(_FUNCTIONS if wanted.operand else (), "keyword")
-    if wanted.signal:
+        yield from offer.words(_FUNCTIONS if expectation.operand else (), "keyword")
+    if expectation.signal:
         yield from offer.signals(workspace, path)
-    if wanted.requirement:
+    if expectation.requirement:
         yield from offer.requirement_ids(workspace, path, place)
-    if wanted.hazard:
+    if expectation.hazard:
         yield from offer.hazards(workspace, path)
-    if wanted.requirement or wanted.hazard:
+    if expectation.requirement or expectation.hazard:
         yield from offer.external_ids(workspace, place)
-    if wanted.node and place.last == "every":
+    if expectation.node and place.last == "every":
         yield from offer.kinds(workspace, path)
-    elif wanted.node:
+    elif expectation.node:
         yield from offer.node_names(workspace, path)
-    if wanted.clause and not _lacks_unit(workspace, path, place):
+    if expectation.clause and not _lacks_unit(workspace, path, place):
         yield from offer.clauses(tuple(word.text for word in place.words))
         yield from offer.node_names(workspace, path)
 

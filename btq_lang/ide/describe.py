@@ -86,8 +86,8 @@ def tree(workspace: Workspace, path: str, name: str) -> str:
     ports = _ports(ports_of_tree(workspace, definition.path, name))
     count = sum(1 for _ in item.walk()) if isinstance(item, Tree) else 0
     size = f"{counted(count, 'node')} · {workspace.project.shown(definition.path)}"
-    wanted = Subject(What.TREE, name, home_of(definition))
-    return "\n\n".join(filter(None, (shown, attached, size, ports, used(workspace, wanted, "Run by"))))
+    referent = Subject(What.TREE, name, home_of(definition))
+    return "\n\n".join(filter(None, (shown, attached, size, ports, used(workspace, referent, "Run by"))))
 
 
 def requirement(workspace: Workspace, path: str, definition: Definition) -> str:
@@ -108,9 +108,9 @@ def requirement(workspace: Workspace, path: str, definition: Definition) -> str:
             + "\n".join(_clause(workspace, definition, Span(clause.start, clause.end)) for clause in item.clauses)
             + "\n```"
         )
-    wanted = Subject(What.REQUIREMENT, definition.symbol.name, home_of(definition))
-    attached = used(workspace, wanted, "Attached to", lambda use: not is_refinement(use))
-    refined = used(workspace, wanted, "Refined by", is_refinement)
+    referent = Subject(What.REQUIREMENT, definition.symbol.name, home_of(definition))
+    attached = used(workspace, referent, "Attached to", lambda use: not is_refinement(use))
+    refined = used(workspace, referent, "Refined by", is_refinement)
     if item.clauses or item.text is not None:
         from btq_lang.ide.clause_enforcement import enforcement_lines  # most hovers need no plan of a build
 
@@ -127,8 +127,8 @@ def hazard(workspace: Workspace, definition: Definition) -> str:
     clauses = [file.on_one_line(definition.entry, Span(clause.start, clause.end)) for clause in item.clauses]
     shown = "\n".join(("```btq", *clauses, "```")) if clauses else ""
     title = " ".join(item.text.text.split()) if item.text is not None else ""
-    wanted = Subject(What.HAZARD, definition.symbol.name, home_of(definition))
-    mitigated = used(workspace, wanted, "Mitigated by")
+    referent = Subject(What.HAZARD, definition.symbol.name, home_of(definition))
+    mitigated = used(workspace, referent, "Mitigated by")
     return "\n\n".join(filter(None, (f"**{definition.symbol.name}** · hazard", title, shown, mitigated)))
 
 
@@ -167,12 +167,12 @@ def is_refinement(use: ReferenceAt) -> bool:
 
 
 def used(
-    workspace: Workspace, wanted: Subject, heading: str, counts: Callable[[ReferenceAt], bool] = lambda _: True
+    workspace: Workspace, referent: Subject, heading: str, counts: Callable[[ReferenceAt], bool] = lambda _: True
 ) -> str:
     """Where something is used: a list of nodes; empty if it is not used."""
     uses = [
         reference
-        for reference in everywhere(workspace, wanted)
+        for reference in everywhere(workspace, referent)
         if (not reference.mention.defines or reference.mention.node) and counts(reference)
     ]
     lines = [f"- {place_of(workspace, reference)}" for reference in uses[:_MOST_USES]]
@@ -226,10 +226,10 @@ def declared(workspace: Workspace, definition: Definition) -> str:
     return f"```btq\n{text}\n```\n\n_{workspace.project.shown(definition.path)}_"
 
 
-def key(workspace: Workspace, wanted: Subject, writes: Iterable[ReferenceAt], reads: Iterable[ReferenceAt]) -> str:
+def key(workspace: Workspace, referent: Subject, writes: Iterable[ReferenceAt], reads: Iterable[ReferenceAt]) -> str:
     """An entry of the blackboard: what writes it, and what reads it."""
-    where = "of the root blackboard" if wanted.home.startswith(ROOT_BLACKBOARD) else "of this tree's blackboard"
-    lines = [f"**{wanted.name}** · entry {where}"]
+    where = "of the root blackboard" if referent.home.startswith(ROOT_BLACKBOARD) else "of this tree's blackboard"
+    lines = [f"**{referent.name}** · entry {where}"]
     for heading, places in (("Written by", writes), ("Read by", reads)):
         shown = [f"- {place_of(workspace, reference)}" for reference in places]
         lines += ["\n".join([f"{heading}:", *shown[:_MOST_USES]])] if shown else []
@@ -331,11 +331,11 @@ def documentation(workspace: Workspace, path: str, kind: str, name: str) -> str 
     if kind == "rule":
         return rule(name)
     if kind == "port":
-        node, _, wanted = name.rpartition("/")
+        node, _, port_name = name.rpartition("/")
         category, _, called = node.rpartition(" ")
         port_kinds = ports_of_tree(workspace, path, called) if category == "SubTree" else ()
         port_kinds = port_kinds or ports_of_kind(workspace, path, called)
-        return next((port(one) for one in port_kinds if one.name == wanted), None)
+        return next((port(one) for one in port_kinds if one.name == port_name), None)
     return None
 
 

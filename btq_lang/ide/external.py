@@ -17,15 +17,15 @@ from btq_lang.workspace.references import What
 from btq_lang.workspace.workspace import Workspace
 
 
-def external_requirement(workspace: Workspace, path: str, wanted: Subject) -> ExternalRequirement | None:
+def external_requirement(workspace: Workspace, path: str, referent: Subject) -> ExternalRequirement | None:
     """The imported requirement that a subject is, if no file of the project defines a requirement or hazard so
     called."""
     imported = workspace.project.external_requirements
-    if imported is None or wanted.what not in (What.REQUIREMENT, What.HAZARD) or wanted.name not in imported.by_id:
+    if imported is None or referent.what not in (What.REQUIREMENT, What.HAZARD) or referent.name not in imported.by_id:
         return None
-    subjects = (Subject(what, wanted.name) for what in (What.REQUIREMENT, What.HAZARD))
-    is_defined = any(definition(workspace, path, one) is not None for one in (wanted, *subjects))
-    return None if is_defined else imported.by_id[wanted.name]
+    subjects = (Subject(what, referent.name) for what in (What.REQUIREMENT, What.HAZARD))
+    is_defined = any(definition(workspace, path, one) is not None for one in (referent, *subjects))
+    return None if is_defined else imported.by_id[referent.name]
 
 
 def external_links(workspace: Workspace, path: str) -> Iterator[tuple[Span, ExternalRequirement]]:

@@ -56,9 +56,9 @@ def inlay_hints(workspace: Workspace, path: str, within: Span) -> tuple[Hint, ..
             if span.end < within.start or span.start > within.end:
                 continue
             if mention.what is What.REQUIREMENT and not mention.defines:
-                wanted = subject(workspace, ReferenceAt(path, entry, mention))
-                place = definition(workspace, path, wanted)
-                item = place.symbol.target if place is not None and wanted.home else None
+                referent = subject(workspace, ReferenceAt(path, entry, mention))
+                place = definition(workspace, path, referent)
+                item = place.symbol.target if place is not None and referent.home else None
                 quality = quality_of(place) if place is not None else None
                 if isinstance(item, Requirement) and quality is not None:
                     hints.append(Hint(span.end, f": {quality.names[-1].text}", requirement_detail(item)))

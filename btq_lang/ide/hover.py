@@ -39,13 +39,13 @@ def hover(
     reference = at(workspace, path, offset)
     if reference is None:
         return _word_of_the_language(workspace.files[path], offset)
-    wanted = subject(workspace, reference)
-    markdown = _explained(workspace, reference, wanted) or ""
+    referent = subject(workspace, reference)
+    markdown = _explained(workspace, reference, referent) or ""
     verdicts = ""
-    if evidence is not None and wanted.what is What.REQUIREMENT:
+    if evidence is not None and referent.what is What.REQUIREMENT:
         from btq_lang.ide.verdicts import verdict_table  # few projects have logs
 
-        verdicts = verdict_table(workspace, path, wanted, evidence)
+        verdicts = verdict_table(workspace, path, referent, evidence)
     built = _written_by_build(workspace, reference, side) if reference.mention.what in (What.NODE, What.TREE) else ""
     text = "\n\n".join(filter(None, (markdown, verdicts, built)))
     return Hover(reference.span, text) if text else None
@@ -61,18 +61,18 @@ def _written_by_build(workspace: Workspace, reference: ReferenceAt, side: str | 
     return "\n".join(("Written by `btq build`:\n", *(f"* {line}" for line in lines))) if lines else ""
 
 
-def _explained(workspace: Workspace, reference: ReferenceAt, wanted: Subject) -> str | None:
+def _explained(workspace: Workspace, reference: ReferenceAt, referent: Subject) -> str | None:
     path, mention = reference.path, reference.mention
     node = mention.node
-    if (imported := external.external_requirement(workspace, path, wanted)) is not None:
+    if (imported := external.external_requirement(workspace, path, referent)) is not None:
         return external.described(workspace, imported)
-    if wanted.what is What.NODE:
+    if referent.what is What.NODE:
         children = len(node.nodes) if node is not None else None
         return describe.node_kind(workspace, path, mention.name, mention.word.quoted and node is not None, children)
-    if wanted.what is What.TREE:
-        return describe.tree(workspace, path, wanted.name)
-    if wanted.what is What.QUALITY:
-        own = definition(workspace, path, wanted)
+    if referent.what is What.TREE:
+        return describe.tree(workspace, path, referent.name)
+    if referent.what is What.QUALITY:
+        own = definition(workspace, path, referent)
         if own is not None:
             return describe.own_quality(workspace, own)
         match = quality_match(workspace, path, mention.name)
@@ -83,33 +83,33 @@ def _explained(workspace: Workspace, reference: ReferenceAt, wanted: Subject) ->
         return f"`{mention.name}`: {match.explanation or 'unknown quality'}" + (
             f"\n\nDid you mean {suggestions}?" if suggestions else ""
         )
-    if wanted.what is What.REQUIREMENT:
-        place = definition(workspace, path, wanted)
+    if referent.what is What.REQUIREMENT:
+        place = definition(workspace, path, referent)
         return describe.requirement(workspace, path, place) if place else None
-    if wanted.what is What.HAZARD:
-        place = definition(workspace, path, wanted)
+    if referent.what is What.HAZARD:
+        place = definition(workspace, path, referent)
         return describe.hazard(workspace, place) if place else None
-    if wanted.what in (What.SIGNAL, What.CONTEXT):
-        place = definition(workspace, path, wanted)
+    if referent.what in (What.SIGNAL, What.CONTEXT):
+        place = definition(workspace, path, referent)
         return describe.declared(workspace, place) if place else None
-    if wanted.what is What.KEY:
-        return (_port(workspace, reference) if mention.what is What.PORT else None) or _key(workspace, wanted)
-    if wanted.what is What.PORT:
+    if referent.what is What.KEY:
+        return (_port(workspace, reference) if mention.what is What.PORT else None) or _key(workspace, referent)
+    if referent.what is What.PORT:
         return _port(workspace, reference)
-    if wanted.what is What.ATTRIBUTE:
-        kind = RESERVED_ATTRIBUTES.get(wanted.name)
+    if referent.what is What.ATTRIBUTE:
+        kind = RESERVED_ATTRIBUTES.get(referent.name)
         return f"`{kind.name}`: {kind.doc}" if kind is not None else None
-    if wanted.what is What.QUANTITY:
+    if referent.what is What.QUANTITY:
         port = port_of(workspace, path, node, mention.pair.key.text) if node and mention.pair else None
         return describe.quantity(mention.name, port.unit if port is not None else None)
-    if wanted.what is What.UNIT:
+    if referent.what is What.UNIT:
         return describe.unit(mention.name)
-    if wanted.what is What.RULE:
-        return describe.rule(wanted.name)
-    if wanted.what is What.INCLUDE:
-        return f"`{wanted.name}`" if wanted.name in workspace.files else None
-    if wanted.what in (What.INSTANCE, What.TAG, What.PARAMETER):
-        return describe.used(workspace, wanted, f"{wanted.what.value.capitalize()} **{wanted.name}**") or None
+    if referent.what is What.RULE:
+        return describe.rule(referent.name)
+    if referent.what is What.INCLUDE:
+        return f"`{referent.name}`" if referent.name in workspace.files else None
+    if referent.what in (What.INSTANCE, What.TAG, What.PARAMETER):
+        return describe.used(workspace, referent, f"{referent.what.value.capitalize()} **{referent.name}**") or None
     return None
 
 
@@ -125,10 +125,10 @@ def _word_of_the_language(file: File, offset: int) -> Hover | None:
     return Hover(Span(start + phrase[0], start + phrase[0] + len(phrase[1])), markdown)
 
 
-def _key(workspace: Workspace, wanted: Subject) -> str:
-    places = [one for one in everywhere(workspace, wanted) if not one.mention.defines]
+def _key(workspace: Workspace, referent: Subject) -> str:
+    places = [one for one in everywhere(workspace, referent) if not one.mention.defines]
     writing = [one for one in places if writes(workspace, one)]
-    return describe.key(workspace, wanted, writing, [one for one in places if one not in writing])
+    return describe.key(workspace, referent, writing, [one for one in places if one not in writing])
 
 
 def _port(workspace: Workspace, reference: ReferenceAt) -> str | None:

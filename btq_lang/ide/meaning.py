@@ -111,16 +111,16 @@ def subject(workspace: Workspace, reference: ReferenceAt) -> Subject:
     return Subject(mention.what, mention.name, f"{path}:{entry.start}")
 
 
-def definition(workspace: Workspace, path: str, wanted: Subject) -> Definition | None:
+def definition(workspace: Workspace, path: str, referent: Subject) -> Definition | None:
     """The definition of a subject in the symbols of a file's scope, or else anywhere in the project."""
-    kind = KIND_OF.get(wanted.what)
-    if kind is None or wanted.home in (ENGINE, STANDARD):
+    kind = KIND_OF.get(referent.what)
+    if kind is None or referent.home in (ENGINE, STANDARD):
         return None
-    in_scope = workspace.find(path, kind, wanted.name)
-    if in_scope is not None and home_of(in_scope) == wanted.home:
+    in_scope = workspace.find(path, kind, referent.name)
+    if in_scope is not None and home_of(in_scope) == referent.home:
         return in_scope
-    anywhere = workspace.defined_anywhere(kind, wanted.name)
-    return next((one for one in anywhere if not wanted.home or home_of(one) == wanted.home), None)
+    anywhere = workspace.defined_anywhere(kind, referent.name)
+    return next((one for one in anywhere if not referent.home or home_of(one) == referent.home), None)
 
 
 def home_of(place: Definition) -> str:
@@ -128,10 +128,10 @@ def home_of(place: Definition) -> str:
     return f"{place.path}:{place.span.start}"
 
 
-def everywhere(workspace: Workspace, wanted: Subject, paths: tuple[str, ...] | None = None) -> Iterator[ReferenceAt]:
+def everywhere(workspace: Workspace, referent: Subject, paths: tuple[str, ...] | None = None) -> Iterator[ReferenceAt]:
     """Every reference to a subject in some files, or in all, file by file, in the order of their texts."""
-    words = _spellings(wanted)
-    for path in paths if paths is not None else _paths(workspace, wanted):
+    words = _spellings(referent)
+    for path in paths if paths is not None else _paths(workspace, referent):
         file = workspace.files[path]
         if words and not any(word in file.text for word in words):
             continue  # that is known without parsing it
@@ -144,36 +144,36 @@ def everywhere(workspace: Workspace, wanted: Subject, paths: tuple[str, ...] | N
                 ReferenceAt(path, entry, mention)
                 for entry in file.parsed.entries
                 for mention in file.mentions_of(entry)
-                if _may_mean(wanted, mention)
+                if _may_mean(referent, mention)
             ]
-        yield from (reference for reference in references if subject(workspace, reference) == wanted)
+        yield from (reference for reference in references if subject(workspace, reference) == referent)
 
 
-def _paths(workspace: Workspace, wanted: Subject) -> list[str]:
+def _paths(workspace: Workspace, referent: Subject) -> list[str]:
     """The files that may name a subject: those linked with its home and XML with a pool, or all if it has none."""
-    home = wanted.home.removeprefix(ROOT_BLACKBOARD).rpartition(":")[0] or wanted.home.removeprefix(ROOT_BLACKBOARD)
+    home = referent.home.removeprefix(ROOT_BLACKBOARD).rpartition(":")[0] or referent.home.removeprefix(ROOT_BLACKBOARD)
     if home not in workspace.files:
         return sorted(workspace.files)
     return sorted({*workspace.linked(home), *(workspace.foreign if workspace.project.pools else ())})
 
 
-def _spellings(wanted: Subject) -> tuple[str, ...]:
+def _spellings(referent: Subject) -> tuple[str, ...]:
     """All words by which a subject can be named; empty if they cannot be listed."""
-    if wanted.what is What.NODE and wanted.home == ENGINE:
-        kind = lookup(wanted.name, quoted=True)
+    if referent.what is What.NODE and referent.home == ENGINE:
+        kind = lookup(referent.name, quoted=True)
         return spellings(kind) if kind is not None else ()
-    if wanted.what in (What.QUALITY, What.INCLUDE) or _ESCAPED.search(wanted.name):
+    if referent.what in (What.QUALITY, What.INCLUDE) or _ESCAPED.search(referent.name):
         return ()
-    return (wanted.name,)
+    return (referent.name,)
 
 
-def _may_mean(wanted: Subject, mention: Mention) -> bool:
+def _may_mean(referent: Subject, mention: Mention) -> bool:
     """Whether a reference may mean a subject that has many spellings."""
-    if wanted.what not in (What.QUALITY, What.INCLUDE):
-        return mention.name == wanted.name
-    if mention.what is not wanted.what or wanted.what is What.INCLUDE or wanted.home == STANDARD:
-        return mention.what is wanted.what
-    return fold(mention.name.rpartition(".")[2]) == fold(wanted.name)
+    if referent.what not in (What.QUALITY, What.INCLUDE):
+        return mention.name == referent.name
+    if mention.what is not referent.what or referent.what is What.INCLUDE or referent.home == STANDARD:
+        return mention.what is referent.what
+    return fold(mention.name.rpartition(".")[2]) == fold(referent.name)
 
 
 def quality_of(requirement: Definition) -> QualityPath | None:

@@ -58,27 +58,27 @@ def goto_definition(workspace: Workspace, path: str, offset: int) -> tuple[Navig
     reference = at(workspace, path, offset)
     if reference is None:
         return ()
-    wanted = subject(workspace, reference)
-    if wanted.what is What.INCLUDE:
-        target = wanted.name
+    referent = subject(workspace, reference)
+    if referent.what is What.INCLUDE:
+        target = referent.name
         return (NavigationTarget(target, Span(0, 0), Span(0, 0), reference.span),) if target in workspace.files else ()
-    place = definition(workspace, path, wanted)
-    in_cpp = _in_cpp(workspace, reference, wanted, place)
+    place = definition(workspace, path, referent)
+    in_cpp = _in_cpp(workspace, reference, referent, place)
     if in_cpp is not None:
         return (NavigationTarget(*in_cpp, in_cpp[1], reference.span),)
     if place is not None:
         return (NavigationTarget(place.path, place.whole, place.span, reference.span),)
-    if wanted.what in (What.KEY, What.PORT, What.PARAMETER, What.INSTANCE):
-        places = list(everywhere(workspace, wanted))
+    if referent.what in (What.KEY, What.PORT, What.PARAMETER, What.INSTANCE):
+        places = list(everywhere(workspace, referent))
         first = next((one for one in places if one.mention.defines), None)
-        if first is None and wanted.what is What.KEY:
+        if first is None and referent.what is What.KEY:
             first = next((one for one in places if writes(workspace, one)), None)
         return (NavigationTarget(first.path, first.span, first.span, reference.span),) if first else ()
     return ()
 
 
 def _in_cpp(
-    workspace: Workspace, reference: ReferenceAt, wanted: Subject, place: Definition | None
+    workspace: Workspace, reference: ReferenceAt, referent: Subject, place: Definition | None
 ) -> tuple[str, Span] | None:
     """Where in C++ a node or its port is, whatever models of it there are beside the code."""
     if place is not None and isinstance(place.symbol.target, Model):
@@ -86,7 +86,9 @@ def _in_cpp(
         return next(filter(None, places), None)
     node, owner = reference.mention.node, reference.mention.owner
     name = owner.name if isinstance(owner, Model) else node.id if node is not None else None
-    return cpp_place(workspace, reference.path, name.text, wanted.name) if wanted.what is What.PORT and name else None
+    return (
+        cpp_place(workspace, reference.path, name.text, referent.name) if referent.what is What.PORT and name else None
+    )
 
 
 def find_references(
@@ -135,11 +137,11 @@ def writes(workspace: Workspace, reference: ReferenceAt) -> bool:
 def goto_implementation(workspace: Workspace, path: str, offset: int) -> tuple[NavigationTarget, ...]:
     """The nodes that refer to the requirement at a place; for everything else, the definition."""
     reference = at(workspace, path, offset)
-    wanted = subject(workspace, reference) if reference is not None else None
-    if reference is None or wanted is None or wanted.what is not What.REQUIREMENT:
+    referent = subject(workspace, reference) if reference is not None else None
+    if reference is None or referent is None or referent.what is not What.REQUIREMENT:
         return goto_definition(workspace, path, offset)
     targets = {}
-    for use in everywhere(workspace, wanted):
+    for use in everywhere(workspace, referent):
         node = use.mention.node
         if node is not None and use.entry is not None:
             name = node.head.span.shifted(use.entry.start)
@@ -154,13 +156,13 @@ def goto_type(workspace: Workspace, path: str, offset: int) -> tuple[NavigationT
     if reference is None:
         return ()
     place: Definition | None = None
-    wanted = subject(workspace, reference)
-    if wanted.what is What.INSTANCE:
-        node = next((one.mention.node for one in everywhere(workspace, wanted) if one.mention.node is not None), None)
+    referent = subject(workspace, reference)
+    if referent.what is What.INSTANCE:
+        node = next((one.mention.node for one in everywhere(workspace, referent) if one.mention.node is not None), None)
         if node is not None and node.id is not None:
             scope = workspace.scope(path)
             place = scope.find(Kind.MODEL, node.id.text) or scope.find(Kind.TREE, node.id.text)
-    elif wanted.what is What.REQUIREMENT and (requirement := definition(workspace, path, wanted)) is not None:
+    elif referent.what is What.REQUIREMENT and (requirement := definition(workspace, path, referent)) is not None:
         quality = quality_of(requirement)
         place = own_quality(workspace, requirement.path, quality.names[-1].text) if quality is not None else None
     if place is None:
@@ -204,8 +206,8 @@ def prepare_calls(workspace: Workspace, path: str, offset: int) -> TreeItem | No
     """The tree named at a place, or the tree around the node there."""
     reference = at(workspace, path, offset)
     if reference is not None:
-        wanted = subject(workspace, reference)
-        place = definition(workspace, path, wanted) if wanted.what is What.TREE else None
+        referent = subject(workspace, reference)
+        place = definition(workspace, path, referent) if referent.what is What.TREE else None
         if place is not None:
             return _item(place)
     return None
@@ -213,9 +215,9 @@ def prepare_calls(workspace: Workspace, path: str, offset: int) -> TreeItem | No
 
 def callers(workspace: Workspace, tree: TreeItem) -> tuple[TreeCall, ...]:
     """The trees that run a tree."""
-    wanted = Subject(What.TREE, tree.name, f"{tree.path}:{tree.name_span.start}")
+    referent = Subject(What.TREE, tree.name, f"{tree.path}:{tree.name_span.start}")
     by_caller: dict[tuple[str, int], list[ReferenceAt]] = {}
-    for reference in everywhere(workspace, wanted):
+    for reference in everywhere(workspace, referent):
         if reference.mention.node is not None and reference.entry is not None:
             by_caller.setdefault((reference.path, reference.entry.start), []).append(reference)
     calls = []

@@ -36,21 +36,21 @@ def on_type(workspace: Workspace, path: str, offset: int, typed: str) -> tuple[E
     blanks = line[: len(line) - len(line.lstrip(" \t"))]
     moved_from = _moved_from(workspace.files[path], start) if typed == "\n" else None
     if moved_from is not None:
-        wanted = blanks if offset > start else moved_from + blanks  # whether or not the editor indented it
+        margin = blanks if offset > start else moved_from + blanks  # whether or not the editor indented it
     elif typed == ")":
         if text[start:offset].strip() != ")" or not place.words:
             return ()
-        wanted = blanks_before(text, place.words[0].start)
+        margin = blanks_before(text, place.words[0].start)
     elif place.words and place.depth:
-        wanted = deeper(text, blanks_before(text, place.words[0].start))
+        margin = deeper(text, blanks_before(text, place.words[0].start))
     else:
         above = _line_above(workspace, path, start)
         if not above:
             return ()
-        wanted = blanks_before(text, above[0].start)
+        margin = blanks_before(text, above[0].start)
         if _opens(workspace, path, above):
-            wanted = deeper(text, wanted)
-    return (Edit(Span(start, start + len(blanks)), wanted),) if blanks != wanted else ()
+            margin = deeper(text, margin)
+    return (Edit(Span(start, start + len(blanks)), margin),) if blanks != margin else ()
 
 
 def linked_ranges(workspace: Workspace, path: str, offset: int) -> tuple[Span, ...]:
@@ -59,12 +59,12 @@ def linked_ranges(workspace: Workspace, path: str, offset: int) -> tuple[Span, .
     reference = at(workspace, path, offset)
     if reference is None:
         return ()
-    wanted = subject(workspace, reference)
-    if wanted.what not in (What.PARAMETER, What.KEY, What.INSTANCE) or wanted.home.startswith("@"):
+    referent = subject(workspace, reference)
+    if referent.what not in (What.PARAMETER, What.KEY, What.INSTANCE) or referent.home.startswith("@"):
         return ()
-    places = tuple(everywhere(workspace, wanted))
+    places = tuple(everywhere(workspace, referent))
     text = workspace.files[path].text
-    same = all(one.path == path and text[one.span.start : one.span.end] == wanted.name for one in places)
+    same = all(one.path == path and text[one.span.start : one.span.end] == referent.name for one in places)
     return tuple(one.span for one in places) if same and len(places) > 1 else ()
 
 

@@ -204,7 +204,7 @@ def _contexts(workspace: Workspace, path: str) -> Iterator[Proposal]:
 
 
 def operands(
-    workspace: Workspace, path: str, place: CursorPlace, wanted: MeasuredValue, contexts: bool = True
+    workspace: Workspace, path: str, place: CursorPlace, measured: MeasuredValue, contexts: bool = True
 ) -> Iterator[Proposal]:
     """Operands of a comparison: the requirement's parameters, contexts, signals; those that measure what is wanted come
     first and, if that is certain, alone."""
@@ -212,9 +212,9 @@ def operands(
     proposals = [Proposal(name, "parameter", "parameter", name) for name in named]
     proposals += _contexts(workspace, path) if contexts else ()
     proposals += signals(workspace, path)
-    fits = [wanted.fits(named.get(one.label, one.detail)) for one in proposals]
+    fits = [measured.fits(named.get(one.label, one.detail)) for one in proposals]
     yield from (one for one, fit in zip(proposals, fits, strict=True) if fit)
-    if not wanted.is_certain:
+    if not measured.is_certain:
         yield from (one for one, fit in zip(proposals, fits, strict=True) if not fit)
 
 
@@ -341,16 +341,16 @@ def _short_names(part: str, chosen: str) -> Iterator[Proposal]:
             yield Proposal(name, "quality", quality.name, name, None, "", quality.id)
 
 
-def units(wanted: MeasuredValue) -> Iterator[Proposal]:
+def units(measured: MeasuredValue) -> Iterator[Proposal]:
     """Units; those that measure what is wanted come first, beginning with the one that is spelt the same; if that is
     certain, they come alone."""
-    compounds = dict.fromkeys((*_COMPOUNDS, wanted.unit or "1"))
+    compounds = dict.fromkeys((*_COMPOUNDS, measured.unit or "1"))
     candidates = [*symbols(), *(unit for text in compounds if text != "1" and (unit := parse_unit(text)) is not None)]
     candidates = list({unit.symbol: unit for unit in candidates}.values())
-    fitting = {unit.symbol for unit in candidates if wanted.fits(unit.symbol)}
-    candidates.sort(key=lambda unit: (unit.symbol not in fitting, unit.symbol != wanted.unit))
+    fitting = {unit.symbol for unit in candidates if measured.fits(unit.symbol)}
+    candidates.sort(key=lambda unit: (unit.symbol not in fitting, unit.symbol != measured.unit))
     for unit in candidates:
-        if unit.symbol in fitting or not wanted.is_certain:
+        if unit.symbol in fitting or not measured.is_certain:
             yield Proposal(unit.symbol, "unit", dimension_name(unit), unit.symbol)
 
 

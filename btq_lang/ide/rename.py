@@ -50,8 +50,8 @@ def prepare_rename(workspace: Workspace, path: str, offset: int) -> Renamable | 
     reference = at(workspace, path, offset)
     if reference is None:
         return RenameRefusal("nothing to rename here")
-    wanted = subject(workspace, reference)
-    reason = _refusal(workspace, wanted, reference)
+    referent = subject(workspace, reference)
+    reason = _refusal(workspace, referent, reference)
     return RenameRefusal(reason) if reason else Renamable(reference.span, reference.mention.name)
 
 
@@ -60,19 +60,21 @@ def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming 
     reference = at(workspace, path, offset)
     if reference is None:
         return RenameRefusal("nothing to rename here")
-    wanted = subject(workspace, reference)
+    referent = subject(workspace, reference)
     reason = (
-        _refusal(workspace, wanted, reference) or _unfit(wanted, name) or _is_the_other(workspace, path, wanted, name)
+        _refusal(workspace, referent, reference)
+        or _unfit(referent, name)
+        or _is_the_other(workspace, path, referent, name)
     )
     if reason:
         return RenameRefusal(reason)
-    places = tuple(everywhere(workspace, wanted))
+    places = tuple(everywhere(workspace, referent))
     uneditable = next(
         ((place.path, why) for place in places if (why := _why_uneditable(workspace.files[place.path]))), None
     )
     if uneditable is not None:  # a node without a model is the same in unrelated files
         return RenameRefusal(
-            f"cannot rename `{wanted.name}`: {workspace.project.shown(uneditable[0])}, {uneditable[1]}, also uses it"
+            f"cannot rename `{referent.name}`: {workspace.project.shown(uneditable[0])}, {uneditable[1]}, also uses it"
         )
     if not (name.isascii() and name.isidentifier()) and any(_is_in_script(place.mention) for place in places):
         return RenameRefusal("a name in a script may contain only the letters A to Z, digits and `_`")
@@ -85,13 +87,13 @@ def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming 
     for in_quotes in (False, True):  # a word of the language is a name if it is quoted
         edits: dict[str, tuple[Edit, ...]] = {}
         for place in places:
-            renaming = _edits(place, wanted, name, in_quotes, both)
+            renaming = _edits(place, referent, name, in_quotes, both)
             edits[place.path] = (*edits.get(place.path, ()), *respelt(workspace.files[place.path], renaming))
         edits = {changed: tuple(sorted(changes, key=lambda edit: edit.span)) for changed, changes in edits.items()}
         reasons.append(_changes_meaning(workspace, path, reference, places, edits, name))
         if not reasons[-1]:
             return Renaming(edits)
-        if wanted.what in _PLAIN or wanted.what is What.KEY:
+        if referent.what in _PLAIN or referent.what is What.KEY:
             break
     return RenameRefusal(reasons[0])
 
@@ -107,59 +109,58 @@ def _why_uneditable(file: File) -> str:
     return "" if file.is_understood else "which cannot be read"
 
 
-def _refusal(workspace: Workspace, wanted: Subject, reference: ReferenceAt) -> str:
+def _refusal(workspace: Workspace, referent: Subject, reference: ReferenceAt) -> str:
     """Why a subject cannot be renamed; empty if it can."""
     mention = reference.mention
-    if wanted.what in _FIXED:
-        return f"cannot rename {_FIXED[wanted.what]}"
-    if wanted.home == STANDARD:
-        return f"cannot rename `{wanted.name}`: the quality model defines it"
-    if wanted.home.startswith(ENGINE):
-        return f"cannot rename `{wanted.name}`: the engine defines it"
-    place, shown = definition(workspace, reference.path, wanted), workspace.project.shown
-    where = place.path if place is not None else wanted.home.rpartition(":")[0]  # a port is in the model of its node
+    if referent.what in _FIXED:
+        return f"cannot rename {_FIXED[referent.what]}"
+    if referent.home == STANDARD:
+        return f"cannot rename `{referent.name}`: the quality model defines it"
+    if referent.home.startswith(ENGINE):
+        return f"cannot rename `{referent.name}`: the engine defines it"
+    place, shown = definition(workspace, reference.path, referent), workspace.project.shown
+    where = place.path if place is not None else referent.home.rpartition(":")[0]  # a port is in the model of its node
     if where in PACKAGED.values():
-        return f"cannot rename `{wanted.name}`: Nav2 defines it"
+        return f"cannot rename `{referent.name}`: Nav2 defines it"
     if where in workspace.files and (why := _why_uneditable(workspace.files[where])):
-        return f"cannot rename `{wanted.name}`: its definition is in {shown(where)}, {why}"
-    if place is not None and not wanted.home:
-        return (
-            f"cannot rename `{wanted.name}`: its definition is in {shown(place.path)}, which this file does not include"
-        )
-    if place is None and wanted.what in KIND_OF and wanted.what is not What.NODE:
-        return f"cannot rename `{wanted.name}`: it is not defined"
-    if wanted.what is What.KEY and mention.node is not None and mention.node.attribute("_autoremap") is not None:
+        return f"cannot rename `{referent.name}`: its definition is in {shown(where)}, {why}"
+    if place is not None and not referent.home:
+        reason = f"its definition is in {shown(place.path)}, which this file does not include"
+        return f"cannot rename `{referent.name}`: {reason}"
+    if place is None and referent.what in KIND_OF and referent.what is not What.NODE:
+        return f"cannot rename `{referent.name}`: it is not defined"
+    if referent.what is What.KEY and mention.node is not None and mention.node.attribute("_autoremap") is not None:
         return "cannot rename: `_autoremap` passes every entry under its own name"
     for path in workspace.scope(reference.path).paths:
-        if (why := _why_uneditable(workspace.files[path])) and wanted.name in workspace.files[path].source:
-            return f"cannot rename `{wanted.name}`: {shown(path)}, {why}, may also use it"
+        if (why := _why_uneditable(workspace.files[path])) and referent.name in workspace.files[path].source:
+            return f"cannot rename `{referent.name}`: {shown(path)}, {why}, may also use it"
     return ""
 
 
-def _unfit(wanted: Subject, name: str) -> str:
+def _unfit(referent: Subject, name: str) -> str:
     """Why a name is not allowed for such a thing; empty if it is."""
     if not name.strip() or "\n" in name or "\r" in name:
         return "a name needs at least one character, on one line"
-    if wanted.what in _PLAIN and not is_name(name):
-        return f"the name of a {wanted.what.value} may contain only letters, digits and `_`"
-    if wanted.what is What.KEY and any(character in "{}\"'@= \t" for character in name):
+    if referent.what in _PLAIN and not is_name(name):
+        return f"the name of a {referent.what.value} may contain only letters, digits and `_`"
+    if referent.what is What.KEY and any(character in "{}\"'@= \t" for character in name):
         return "the name of an entry must not contain braces, quotes, spaces, `@` or `=`"
-    if wanted.what is What.PORT and (not is_port_name(name) or name in RESERVED_ATTRIBUTES):
+    if referent.what is What.PORT and (not is_port_name(name) or name in RESERVED_ATTRIBUTES):
         return f"the engine refuses the port name `{name}`"
-    if wanted.what in (What.TREE, What.NODE):
+    if referent.what in (What.TREE, What.NODE):
         if lookup(name) is not None:
             return f"`{name}` is a built-in node"
         problem = model_name_problem(name)
         return f"the engine refuses the name: {problem}" if problem else ""
-    if wanted.what is What.INSTANCE and (problem := instance_name_problem(name)):
+    if referent.what is What.INSTANCE and (problem := instance_name_problem(name)):
         return f"the engine refuses the name: {problem}"
     return ""
 
 
-def _is_the_other(workspace: Workspace, path: str, wanted: Subject, name: str) -> str:
+def _is_the_other(workspace: Workspace, path: str, referent: Subject, name: str) -> str:
     """Why a signal cannot have the name of a context, a requirement that of a hazard, or the other way round; empty if
     it can."""
-    other = _SHARING_NAMES.get(wanted.what)
+    other = _SHARING_NAMES.get(referent.what)
     taken = workspace.scope(path).find(other, name) if other is not None else None
     if taken is None or other is None:
         return ""
@@ -173,10 +174,10 @@ def _is_in_script(mention: Mention) -> bool:
     return mention.what is What.KEY and text != mention.name and not text.startswith("{")
 
 
-def _edits(place: ReferenceAt, wanted: Subject, name: str, in_quotes: bool, both: set[int]) -> Iterator[Edit]:
+def _edits(place: ReferenceAt, referent: Subject, name: str, in_quotes: bool, both: set[int]) -> Iterator[Edit]:
     mention = place.mention
     start = place.entry.start if place.entry else 0
-    if mention.what is What.KEY and not (mention.defines or mention.word.raw == wanted.name):
+    if mention.what is What.KEY and not (mention.defines or mention.word.raw == referent.name):
         is_same = mention.pair is not None and mention.word.raw[mention.span.start - mention.word.start :][:1] == "="
         if not (is_same and mention.pair is not None and (mention.pair.key.text == name or id(mention.pair) in both)):
             yield Edit(place.span, name)
@@ -188,7 +189,7 @@ def _edits(place: ReferenceAt, wanted: Subject, name: str, in_quotes: bool, both
     is_same = value is not None and value.text.strip("{} ") == "="
     if mention.what is What.PORT and value is not None and is_same and id(pair) not in both:
         # `{=}` is the entry named as the port was: the entry keeps its name.
-        yield Edit(value.span.shifted(start), f"{{{wanted.name}}}")
+        yield Edit(value.span.shifted(start), f"{{{referent.name}}}")
 
 
 def _changes_meaning(

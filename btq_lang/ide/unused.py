@@ -74,8 +74,8 @@ def _needless_includes(store: Store[Workspace], path: str) -> tuple[NeedlessIncl
     if is_mission and workspace.store.ask(is_read, path):
         for include in reversed(includes):
             others = [other for other in includes if other is not include and not _is_among(other, needless)]
-            gone = _brought_by(workspace, path, include, others) if not _is_among(include, needless) else set()
-            if gone and not _uses(workspace, path, gone) and _changes_nothing(workspace, path, [*needless, include]):
+            lost = _brought_by(workspace, path, include, others) if not _is_among(include, needless) else set()
+            if lost and not _uses(workspace, path, lost) and _changes_nothing(workspace, path, [*needless, include]):
                 needless.append(include)
     return tuple(
         NeedlessInclude(_name(one), "duplicate" if _is_among(one, duplicates) else "unused", _span(file, one))

@@ -122,14 +122,14 @@ def verdict_titles(
         yield workspace.files[path].span_of(place), title, ()
 
 
-def verdict_table(workspace: Workspace, path: str, wanted: Subject, evidence: ProjectVerdicts) -> str:
+def verdict_table(workspace: Workspace, path: str, referent: Subject, evidence: ProjectVerdicts) -> str:
     """What logs show of a requirement, in Markdown; empty without any."""
-    place = definition(workspace, path, wanted)
+    place = definition(workspace, path, referent)
     lines: list[str] = []
     for judged in _on_missions(workspace, path, evidence):
         if place is None:
             break
-        defined = wanted.name, place.path
+        defined = referent.name, place.path
         shown = [each for each in judged.shown if _defined(each.demand.requirement) == defined]
         rows = [_row(each) for each in sorted(shown, key=_rank)]
         unseen = (clause for each in judged.open if _defined(each) == defined for clause in open_clauses(each))

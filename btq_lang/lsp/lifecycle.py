@@ -51,10 +51,10 @@ async def did_change_configuration(server: Server, params: types.DidChangeConfig
 
 @handlers.feature(types.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS)
 def did_change_workspace_folders(server: Server, params: types.DidChangeWorkspaceFoldersParams) -> None:
-    gone = {server.convert.path(folder.uri) for folder in params.event.removed}
+    removed = {server.convert.path(folder.uri) for folder in params.event.removed}
     new = [server.convert.path(folder.uri) for folder in params.event.added]
     session = server.session
-    session.work_in((*(folder for folder in session.folders if folder not in gone), *new))
+    session.work_in((*(folder for folder in session.folders if folder not in removed), *new))
     server.reload()
 
 

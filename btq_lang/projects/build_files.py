@@ -177,9 +177,9 @@ def _outputs(group: FileGroup, places: OutputPlaces, options: BuildOptions) -> t
 def _has_errors(groups: tuple[FileGroup, ...], options: BuildOptions, messages: CommandOutput) -> bool:
     """Whether errors prevent the build; they are results."""
     findings = [
-        Finding(path, group.workspace.files[path].source, each)
+        Finding(path, group.workspace.files[path].source, diagnostic)
         for group in groups
-        for path, each in errors(
+        for path, diagnostic in errors(
             group.workspace,
             group.given,
             bundled=options.is_bundled,

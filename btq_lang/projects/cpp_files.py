@@ -128,8 +128,8 @@ class CppFiles:
             )  # as people see files
             diagnostics = tuple(replace(diagnostic, message=message) for diagnostic, message in named)
             file = self._files.get(path)
-            known = (file.source, file.cpp_nodes, file.source_diagnostics) if file is not None else None
-            if known != (text, of_path[path], diagnostics):
+            before = (file.source, file.cpp_nodes, file.source_diagnostics) if file is not None else None
+            if before != (text, of_path[path], diagnostics):
                 self._files[path] = cpp_file(path, text, of_path[path], diagnostics, file)
         return nodes, {path: self._files[path] for path in texts}
 

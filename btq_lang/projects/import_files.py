@@ -78,7 +78,7 @@ class _Job(Record):
 
     path: str
     xml: str
-    done: Imported
+    imported: Imported
     target: str | None
     others: tuple[tuple[str, str], ...] = ()
     losses: tuple[str, ...] = ()
@@ -105,7 +105,7 @@ def import_files(options: ImportOptions, overlay: Mapping[str, str] | None = Non
         jobs = []  # the others may include what would be missing
     jobs = [job for job in jobs if not _clashes(job, jobs, options.is_forced, problems)]
     _add_findings(jobs, options, messages)
-    complete = [job for job in jobs if job.done.is_complete]
+    complete = [job for job in jobs if job.imported.is_complete]
     written = [job for job in complete if _write(job, problems, messages)]
     for job in written:
         _add_changes(job, messages)
@@ -196,12 +196,12 @@ def _with_side_file(job: _Job, target: str, force: bool, problems: list[LoadProb
     """The result for a file that `btq build` made, with what its side file has in addition."""
     side = side_path(job.path)
     text, problem = read(side) if os.path.isfile(side) else (None, None)
-    if text is None or problem is not None or not job.done.is_complete:
+    if text is None or problem is not None or not job.imported.is_complete:
         return _without_side_file(job, f"put {shown(side)} beside the XML to keep them")
     from btq_lang.btcpp.restoring import restored
     from btq_lang.formatter import format_text
 
-    mission = restored(job.xml, job.done.text, text)
+    mission = restored(job.xml, job.imported.text, text)
     if mission is None:
         return _without_side_file(
             job, f"{shown(side)} belongs to another build; put the one of this build there to keep them"
@@ -211,20 +211,22 @@ def _with_side_file(job: _Job, target: str, force: bool, problems: list[LoadProb
         others = unpacked(mission.others, root, target, (job.path, side), force, problems)
         if others is None:
             return None
-        return replace(job, done=replace(job.done, text=mission.text, changes=()), target=target, others=others)
+        return replace(job, imported=replace(job.imported, text=mission.text, changes=()), target=target, others=others)
     losses = tuple(
         f"its node no longer exists: {lost.text} (line {lost.line} of {lost.file or 'the mission'} as built)"
         for lost in mission.lost
     )
     manual_edits = (
-        VersionNote(each.span, f"`{each.guard}` was {each.happened} by hand: {ADVICE}") for each in mission.manual_edits
+        VersionNote(edit.span, f"`{edit.guard}` was {edit.happened} by hand: {ADVICE}") for edit in mission.manual_edits
     )
-    changes = (*manual_edits, *job.done.changes)
-    return replace(job, done=replace(job.done, text=format_text(mission.text).text, changes=changes), losses=losses)
+    changes = (*manual_edits, *job.imported.changes)
+    return replace(
+        job, imported=replace(job.imported, text=format_text(mission.text).text, changes=changes), losses=losses
+    )
 
 
 def _without_side_file(job: _Job, advice: str) -> _Job:
-    number = job.done.described
+    number = job.imported.described
     if not number:
         return job
     nodes = counted(number, "node")
@@ -236,7 +238,11 @@ def _clashes(job: _Job, jobs: Iterable[_Job], force: bool, problems: list[LoadPr
     if job.target is None:
         return False
     for other in jobs:
-        text_at: dict[str | None, str] = {other.path: other.xml, **dict(other.others), other.target: other.done.text}
+        text_at: dict[str | None, str] = {
+            other.path: other.xml,
+            **dict(other.others),
+            other.target: other.imported.text,
+        }
         for path, text in job.others:
             if text_at.get(path, text) != text:
                 message = f"not imported: the bundle {shown(other.path)} contains another version of {shown(path)}"
@@ -250,9 +256,9 @@ def _clashes(job: _Job, jobs: Iterable[_Job], force: bool, problems: list[LoadPr
 
 def _write(job: _Job, problems: list[LoadProblem], messages: CommandOutput) -> bool:
     if job.target is None:
-        messages.result(job.done.text.removesuffix("\n"))
+        messages.result(job.imported.text.removesuffix("\n"))
         return True
-    for path, text in (*job.others, (job.target, job.done.text)):
+    for path, text in (*job.others, (job.target, job.imported.text)):
         try:
             os.makedirs(os.path.dirname(path), exist_ok=True)
             write_whole(path, text)
@@ -264,7 +270,7 @@ def _write(job: _Job, problems: list[LoadProblem], messages: CommandOutput) -> b
 
 def _add_findings(jobs: Iterable[_Job], options: ImportOptions, messages: CommandOutput) -> None:
     """Report the diagnostics of the XML, with its lines."""
-    findings = [Finding(job.path, job.xml, each) for job in jobs for each in job.done.diagnostics]
+    findings = [Finding(job.path, job.xml, each) for job in jobs for each in job.imported.diagnostics]
     if not findings:
         return
     report = with_paths(Report(tuple(findings), {job.path: job.xml for job in jobs}, ()), shown)
@@ -276,13 +282,13 @@ def _add_changes(job: _Job, messages: CommandOutput) -> None:
     for loss in job.losses:
         messages.remark(f"{shown(job.path)}: {loss}")
     lines = LineIndex(job.xml)
-    for change in job.done.changes:
+    for change in job.imported.changes:
         line, column = lines.position(change.span.start)
         messages.remark(f"{shown(job.path)}:{line + 1}:{column + 1}: {change.message}")
 
 
 def _sum_up(written: list[_Job], refused: int, messages: CommandOutput) -> None:
-    changes = sum(len(job.done.changes) for job in written)
+    changes = sum(len(job.imported.changes) for job in written)
     with_changes = f" with {counted(changes, 'change')}" if changes else ""
     others = sum(len(job.others) for job in written)
     parts = [f"{counted(len(written) + others, 'file')} imported{with_changes}"]
@@ -297,13 +303,13 @@ def _sum_up(written: list[_Job], refused: int, messages: CommandOutput) -> None:
 
 def _missing(job: _Job) -> Iterator[str]:
     """Commands that import a mission's includes that are still XML, beside its XML."""
-    if job.target is None or "include" not in job.done.text:
+    if job.target is None or "include" not in job.imported.text:
         return
     from btq_lang.parser import parse
     from btq_lang.syntax.tree import Include
 
     project = find_project(job.target).project
-    for entry in parse(job.done.text).entries:
+    for entry in parse(job.imported.text).entries:
         item = entry.item
         if not isinstance(item, Include) or item.path is None or item.path.text.endswith(".xml") or item.attributes:
             continue

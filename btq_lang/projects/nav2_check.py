@@ -34,8 +34,9 @@ def requested(files: Files, options: CheckOptions) -> tuple[ParameterFile, ...]:
             return True
         return file.path.startswith(tuple(folders)) and not excluder(file.project)(file.path)
 
-    wanted = [file for file in files.parameter_files if is_requested(file)]
-    wanted_files = tuple({file.path: file for file in reversed(wanted)}.values())  # with the project of trees, if any
+    candidates = [file for file in files.parameter_files if is_requested(file)]
+    # Of two with one path, that with the project of trees.
+    wanted_files = tuple({file.path: file for file in reversed(candidates)}.values())
     if options.since:
         from btq_lang.projects.since import has_changed
 

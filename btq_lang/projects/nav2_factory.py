@@ -199,9 +199,9 @@ def _new_in_target(
     from btq_lang.checks.target_changes import is_severe, of_target  # few checks have a target
 
     severe_today = {_key(finding) for finding in findings_today if is_severe(finding[1])}
-    for path, each in _own_findings(moved, workspace_of):
-        if is_severe(each) and _key((path, each)) not in severe_today:
-            yield path, of_target(each, (moved.distribution or "").capitalize())
+    for path, diagnostic in _own_findings(moved, workspace_of):
+        if is_severe(diagnostic) and _key((path, diagnostic)) not in severe_today:
+            yield path, of_target(diagnostic, (moved.distribution or "").capitalize())
 
 
 def _key(finding: _Finding) -> tuple[object, ...]:

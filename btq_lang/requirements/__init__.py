@@ -7,8 +7,9 @@ Most functions are queries of the store (workspace/queries.py), with a viewpoint
 identified by its facts.  What they read is in workspace/inputs.py.
 
     nodes.py     which nodes (workspace/resolved.py) a path, a kind or a tag means
-    model.py     a requirement with its words resolved
+    model.py, applied.py   a requirement with its words resolved, and what it applies to
     paths.py, terms.py, reader.py   reading paths, values and conditions
+    contexts.py   how deeply contexts are nested
     clauses.py, visits.py   what each verb demands, and which nodes are visited
     metadata.py   the clauses that demand nothing
     fingerprint.py, approval.py, approving.py   whether a requirement is approved as it is, and writing that

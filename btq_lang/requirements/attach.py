@@ -13,6 +13,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Diagnostic, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements import model, nodes
+from btq_lang.requirements.applied import Applied, Attachment, ResolvedArgument, Trace
 from btq_lang.requirements.definitions import requirement
 from btq_lang.requirements.paths import Problem
 from btq_lang.requirements.reader import Problems, Reader
@@ -37,8 +38,8 @@ class Attached(Record):
         traces: `satisfies` at nodes, for requirements whose claims all name their own subjects.
     """
 
-    applied: tuple[model.Applied, ...] = ()
-    traces: tuple[model.Trace, ...] = ()
+    applied: tuple[Applied, ...] = ()
+    traces: tuple[Trace, ...] = ()
     problems: Problems = ()
 
 
@@ -47,7 +48,7 @@ class Attached(Record):
 
 def uses_in(
     store: Store[Workspace], viewpoint: str, path: str, facts: Facts
-) -> tuple[tuple[model.Attachment, ...], Problems]:
+) -> tuple[tuple[Attachment, ...], Problems]:
     """What a tree or an `apply` attaches to which nodes, and what is wrong with that."""
     reader = Reader(store, viewpoint, path, facts)
     item = facts.item
@@ -69,7 +70,7 @@ def attached_names(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
 
 def applied_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> Attached:
     """What applies to nodes of a tree, in the order of the requirements; a span by the node that it begins at."""
-    by_name: dict[str, tuple[list[model.Applied], list[model.Attachment]]] = {}
+    by_name: dict[str, tuple[list[Applied], list[Attachment]]] = {}
     for applied in store.ask(_claimed_in, viewpoint, facts):
         by_name.setdefault(applied.requirement.name, ([], []))[0].append(applied)
     for use in uses_of_nodes(store, viewpoint, path, facts):
@@ -79,8 +80,8 @@ def applied_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts)
     names = [*by_name]
     if len(names) > 1:
         names.sort(key=store.ask(_order, viewpoint).__getitem__)
-    all_applied: list[model.Applied] = []
-    traces: list[model.Trace] = []
+    all_applied: list[Applied] = []
+    traces: list[Trace] = []
     problems: list[Problem] = []
     for name in names:
         claimed, uses = by_name[name]
@@ -91,7 +92,7 @@ def applied_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts)
     return Attached(tuple(all_applied), tuple(traces), tuple(problems))
 
 
-def attached_by(store: Store[Workspace], viewpoint: str, name: str, uses: Sequence[model.Attachment]) -> Attached:
+def attached_by(store: Store[Workspace], viewpoint: str, name: str, uses: Sequence[Attachment]) -> Attached:
     """What a requirement applies to by some of its attachments: all of those to certain nodes."""
     resolved, _ = store.ask(requirement, viewpoint, name)
     if not uses or resolved is None:
@@ -99,13 +100,13 @@ def attached_by(store: Store[Workspace], viewpoint: str, name: str, uses: Sequen
     indices = tuple([index for index, claim in enumerate(resolved.claims) if claim.subject is None])
     counting, problems = _most_specific(resolved, uses)
     if resolved.claims and not indices:
-        return Attached(traces=tuple([model.Trace(name, use.target.node) for use in counting]), problems=problems)
+        return Attached(traces=tuple([Trace(name, use.target.node) for use in counting]), problems=problems)
     filled = [(use, _with(store, viewpoint, resolved, indices, use.arguments)) for use in counting]
-    applied = [model.Applied(part, use.target, use.arguments, use.place, use.how) for use, part in filled]
+    applied = [Applied(part, use.target, use.arguments, use.place, use.how) for use, part in filled]
     return Attached(tuple(applied), problems=problems)
 
 
-def uses_of_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> Iterable[model.Attachment]:
+def uses_of_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> Iterable[Attachment]:
     """The attachments to nodes of a tree, in the order of the items that make them."""
     own, _ = store.ask(uses_in, viewpoint, path, facts)
     by_apply = store.ask(_attached_by_apply, viewpoint, facts) if store.ask(inputs.applies, viewpoint) else ()
@@ -115,12 +116,12 @@ def uses_of_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Fac
     return sorted((*own, *by_apply), key=lambda use: order[id(use.place.anchor)])
 
 
-def _attached_by_apply(store: Store[Workspace], viewpoint: str, facts: Facts) -> tuple[model.Attachment, ...]:
+def _attached_by_apply(store: Store[Workspace], viewpoint: str, facts: Facts) -> tuple[Attachment, ...]:
     """What `apply` items attach to nodes of a tree."""
     return store.ask(_attached_by_applies, viewpoint).get(facts, ())
 
 
-def _attached_by_applies(store: Store[Workspace], viewpoint: str) -> dict[Facts, tuple[model.Attachment, ...]]:
+def _attached_by_applies(store: Store[Workspace], viewpoint: str) -> dict[Facts, tuple[Attachment, ...]]:
     uses = [use for each in store.ask(inputs.applies, viewpoint) for use in store.ask(uses_in, viewpoint, *each)[0]]
     return _by_tree((use.target.node.facts, use) for use in uses)
 
@@ -128,7 +129,7 @@ def _attached_by_applies(store: Store[Workspace], viewpoint: str) -> dict[Facts,
 # ---- claims with a subject of their own ----
 
 
-def claimed(store: Store[Workspace], viewpoint: str, name: str) -> tuple[model.Applied, ...]:
+def claimed(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Applied, ...]:
     """What the claims of a requirement with subjects of their own apply to."""
     if name not in store.ask(inputs.claiming, viewpoint):
         return ()
@@ -136,16 +137,16 @@ def claimed(store: Store[Workspace], viewpoint: str, name: str) -> tuple[model.A
     return tuple(_by_subject(store, viewpoint, of_name)) if of_name is not None else ()
 
 
-def claimed_of_no_tree(store: Store[Workspace], viewpoint: str, name: str) -> tuple[model.Applied, ...]:
+def claimed_of_no_tree(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Applied, ...]:
     """What `claimed` returns for subjects that are in no tree: sums, and spans that do not begin with a node."""
     return tuple([each for each in store.ask(claimed, viewpoint, name) if _home(each) is None])
 
 
-def _claimed_in(store: Store[Workspace], viewpoint: str, facts: Facts) -> tuple[model.Applied, ...]:
+def _claimed_in(store: Store[Workspace], viewpoint: str, facts: Facts) -> tuple[Applied, ...]:
     return store.ask(_claimed_by_tree, viewpoint).get(facts, ())
 
 
-def _claimed_by_tree(store: Store[Workspace], viewpoint: str) -> dict[Facts, tuple[model.Applied, ...]]:
+def _claimed_by_tree(store: Store[Workspace], viewpoint: str) -> dict[Facts, tuple[Applied, ...]]:
     names = store.ask(inputs.claiming, viewpoint)
     pairs = [(_home(each), each) for name in names for each in store.ask(claimed, viewpoint, name)]
     return _by_tree((home, each) for home, each in pairs if home is not None)
@@ -158,7 +159,7 @@ def _by_tree(pairs: Iterable[tuple[Facts, T]]) -> dict[Facts, tuple[T, ...]]:
     return {facts: tuple(value) for facts, value in lists.items()}
 
 
-def _home(applied: model.Applied) -> Facts | None:
+def _home(applied: Applied) -> Facts | None:
     """The tree that a subject is in, or that a span or an event begins in."""
     subjects = [applied.subject if isinstance(applied.subject, model.NodeTarget | model.MissionRun) else None]
     for first in model.events_of(applied.subject)[:1]:
@@ -179,7 +180,7 @@ def _with(
     viewpoint: str,
     resolved: model.ResolvedRequirement,
     indices: tuple[int, ...],
-    arguments: tuple[model.ResolvedArgument, ...],
+    arguments: tuple[ResolvedArgument, ...],
 ) -> model.ResolvedRequirement:
     """A requirement with some of its claims, and with arguments in place of its parameters; cached, for most nodes get
     the same one."""
@@ -193,7 +194,7 @@ def _filled(
     viewpoint: str,
     name: str,
     indices: tuple[int, ...],
-    arguments: tuple[model.ResolvedArgument, ...],
+    arguments: tuple[ResolvedArgument, ...],
 ) -> model.ResolvedRequirement:
     resolved, _ = store.ask(requirement, viewpoint, name)
     assert resolved is not None, "the caller has resolved it"
@@ -222,12 +223,10 @@ def _filled_part(part: object, values: dict[str, model.Bounded]) -> object:
     return replace(part, **changes) if changes else part
 
 
-def _by_subject(
-    store: Store[Workspace], viewpoint: str, resolved: model.ResolvedRequirement
-) -> Iterator[model.Applied]:
+def _by_subject(store: Store[Workspace], viewpoint: str, resolved: model.ResolvedRequirement) -> Iterator[Applied]:
     """A claim's own subject takes precedence over what the requirement is attached to."""
     arguments = tuple(
-        model.ResolvedArgument(parameter.name, parameter.default)
+        ResolvedArgument(parameter.name, parameter.default)
         for parameter in resolved.parameters
         if parameter.default is not None
     )
@@ -246,10 +245,10 @@ def _by_subject(
     for subject, indices in groups.values():
         restricted = _with(store, viewpoint, resolved, tuple(indices), arguments)
         place = resolved.claims[indices[0]].place
-        yield model.Applied(restricted, subject, arguments, place, "subject")  # type: ignore[arg-type]  # no Every is left
+        yield Applied(restricted, subject, arguments, place, "subject")  # type: ignore[arg-type]  # no Every is left
 
 
-def _at_nodes(reader: Reader, tree: syntax.Tree) -> Iterator[model.Attachment]:
+def _at_nodes(reader: Reader, tree: syntax.Tree) -> Iterator[Attachment]:
     of_tree = reader.store.ask(tree_nodes, reader.viewpoint, reader.path, reader.facts)
     places: list[tuple[ResolvedNode | None, tuple[syntax.NodeClause, ...]]] = [(of_tree.root, tree.clauses)]
     places += [(node, node.node.clauses) for node in of_tree.all if node.node.clauses]
@@ -262,10 +261,10 @@ def _at_nodes(reader: Reader, tree: syntax.Tree) -> Iterator[model.Attachment]:
             arguments = _arguments(reader, resolved, written, word.span)
             if arguments is not None and node is not None:
                 place = reader.place(word.span)
-                yield model.Attachment(resolved.name, model.NodeTarget(node), arguments, _AT_NODE, "satisfies", place)
+                yield Attachment(resolved.name, model.NodeTarget(node), arguments, _AT_NODE, "satisfies", place)
 
 
-def _applied_by(reader: Reader, apply: syntax.Apply) -> Iterator[model.Attachment]:
+def _applied_by(reader: Reader, apply: syntax.Apply) -> Iterator[Attachment]:
     targets = [selected for selector in apply.targets for selected in _selected(reader, selector)]
     excepted = _excepted(reader, apply, {id(target.node) for target, _ in targets})
     for reference in apply.uses:
@@ -276,7 +275,7 @@ def _applied_by(reader: Reader, apply: syntax.Apply) -> Iterator[model.Attachmen
         place = reader.place(reference.name.span)
         for target, rank in targets:
             if id(target.node) not in excepted:
-                yield model.Attachment(resolved.name, target, arguments, rank, "apply", place)
+                yield Attachment(resolved.name, target, arguments, rank, "apply", place)
 
 
 def _requirement(reader: Reader, name: str) -> model.ResolvedRequirement | None:
@@ -325,7 +324,7 @@ def _selected(reader: Reader, selector: syntax.Selector) -> Iterator[tuple[model
 
 def _arguments(
     reader: Reader, resolved: model.ResolvedRequirement, written: syntax.Requirement | syntax.ReqRef, span: Span
-) -> tuple[model.ResolvedArgument, ...] | None:
+) -> tuple[ResolvedArgument, ...] | None:
     """The values of the parameters; None if one is missing or wrong, which is reported."""
     by_name: dict[str, model.Bounded] = {}
     complete = True
@@ -350,7 +349,7 @@ def _arguments(
     if missing or not complete:
         return None
     values = ((each.name, by_name.get(each.name, each.default)) for each in resolved.parameters)
-    return tuple(model.ResolvedArgument(name, value) for name, value in values if value is not None)
+    return tuple(ResolvedArgument(name, value) for name, value in values if value is not None)
 
 
 def _no_parameter(reader: Reader, resolved: model.ResolvedRequirement, argument: syntax.Argument) -> None:
@@ -365,13 +364,13 @@ def _no_parameter(reader: Reader, resolved: model.ResolvedRequirement, argument:
 
 
 def _most_specific(
-    resolved: model.ResolvedRequirement, uses: Sequence[model.Attachment]
-) -> tuple[list[model.Attachment], Problems]:
+    resolved: model.ResolvedRequirement, uses: Sequence[Attachment]
+) -> tuple[list[Attachment], Problems]:
     """One use for each node, or for each way that a path leads to it; and the problems where equally specific ones
     differ."""
-    counting: list[model.Attachment] = []
+    counting: list[Attachment] = []
     problems: list[Problem] = []
-    of_node: dict[tuple[int, tuple[str, ...]], list[model.Attachment]] = {}
+    of_node: dict[tuple[int, tuple[str, ...]], list[Attachment]] = {}
     for use in uses:
         of_node.setdefault((id(use.target.node), use.target.through), []).append(use)
     for same in of_node.values():
@@ -391,12 +390,12 @@ def _most_specific(
     return counting, tuple(problems)
 
 
-def _values(use: model.Attachment) -> tuple[object, ...]:
+def _values(use: Attachment) -> tuple[object, ...]:
     """Equal for arguments that mean the same, however they are written."""
     return tuple(getattr(argument.value, "si", argument.value) for argument in use.arguments)
 
 
-def _shown_arguments(use: model.Attachment) -> str:
+def _shown_arguments(use: Attachment) -> str:
     return ", ".join(f"{argument.name} = {argument.value.text}" for argument in use.arguments)
 
 

@@ -13,11 +13,12 @@ from typing import Final, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements import nodes
+from btq_lang.requirements.applied import Applied
 from btq_lang.requirements.attach import applied_in
 from btq_lang.requirements.budget_parts import UNKNOWN, Budget, mapped, opened, port_count, port_seconds
 from btq_lang.requirements.composition import compose
 from btq_lang.requirements.durations import ANY, ZERO, DurationTerm, Range, hull
-from btq_lang.requirements.model import Applied, NodeTarget, ResolvedClaim
+from btq_lang.requirements.model import NodeTarget, ResolvedClaim
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store, on_circle

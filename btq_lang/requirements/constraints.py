@@ -13,7 +13,7 @@ from typing import Final
 
 from btq_lang.catalog.verbs import COUNTING
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.grammar.claims import VERB_WORDS
+from btq_lang.grammar.claim_words import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.parser import parse
 from btq_lang.syntax.tree import Claim, Path, Requirement, Word

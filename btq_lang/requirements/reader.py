@@ -14,6 +14,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import a_dimension, to_si
 from btq_lang.diagnostics.model import Fix, replace_fix, write_fix
 from btq_lang.requirements import model
+from btq_lang.requirements.contexts import IN_CIRCLE, context_depth, contexts_by_word, contexts_in, written_context
 from btq_lang.requirements.paths import PathReader, Problem
 from btq_lang.requirements.terms import (
     DURATION,
@@ -37,12 +38,10 @@ from btq_lang.requirements.terms import (
 from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import NAME, NUMBER, QUANTITY, STRING
-from btq_lang.util.grouping import grouped
 from btq_lang.util.spelling import did_you_mean, long_words
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
-from btq_lang.workspace.item_index import Facts
-from btq_lang.workspace.queries import Store, on_circle
+from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
 
 Problems: TypeAlias = tuple[Problem, ...]
@@ -88,50 +87,17 @@ def context(store: Store[Workspace], viewpoint: str, name: str) -> tuple[model.C
         return None, ()
     reader = Reader(store, viewpoint, *definition)
     span = inputs.symbol(definition[1], Kind.CONTEXT, name).span
-    depth = store.ask(_depth, viewpoint, name)
-    if depth == _IN_CIRCLE:
+    depth = store.ask(context_depth, viewpoint, name)
+    if depth == IN_CIRCLE:
         reader.complain("cyclic-context", span, f"the context `{name}` refers to itself")
     elif depth > _DEEPEST:
         reader.complain("nested-too-deep", span, f"more than {_DEEPEST} levels of contexts in contexts")
     else:
-        written = _written_context(definition[1], name)
-        for other in _contexts_in(store, viewpoint, written):  # before its condition is read, deep in Python's stack
+        written = written_context(definition[1], name)
+        for other in contexts_in(store, viewpoint, written):  # before its condition is read, deep in Python's stack
             store.ask(context, viewpoint, other)
         return reader.condition(written.condition), reader.problems
     return None, reader.problems
-
-
-_IN_CIRCLE: Final = 0
-
-
-@on_circle(_IN_CIRCLE)
-def _depth(store: Store[Workspace], viewpoint: str, name: str) -> int:
-    """How deeply contexts are nested in a context, itself included."""
-    definition = store.ask(inputs.definition, viewpoint, Kind.CONTEXT, name)
-    if definition is None:
-        return 1
-    others = _contexts_in(store, viewpoint, _written_context(definition[1], name))
-    return 1 + max([store.ask(_depth, viewpoint, other) for other in others], default=0)
-
-
-def _contexts_by_word(store: Store[Workspace], viewpoint: str) -> dict[str, list[str]]:
-    return grouped(
-        (word, name) for name in store.ask(inputs.names, viewpoint, Kind.CONTEXT) for word in long_words(name)
-    )
-
-
-def _written_context(facts: Facts, name: str) -> syntax.Context:
-    written = inputs.symbol(facts, Kind.CONTEXT, name).target
-    assert isinstance(written, syntax.Context), "its kind says so"
-    return written
-
-
-def _contexts_in(store: Store[Workspace], viewpoint: str, written: syntax.Context) -> Iterator[str]:
-    """The contexts that a context names."""
-    words = [part.word for part in syntax.walk(written.condition) if isinstance(part, syntax.Operand)]
-    for name in [word.text for word in words if word.kind == NAME]:
-        if store.ask(inputs.definition, viewpoint, Kind.CONTEXT, name) is not None:
-            yield name
 
 
 class Reader(PathReader):
@@ -153,22 +119,22 @@ class Reader(PathReader):
 
     # ---- values ----
 
-    def bounded(self, written: syntax.Bounded | None, wanted: Wanted | None) -> model.Bounded | None:
-        """A value, or a table of values, of the wanted kind; None: any."""
+    def bounded(self, written: syntax.Bounded | None, expected: Wanted | None) -> model.Bounded | None:
+        """A value, or a table of values, of the expected kind; None: any."""
         if written is None:
             return None
         if isinstance(written, syntax.Amount):
-            term = self._amount(written, wanted)
-            fits = term is not None and (wanted is None or self._fits(term, wanted))
+            term = self._amount(written, expected)
+            fits = term is not None and (expected is None or self._fits(term, expected))
             return simple(term.value) if term is not None and fits else None
         cases = []
         for case in written.cases:
-            value = self.bounded(case.value, wanted)
+            value = self.bounded(case.value, expected)
             condition = self.condition(case.condition) if case.condition is not None else None
             if value is None or isinstance(value, model.ResolvedTable) or condition is None:
                 return None
             cases.append(model.ResolvedCase(value, condition))
-        otherwise = self.bounded(written.otherwise, wanted)
+        otherwise = self.bounded(written.otherwise, expected)
         if otherwise is None or isinstance(otherwise, model.ResolvedTable):
             return None
         return model.ResolvedTable((*cases, model.ResolvedCase(otherwise, None)))
@@ -189,17 +155,17 @@ class Reader(PathReader):
                 return None
         return bounded
 
-    def quantity(self, word: syntax.Word | None, wanted: Wanted) -> model.Quantity | None:
+    def quantity(self, word: syntax.Word | None, expected: Wanted) -> model.Quantity | None:
         """A quantity or a number by itself."""
         term = self._number(word, False) if word is not None else None
-        if term is None or not self._fits(term, wanted):
+        if term is None or not self._fits(term, expected):
             return None
         return term.value if isinstance(term.value, model.Quantity) else None
 
-    def _amount(self, amount: syntax.Amount, wanted: Wanted | None) -> Term | None:
+    def _amount(self, amount: syntax.Amount, expected: Wanted | None) -> Term | None:
         if amount.word.kind in (NUMBER, QUANTITY):
             return self._number(amount.word, amount.negative)
-        return self._named(amount.word, unit=wanted.unit if wanted is not None else None, in_bound=True)
+        return self._named(amount.word, unit=expected.unit if expected is not None else None, in_bound=True)
 
     def _number(self, word: syntax.Word, negative: bool) -> Term | None:
         raw = f"-{word.raw}" if negative else word.raw
@@ -228,7 +194,7 @@ class Reader(PathReader):
 
         Args:
             beside: what it is compared with.
-            unit: wanted, if it is not compared with anything.
+            unit: expected, if it is not compared with anything.
             in_bound: whether no subtraction can be written there.
         """
         name = word.text
@@ -276,7 +242,7 @@ class Reader(PathReader):
     def _sharing_a_word(self, name: str) -> tuple[str, ...]:
         """The contexts that have a word in common with a name: `people_near` for `person_near`; none if more than three
         have."""
-        by_word = self.store.ask(_contexts_by_word, self.viewpoint)
+        by_word = self.store.ask(contexts_by_word, self.viewpoint)
         sharing = sorted({context for word in long_words(name) for context in by_word.get(word, ())})
         return tuple(sharing) if len(sharing) <= 3 else ()
 
@@ -295,22 +261,22 @@ class Reader(PathReader):
     def _is_declared(self, name: str) -> bool:
         return self._is_value(name) or self.is_context(name)
 
-    def _fits(self, term: Term, wanted: Wanted) -> bool:
-        """Whether a value is of the wanted kind; else that is reported."""
+    def _fits(self, term: Term, expected: Wanted) -> bool:
+        """Whether a value is of the expected kind; else that is reported."""
         if term.sort != "number":
-            self._unexpected(wanted.what, term)
+            self._unexpected(expected.what, term)
             return False
         if term.dimension is None:
             return True
-        if term.dimension in wanted.dimensions:
-            if wanted.level == "difference" and term.level == "level":
+        if term.dimension in expected.dimensions:
+            if expected.level == "difference" and term.level == "level":
                 self._level(term)
                 return False
             return True
-        if term.is_bare and wanted.unit is not None:
-            self._bare(term, f"expected {wanted.what}", wanted.unit)
+        if term.is_bare and expected.unit is not None:
+            self._bare(term, f"expected {expected.what}", expected.unit)
         else:
-            self._unexpected(wanted.what, term)
+            self._unexpected(expected.what, term)
         return False
 
     def _unexpected(self, what: str, term: Term) -> None:

@@ -7,17 +7,10 @@ from typing import Final
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.requirements import nodes
+from btq_lang.requirements.applied import Applied, Attachment, Trace
 from btq_lang.requirements.attach import applied_in, attached_by, claimed, uses_in
 from btq_lang.requirements.definitions import requirement
-from btq_lang.requirements.model import (
-    Applied,
-    Attachment,
-    Condition,
-    ResolvedClaim,
-    ResolvedRequirement,
-    ResolvedSignal,
-    Trace,
-)
+from btq_lang.requirements.model import Condition, ResolvedClaim, ResolvedRequirement, ResolvedSignal
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.requirements.paths import Problem
 from btq_lang.requirements.reader import Problems, context, signal

@@ -37,14 +37,14 @@ def chained(overview: Overview, projects: Iterable[Project], shown: Callable[[st
         external=tuple(
             ExternalRow(
                 f"x{number}",
-                each.id,
-                each.title,
-                each.status,
-                each.url,
-                At(shown(each.path), each.line, 1),
-                tuple(dict.fromkeys((*refining.get(each.id, ()), *mitigating.get(each.id, ())))),
+                requirement.id,
+                requirement.title,
+                requirement.status,
+                requirement.url,
+                At(shown(requirement.path), requirement.line, 1),
+                tuple(dict.fromkeys((*refining.get(requirement.id, ()), *mitigating.get(requirement.id, ())))),
             )
-            for number, each in enumerate(imported.values(), 1)
+            for number, requirement in enumerate(imported.values(), 1)
         ),
         wants_sources=any(project.requirements.requires_source for project in projects if project.requirements),
     )

@@ -20,8 +20,9 @@ from btq_lang.evidence.sentences import result
 from btq_lang.evidence.verdicts import WORST_FIRST, RequirementVerdict, worst_of
 from btq_lang.graph.figure import Box, MeasuredClause, Note
 from btq_lang.graph.missions import by_tree, concerns, figure, requirement_note
+from btq_lang.requirements.applied import Applied
 from btq_lang.requirements.approval import approval_state
-from btq_lang.requirements.model import Applied, MissionRun, NodeTarget, ResolvedRequirement
+from btq_lang.requirements.model import MissionRun, NodeTarget, ResolvedRequirement
 from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.syntax.tree import Hazard, QualityDecl, written
 from btq_lang.trace.chain import chained

@@ -55,7 +55,8 @@ def render(overview: Overview, missions: Sequence[MissionVerdicts] = ()) -> str:
         state_of=state_of,
         requirement_heads=("Requirement", "Holds for", "How", *(("Evidence",) if overview.has_evidence else ())),
         requirements=[
-            _requirement(each, characteristics.get(each.quality_key or "") or "-") for each in overview.requirements
+            _requirement(requirement, characteristics.get(requirement.quality_key or "") or "-")
+            for requirement in overview.requirements
         ],
         build_heads=("Requirement", *(build.label or NO_LABEL for build in overview.builds)),
         by_build=list(overview.by_build),
@@ -63,8 +64,8 @@ def render(overview: Overview, missions: Sequence[MissionVerdicts] = ()) -> str:
         gaps=_gaps(overview),
         edition=overview.edition,
         totals=[
-            (each.name, [number or "–" for number in each.numbers], "" if any(each.numbers) else "empty")
-            for each in overview.totals
+            (total.name, [number or "–" for number in total.numbers], "" if any(total.numbers) else "empty")
+            for total in overview.totals
         ],
         trees=[_tree(tree, drawing) for tree, drawing in zip(overview.trees, drawings, strict=True)],
     )

@@ -138,7 +138,7 @@ def _numbers(line: SignalLine, length: float) -> PageData:
     drawn = [*numbers, *(value.si for _, value in line.bounds)]
     low, high = min(drawn), max(drawn)
     first, last, least, most = (
-        quantity(each, line.unit) for each in (numbers[0], numbers[-1], min(numbers), max(numbers))
+        quantity(number, line.unit) for number in (numbers[0], numbers[-1], min(numbers), max(numbers))
     )
 
     def up(value: float) -> float:

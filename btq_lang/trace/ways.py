@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.btcpp.enforceability import way_instead
 from btq_lang.graph.missions import clauses_in_words
-from btq_lang.requirements.model import Applied
+from btq_lang.requirements.applied import Applied
 from btq_lang.requirements.resolve import Requirements
 from btq_lang.trace.overview import Clause
 from btq_lang.workspace.workspace import Workspace

@@ -73,10 +73,10 @@ class File:
             facts_before = self.facts
             items = [entry.item for entry in after.parsed.entries]
             facts_after = after.facts = {id(item): facts_before.get(id(item)) or Facts(item) for item in items}
-            gone = [item_facts for item, item_facts in facts_before.items() if item not in facts_after]
+            removed = [item_facts for item, item_facts in facts_before.items() if item not in facts_after]
             come = [item_facts for item, item_facts in facts_after.items() if item not in facts_before]
-            after._tallies = {sort: tally.edited(gone, come) for sort, tally in self._tallies.items()}
-            touched = {type(item_facts.item) for item_facts in (*gone, *come)}
+            after._tallies = {sort: tally.edited(removed, come) for sort, tally in self._tallies.items()}
+            touched = {type(item_facts.item) for item_facts in (*removed, *come)}
             after._of_type = {kind: items for kind, items in self._of_type.items() if kind not in touched}
             if "includes" in self.__dict__ and Include not in touched:
                 after.includes = self.includes
@@ -86,7 +86,7 @@ class File:
                 edited = text[max(change.start - longest, 0) : end]
                 after.has_directives = any(word in edited for word in _DIRECTIVES)
             if "names" in self.__dict__:
-                names = self.names.edited(gone, come)
+                names = self.names.edited(removed, come)
                 if names is not None:
                     after.names = names
             if "lines" in self.__dict__:
@@ -96,7 +96,7 @@ class File:
                 is_in_line = _LINE_ENDS.isdisjoint((*self.text[change.start : change.end], *replacing))
                 if is_in_line and after.lines.line_count == self.lines.line_count:  # no \r has been joined to a \n
                     places = after.item_places = self.item_places.copy()
-                    for item_facts in gone:
+                    for item_facts in removed:
                         del places[id(item_facts.item)]
                     places.update(
                         (id(item_facts.item), after.lines.place(after.start_of(item_facts.item))) for item_facts in come

@@ -97,10 +97,10 @@ class NameCounts:
             counts[name] = counts.get(name, 0) + 1
         return cls(sort, counts)
 
-    def edited(self, gone: Iterable[Facts], come: Iterable[Facts]) -> NameCounts:
+    def edited(self, removed: Iterable[Facts], come: Iterable[Facts]) -> NameCounts:
         """The tally after an edit that replaced some items; the same object if it is equal."""
         changes: dict[str, int] = {}
-        for facts, change in (*((each, 1) for each in come), *((each, -1) for each in gone)):
+        for facts, change in (*((each, 1) for each in come), *((each, -1) for each in removed)):
             for name in facts.names_used(self._sort):
                 changes[name] = changes.get(name, 0) + change
         if not any(changes.values()):

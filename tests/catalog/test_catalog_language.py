@@ -9,7 +9,7 @@ import pytest
 
 from btq_lang.catalog.language import PHRASES, Phrase, beginning, phrase_at, phrases_of
 from btq_lang.catalog.verbs import COUNTING
-from btq_lang.grammar.claims import HAPPENINGS, VERB_WORDS
+from btq_lang.grammar.claim_words import HAPPENINGS, VERB_WORDS
 from btq_lang.grammar.clauses import ACTIONS, AVERAGE, EXPERIMENTS, METHODS, TIME
 from btq_lang.grammar.conditions import FUNCTIONS, HEADS, METADATA_HEADS
 from btq_lang.grammar.hazards import HAZARD_HEADS

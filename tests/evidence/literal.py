@@ -27,7 +27,8 @@ if TYPE_CHECKING:
     from literal_runs import Activation
     from literal_verbs import Part, Verdict
 
-    from btq_lang.requirements.model import Applied, ResolvedClaim, ResolvedRequirement
+    from btq_lang.requirements.applied import Applied
+    from btq_lang.requirements.model import ResolvedClaim, ResolvedRequirement
 
 
 @dataclass(frozen=True)

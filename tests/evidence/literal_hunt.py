@@ -24,9 +24,9 @@ from btq_lang.evidence.evaluate import MissionEvaluation
 from btq_lang.evidence.model import LogSession
 from btq_lang.evidence.odds import lower_limit, upper_limit
 from btq_lang.evidence.verdicts import ClauseVerdict
+from btq_lang.requirements.applied import Applied
 from btq_lang.requirements.model import (
     Age,
-    Applied,
     Compare,
     DurationSum,
     Interval,
@@ -127,7 +127,11 @@ def literal_of(made: Case) -> Literal:
         return [uid for _, uid in made.joined.instances(target) if uid is not None]
 
     ages: dict[str, set[int]] = {}
-    for compare in parts_in((made.mission.requirements.applied, (*made.mission.requirements.contexts.values(),))):
+    requirements = made.mission.requirements
+    applied = tuple(
+        (part.requirement, part.subject, *(each.value for each in part.arguments)) for part in requirements.applied
+    )
+    for compare in parts_in((applied, (*requirements.contexts.values(),))):
         numbers = compare.operands if isinstance(compare, Compare) else ()
         for age in numbers:
             if isinstance(age, Age):

@@ -120,7 +120,7 @@ def test_there_are_no_more_steps_than_are_kept() -> None:
         None,
     )
     (demand,) = demands(mission.requirements)
-    edge = edge_of(demand.claim, demand.applied.subject if demand.applied else None, demand.requirement)
+    edge = edge_of(demand.claim, demand.subject, demand.requirement)
     assert edge is not None
     found = Margins(of_runs=False)
     for number in range(10_000):

@@ -14,7 +14,7 @@ import pytest
 from seeds import seeds
 
 from btq_lang import grammar as productions
-from btq_lang.grammar.claims import HAPPENINGS, VERB_WORDS
+from btq_lang.grammar.claim_words import HAPPENINGS, VERB_WORDS
 from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS, HEADS, METADATA_HEADS
 from btq_lang.grammar.hazards import HAZARD_HEADS

@@ -9,7 +9,7 @@ from __future__ import annotations
 import pytest
 from syntax_asserts import assert_fix, assert_invariants, assert_parse, escaped, show_problems, written
 
-from btq_lang.grammar.claims import HAPPENINGS, VERB_WORDS
+from btq_lang.grammar.claim_words import HAPPENINGS, VERB_WORDS
 from btq_lang.grammar.clauses import EXPERIMENTS
 from btq_lang.grammar.conditions import FUNCTIONS, HEADS
 from btq_lang.grammar.item_words import ITEM_WORDS

@@ -46,6 +46,7 @@ ROWS = (
 )
 ROW_OF = {room: row for row, rooms in enumerate(ROWS) for room in rooms}
 READS_THE_DISK = {"workspace/loader.py", "diagnostics/rules/__init__.py", "preview/__init__.py"}
+MOST_LINES = 600
 READS_LOGS = ("evidence/readers/", "evidence/store/")
 # Which rooms know a package of others.
 ONLY_IN = {
@@ -128,6 +129,15 @@ def test_no_circle_exists() -> None:
 def test_the_top_of_the_package_is_small() -> None:
     names = {path.name for path in PACKAGE.iterdir() if path.is_file()}
     assert names == {"__init__.py", "__main__.py", "cli.py", "lexer.py", "parser.py", "py.typed", "server.py"}
+
+
+def test_a_module_has_at_most_600_lines() -> None:
+    """A longer one is parted where a stranger expects it."""
+    lines = {
+        path.relative_to(PACKAGE).as_posix(): len(path.read_text(encoding="utf-8").splitlines())
+        for path in MODULES.values()
+    }
+    assert {module: count for module, count in lines.items() if count > MOST_LINES} == {}
 
 
 def test_a_package_names_its_modules() -> None:

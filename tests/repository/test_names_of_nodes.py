@@ -15,7 +15,7 @@ NAMING = {
     "btcpp/enforcement.py": "writes these",
     "btcpp/guards.py": "writes these",
     "btcpp/wrappers.py": "writes these, and says which nodes enforce clauses",
-    "grammar/nodes.py": "writes one for `!Dark`",
+    "grammar/node_mistakes.py": "writes one for `!Dark`",
     "simulator/kinds.py": "has a function for each",
     "ide/refactor.py": "offers nodes to put around another one, and writes them",
 }

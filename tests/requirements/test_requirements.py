@@ -7,10 +7,10 @@ from check_asserts import assert_clean, split_files
 from requirement_problems import problems_of
 from worked_mission import WORKED
 
+from btq_lang.requirements.applied import Applied
 from btq_lang.requirements.model import (
     Aggregate,
     All,
-    Applied,
     Arithmetic,
     ClassicScript,
     Compare,

@@ -109,13 +109,13 @@ def _reader(path: str) -> ModuleType:
 
 def whole_bags(paths: Iterable[str]) -> tuple[str, ...]:
     """Paths with the files of a bag replaced by the bag's folder, where its `metadata.yaml` is among them."""
-    wanted = dict.fromkeys(paths)
+    unique = dict.fromkeys(paths)
     files = {
         file: folder
-        for folder in (os.path.dirname(path) for path in wanted if os.path.basename(path) == bag.METADATA)
+        for folder in (os.path.dirname(path) for path in unique if os.path.basename(path) == bag.METADATA)
         for file in bag.files_in(folder)
     }
-    kept = (path for path in wanted if path in files or not path.endswith(bag.METADATA))
+    kept = (path for path in unique if path in files or not path.endswith(bag.METADATA))
     return tuple(dict.fromkeys(files.get(path, path) for path in kept))
 
 

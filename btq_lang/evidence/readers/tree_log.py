@@ -35,13 +35,13 @@ def read(path: str, sources: Iterable[SignalSource] = ()) -> Iterator[NamedLog]:
         topics = Topics(sources, [connection.topic for connection in bag.connections], map(_namespace, logs))
         trees_by_robot: dict[str, dict[str, LoggedTree]] = {}
         malformed = 0
-        wanted = [*bag.of_type(TREE_LOG), *bag.of_type(TEXT)]
-        wanted += [
+        connections = [*bag.of_type(TREE_LOG), *bag.of_type(TEXT)]
+        connections += [
             connection
             for connection in bag.connections
-            if connection.topic in topics.names and connection not in wanted
+            if connection.topic in topics.names and connection not in connections
         ]
-        for topic, received, message in bag.messages(wanted):
+        for topic, received, message in bag.messages(connections):
             if topic in logs:
                 malformed += logs[topic].add(received, message)
                 continue

@@ -58,12 +58,12 @@ class BagDatabase(ExitStack):
         Raises:
             sqlite3.Error: the next one cannot be read.
         """
-        wanted = {connection.id: connection for connection in connections}
+        by_id = {connection.id: connection for connection in connections}
         for topic, received, data in self._database.execute(
             "SELECT topic_id, timestamp, data FROM messages ORDER BY id"
         ):
-            if topic in wanted:
-                yield wanted[topic], received, data
+            if topic in by_id:
+                yield by_id[topic], received, data
 
 
 class WholeFile(Record):
@@ -137,13 +137,13 @@ class _Parts(RawIOBase):
         self._position += len(data)
         return len(data)
 
-    def _at(self, position: int, wanted: int) -> bytes:
+    def _at(self, position: int, count: int) -> bytes:
         for begin, end in self._parts:
             if position < end - begin:
                 self._file.seek(begin + position)
-                return self._file.read(min(wanted, end - begin - position))
+                return self._file.read(min(count, end - begin - position))
             position -= end - begin
-        return _NO_INDEX[position : position + wanted]
+        return _NO_INDEX[position : position + count]
 
     def close(self) -> None:
         self._file.close()

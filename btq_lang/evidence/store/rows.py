@@ -18,6 +18,7 @@ from contextlib import ExitStack
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
+from btq_lang.evidence.clause_findings import marks_of
 from btq_lang.evidence.identity import Joined, without_number
 from btq_lang.evidence.model import Activation, LoggedTree
 from btq_lang.evidence.outline import open_clauses, open_reason
@@ -130,7 +131,9 @@ class MissionRows:
             row = replace(verdict, text=text, path=node)
             if findings.pool is not None:
                 written.unit = findings.pool.demanded.unit.symbol
-            self._write(written, requirement, row, findings.has_run, findings.missing, clause.marks(), findings.pool)
+            self._write(
+                written, requirement, row, findings.has_run, findings.missing, marks_of(clause.demand), findings.pool
+            )
         for requirement in self._open:
             for verdict in open_clauses(requirement):
                 self._write(_Clause(self._rows.clauses), requirement, verdict, False, verdict.why, {})

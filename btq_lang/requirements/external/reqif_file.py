@@ -74,7 +74,9 @@ def _objects(text: str) -> Iterator[tuple[str, dict[str, str]]]:
     content = bundle.core_content.req_if_content if bundle.core_content is not None else None
     types, data_types = bundle.lookup.spec_types_lookup, bundle.lookup.data_types_lookup
     choices = {
-        choice.identifier: choice for each in data_types.values() for choice in getattr(each, "values", None) or ()
+        choice.identifier: choice
+        for data_type in data_types.values()
+        for choice in getattr(data_type, "values", None) or ()
     }
     names = {
         attribute.identifier: attribute.long_name or attribute.identifier
