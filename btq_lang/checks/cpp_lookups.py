@@ -47,6 +47,14 @@ def registers_all(workspace: Workspace, viewpoint: str) -> bool:
     )
 
 
+@of_name
+def is_only_in_trees(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
+    """Whether only files with trees have a model of a node, and no file of those that `nodes` names."""
+    scope = workspace.scope(viewpoint)
+    definitions = scope.all(kind, name)
+    return bool(definitions) and not any(definition.path in scope.node_paths for definition in definitions)
+
+
 @of_viewpoint
 def is_in_cpp(workspace: Workspace, viewpoint: str, name: str) -> bool:
     """Whether C++ that the project names has a string with this text: its program may create a tree of the name, or

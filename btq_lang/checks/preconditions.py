@@ -53,16 +53,18 @@ def while_skip_is_success(view: View) -> Iterator[Diagnostic]:
         step, parent = _skipped(resolved)
         if parent is None or not _takes_for_success(parent, step) or _is_choice(parent, step):
             continue
+        is_last = parent.flow == "sequence" and step.index + 1 == len(parent.node.children)
         message = (
-            f"when `_while` becomes false, {resolved.shown_kind} is halted and {parent.shown_kind} continues "
-            "as if it had succeeded"
+            f"when `_while` becomes false, {resolved.shown_kind} is halted and {parent.shown_kind} "
+            f"{'succeeds' if is_last else 'continues as if it had succeeded'}"
         )
         notes = (
             "the halted node returns SKIPPED, which a Sequence treats as done",
             f"to fail instead, use {view.spelt('R->')} with a ScriptCondition in front of the node"
             + ("" if view.is_xml else ", or a requirement with `keeps`"),
         )
-        yield Diagnostic("while-skip-is-success", pair.key.span, message, notes=notes)
+        severity = Severity.HINT if is_last else None  # nothing runs that should not
+        yield Diagnostic("while-skip-is-success", pair.key.span, message, notes=notes, severity=severity)
 
 
 def skipped_condition(view: View) -> Iterator[Diagnostic]:

@@ -39,10 +39,11 @@ def reactive_multiple_async(view: View) -> Iterator[Diagnostic]:
         for below in resolved.children:
             child, results = below.node, result(view, below.node)
             pauses = _pauses(view, below)
-            if pausing is not None and not surely and (pauses or results.first == RUNNING):
+            restarts = not _resumes(below)
+            if pausing is not None and restarts and not surely and (pauses or results.first == RUNNING):
                 yield _pauses_again(resolved, pausing, child)
                 break
-            if first is not None and results.ever & RUNNING:
+            if first is not None and restarts and results.ever & RUNNING:
                 yield _never_gets_further(view, resolved, first, child, surely)
                 break
             if first is None and not results.usual & goes_on and results.ever & goes_on:
@@ -135,6 +136,13 @@ def _never_gets_further(view: View, resolved: ResolvedNode, first: Node, child: 
     related = (Related(Place(first.head.span), "restarts"),)
     severity = None if surely else Severity.HINT
     return Diagnostic("reactive-multiple-async", child.head.span, message, related, notes, severity=severity)
+
+
+def _resumes(resolved: ResolvedNode) -> bool:
+    """Whether a node, or what it decorates, goes on where it was when it was halted."""
+    while resolved.kind is not None and resolved.kind.category == "Decorator" and len(resolved.children) == 1:
+        (resolved,) = resolved.children
+    return resolved.kind is not None and resolved.kind.keeps_place
 
 
 def _pauses(view: View, resolved: ResolvedNode) -> bool:

@@ -37,6 +37,20 @@ def stale_model(view: View) -> Iterator[Diagnostic]:
         for port in model.ports:
             if port.id is not None:
                 yield from _of_port(view, model, port, other)
+    if view.is_xml and view.ask(cpp_lookups.registers_all):
+        yield from _unregistered(view)
+
+
+def _unregistered(view: View) -> Iterator[Diagnostic]:
+    """The models of nodes that trees have and no C++ of the factory registers."""
+    for symbol in view.facts.summary.symbols:
+        is_used = symbol.kind is Kind.MODEL and symbol.name in view.ask(lookups.used, Kind.MODEL)
+        is_registered = view.ask(cpp_lookups.is_in_cpp, symbol.name)  # in a way that is not seen
+        if is_used and not is_registered and view.ask(cpp_lookups.is_only_in_trees, Kind.MODEL, symbol.name):
+            message = (
+                f"no C++ of the factory registers `{symbol.name}`: the engine does not read models, and refuses it"
+            )
+            yield Diagnostic(_RULE, symbol.span, message)
 
 
 def _of_port(view: View, model: Model, port: Port, other: lookups.Declaration) -> Iterator[Diagnostic]:

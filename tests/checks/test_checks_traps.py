@@ -188,6 +188,17 @@ def test_only_the_mission_has_priorities() -> None:
     assert findings(text, RECHECK) == []
 
 
+@pytest.mark.parametrize("decorator", ["", "Inverter", "Timeout (msec = 5 s)"])
+def test_a_node_that_resumes_after_a_halt_gets_further(decorator: str) -> None:
+    """Run in 4.6 and 4.10: two of SequenceWithMemory in a ReactiveSequence succeed."""
+    steps = ("Sleep (msec = 10)", "Sleep (msec = 10)")
+    first = ("    M->", *(f"        {step}" for step in steps))
+    lines = first if not decorator else (f"    {decorator}", *(f"    {line}" for line in first))
+    assert findings(tree("R->", *first, *lines), REACTIVE) == []
+    plain = [line.replace("M->", "->") for line in lines]
+    assert len(findings(tree("R->", *first, *plain), REACTIVE)) == 1
+
+
 # ---- one-shot-monitor ----
 
 
@@ -235,7 +246,8 @@ WATCHED = 'Action Work (_while = "x")'
 def test_a_sequence_takes_skipped_for_success(parent: str) -> None:
     message = f"when `_while` becomes false, `Work` is halted and `{parent}` continues as if it had succeeded"
     assert findings(tree(parent, f"    {WATCHED}", "    Condition Next"), WHILE) == [f"3 warning «_while» {message}"]
-    assert findings(tree(parent, "    Condition First", f"    {WATCHED}"), WHILE) == [f"4 warning «_while» {message}"]
+    message = f"when `_while` becomes false, `Work` is halted and `{parent}` succeeds"
+    assert findings(tree(parent, "    Condition First", f"    {WATCHED}"), WHILE) == [f"4 hint «_while» {message}"]
 
 
 def test_decorators_pass_it_on() -> None:

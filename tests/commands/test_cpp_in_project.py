@@ -548,6 +548,28 @@ def test_a_stale_model_in_a_file_of_models_declares_no_port(robot: Path) -> None
     assert check(robot, "trees", "models.btq") == [stale, of_tree]
 
 
+def test_a_model_registers_no_node(robot: Path) -> None:
+    """Not where C++ may register it in a way that is not seen, nor where `nodes` names the file of the model."""
+    factory = '[[factory]]\nname = "a"\nload = ["trees/*"]\nnodes = ["src/*.cpp"{}]\n'
+    model = '<TreeNodesModel><Action ID="Ghost"/></TreeNodesModel>'
+    write(robot, "btq.toml", factory.format(""))
+    write(
+        robot,
+        "src/drive.cpp",
+        SOURCE.replace("BT_REGISTER_NODES(factory)", "void run(BT::BehaviorTreeFactory& factory)"),
+    )
+    tree = '<BehaviorTree ID="Other"><Sequence><IsOpen/><Ghost/></Sequence></BehaviorTree>'
+    write(robot, "trees/m.xml", f'<root BTCPP_format="4">\n{tree}\n{model}\n</root>\n')
+    stale = "no C++ of the factory registers `Ghost`: the engine does not read models, and refuses it"
+    assert check(robot, "trees") == [f"trees/m.xml:3:29: warning[stale-model] {stale}"]
+    write(robot, "src/ghost.cpp", '// add("Ghost");\n')
+    assert check(robot, "trees") == []
+    (robot / "src/ghost.cpp").unlink()
+    write(robot, "models.xml", f"<root>{model}</root>\n")
+    write(robot, "btq.toml", factory.format(', "models.xml"'))
+    assert check(robot, "trees") == []
+
+
 def test_where_not_all_ports_of_the_cpp_are_seen_a_model_may_have_more(robot: Path) -> None:
     write(robot, "src/drive.cpp", SOURCE.replace("return {", "return more({").replace('"code") };', '"code") });'))
     tree = "\nBehaviorTree Main\n    Drive (goal = {g} rate = 1)\n"
