@@ -27,7 +27,25 @@ def parse(text: str) -> Node:
     # A macro between `class` and its name, which exports it, is not C++ before the preprocessor has run.
     plain = _EXPORTED.sub(lambda match: match[1] + " " * len(match[2]), text)
     root: Node = _parser().parse(plain.encode("utf-8", "replace")).root_node
+    if root.has_error and (without := _without_inner_conditions(plain)) != plain:
+        other: Node = _parser().parse(without.encode("utf-8", "replace")).root_node
+        root = other if len([*errors(other)]) < len([*errors(root)]) else root
     return root
+
+
+def _without_inner_conditions(text: str) -> str:
+    """A text without the lines `#if` … `#endif` inside of brackets, which the grammar cannot read: what is between
+    them is left, as if all conditions held."""
+    lines = text.splitlines(keepends=True)
+    depth = 0
+    for index, line in enumerate(lines):
+        if _CONDITIONAL(line):
+            if depth:
+                lines[index] = re.sub(r"[^\r\n]", " ", line)
+            continue
+        code = _NO_CODE.sub("", line)
+        depth = max(0, depth + code.count("(") - code.count(")"))
+    return "".join(lines)
 
 
 @cache
@@ -132,4 +150,6 @@ def enclosing(node: Node, kinds: tuple[str, ...]) -> Node | None:
 
 LAMBDAS: Final = frozenset(("lambda_expression",))
 _EXPORTED: Final = re.compile(r"(\b(?:class|struct)\s+)([A-Z][A-Z0-9_]+)(?=\s+[A-Za-z_]\w*\s*(?:final\s*)?[:{])")
+_CONDITIONAL: Final = re.compile(r"[ \t]*#[ \t]*(?:if|ifdef|ifndef|elif|else|endif)\b").match
+_NO_CODE: Final = re.compile(r"//.*|\"(?:[^\"\\]|\\.)*\"|'[()]'|/\*.*?\*/")
 _ESCAPED: Final = {"\\n": "\n", "\\t": "\t", '\\"': '"', "\\'": "'", "\\\\": "\\"}

@@ -70,12 +70,18 @@ class PortsReader:
     def _of_class(self, bound: BoundClass, place: SourcePosition, depth: int = 0) -> Ports:
         for ancestor in self.sources.ancestry(bound):
             if bodies := self.sources.methods(ancestor, "providedPorts"):
-                node, path = bodies[0]
-                return Body(self, Frame(ancestor, ancestor.scope, path, depth)).result(node)
+                ports: Ports = {}
+                for node, path in bodies:  # of branches of `#if`: what any of them provides may be there
+                    of_branch = Body(self, Frame(ancestor, ancestor.scope, path, depth)).result(node)
+                    ports = {**of_branch, **ports}
+                if len(bodies) > 1:
+                    message = f"`{ancestor.name}::providedPorts` is here {len(bodies)} times, and one of them counts"
+                    self.incomplete(message, self.sources.place_of(*bodies[0][::-1]))
+                return ports
             if ancestor.class_ is None:
-                if (ports := self._of_library(ancestor, place)) is not None:
-                    if ports:
-                        return ports
+                if (of_library := self._of_library(ancestor, place)) is not None:
+                    if of_library:
+                        return of_library
                     continue
                 self.incomplete(f"`{ancestor.name}` is not in the sources, and may provide ports", place)
             elif "providedPorts" in ancestor.class_.promised:

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 
 _OWN: Final = frozenset(("this",))
+_OF_BASE: Final = frozenset(("this", ""))  # in a method that a derived class overrides: it may never be called
 
 
 class Uses:
@@ -45,6 +46,7 @@ class Uses:
     def of_class(cls, sources: CppSources, bound: BoundClass) -> Uses:
         """The uses in the methods of a class and of its bases."""
         uses = cls(sources)
+        overriding: set[str] = set()
         for ancestor in sources.ancestry(bound):
             if ancestor.class_ is None:
                 uses.complete = uses.complete and ancestor.name.rpartition("::")[2] in ENGINE
@@ -53,7 +55,9 @@ class Uses:
             uses.complete = uses.complete and ancestor.class_.promised <= {name for name, *_ in bodies}
             for name, node, path in bodies:
                 if not _PROVIDES(name):
-                    uses._read(node, Frame(ancestor, ancestor.scope, path))
+                    names = _OF_BASE if name in overriding else _OWN
+                    uses._read(node, Frame(ancestor, ancestor.scope, path), names)
+            overriding |= {name for name, *_ in bodies}
         return uses
 
     @classmethod

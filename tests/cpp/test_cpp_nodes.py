@@ -685,6 +685,53 @@ def test_ports_that_the_code_never_names_and_names_that_are_no_ports() -> None:
     ]
 
 
+def test_a_method_that_the_class_overrides_reads_no_port_of_it() -> None:
+    base = """
+        struct Base : BT::StatefulActionNode {
+          static PortsList providedPorts() { return { InputPort<int>("x"), InputPort<int>("y") }; }
+          NodeStatus onStart() { getInput("x", x_); }
+          NodeStatus onRunning() { getInput("y", y_); }
+        };
+    """
+    body = """
+        static PortsList providedPorts() { return { InputPort<int>("home") }; }
+        NodeStatus onStart() { getInput("home", x_); }
+    """
+    node = moved(body, "Base", base)
+    assert [use.port for use in node.undeclared] == ["y"]
+    assert node.unread == ()
+
+
+def test_of_branches_of_a_condition_all_ports_may_be_there() -> None:
+    body = """
+        #ifdef OTHER
+        static PortsList providedPorts() { return {}; }
+        #else
+        static PortsList providedPorts() { return { InputPort<int>("x") }; }
+        #endif
+        NodeStatus tick() { getInput("x", x_); }
+    """
+    read_so = read(move(body))
+    (node,) = read_so.nodes
+    assert (ports(node), node.complete, node.undeclared) == (["input x : int"], False, ())
+    assert unseen(read_so) == ["a.cpp:7:1: `robot::Move::providedPorts` is here 2 times, and one of them counts"]
+
+
+def test_a_condition_inside_of_brackets_is_taken_as_if_it_held() -> None:
+    body = """
+        static PortsList providedPorts() {
+          return PortsList({
+        #ifndef OTHER  // (
+            InputPort<int>("x"),
+        #endif
+            InputPort<int>("y", ":)", "(")
+          });
+        }
+        NodeStatus tick() { getInput("x", x_); getInput("y", y_); }
+    """
+    assert ports(moved(body)) == ["input x : int", "input y : int = ':)' # ("]
+
+
 def test_a_port_is_not_called_unread_where_code_is_missing() -> None:
     body = 'static PortsList providedPorts() { return { InputPort<int>("p") }; } NodeStatus tick() override;'
     assert moved(body).unread == ()
