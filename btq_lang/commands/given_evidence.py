@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from glob import escape, glob
 from typing import TYPE_CHECKING
 
@@ -17,27 +17,33 @@ from btq_lang.evidence.signal_sources import signal_sources
 from btq_lang.evidence.store.sets import ABOUT
 from btq_lang.evidence.verifying import judged, logs_below
 from btq_lang.projects.files import logs_of
+from btq_lang.trace.judged import judged_runs
 from btq_lang.util.text import counted
 from btq_lang.workspace.loader import absolute, find_project, read, shown
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.verdicts import RequirementVerdict
+    from btq_lang.evidence.verdicts import MissionVerdicts, RequirementVerdict
     from btq_lang.projects.files import FileGroup
     from btq_lang.trace.collect import BuildsOf, VerdictsOf
+    from btq_lang.trace.overview import JudgedRuns
     from btq_lang.workspace.config import Project
 
 
-def verdicts_for(evidence: Sequence[str], groups: Sequence[FileGroup], problems: list[str]) -> VerdictsOf | None:
+def verdicts_for(
+    evidence: Sequence[str], groups: Sequence[FileGroup], problems: list[str], runs: list[JudgedRuns] | None = None
+) -> VerdictsOf | None:
     """A function from the path of a mission to the verdicts on it; None: there is no evidence.
 
     Args:
         evidence: files that `btq verify --format json` wrote, stores, and logs; none: the logs of the project, if there
             are any, else its store.
         problems: errors are appended.
+        runs: the runs that were judged are appended, of each log or store.
     """
     evidence = evidence_paths(evidence, groups)
     if not evidence:
         return None
+    runs = runs if runs is not None else []
     documents = [path for path in evidence if path.endswith(".json")]
     logs = [path for path in evidence if path not in documents]
     stores = [path for path in logs if is_store(path)]
@@ -45,16 +51,18 @@ def verdicts_for(evidence: Sequence[str], groups: Sequence[FileGroup], problems:
     by_mission: dict[str, list[RequirementVerdict]] = {}
     missions = {key for group in groups for path in group.given for key in (path, name_of(path))}
     for path in documents:
-        _add_document(path, missions, by_mission, problems)
+        _add_document(path, missions, by_mission, problems, runs)
     for store in stores:
-        for name, verdicts in _verdicts_in_store(store, problems):
-            by_mission.setdefault(name, []).extend(verdicts)
+        for in_store in _verdicts_in_store(store, problems):
+            by_mission.setdefault(in_store.name, []).extend(in_store.requirements)
+            runs += judged_runs(in_store.sources) if in_store.name in missions else ()
     if logs:
-        for file, verdicts in _verdicts_by_logs(logs, groups, problems):
-            by_mission.setdefault(file, []).extend(verdicts)
+        for mission in _verdicts_by_logs(logs, groups, problems):
+            by_mission.setdefault(mission.file, []).extend(mission.requirements)
+            runs += judged_runs(mission.sources)
     if problems and not by_mission:
         return None
-    return lambda mission: by_mission.get(mission) or by_mission.get(name_of(mission), [])
+    return lambda path: by_mission.get(path) or by_mission.get(name_of(path), [])
 
 
 def builds_for(evidence: Sequence[str], groups: Sequence[FileGroup], problems: list[str]) -> BuildsOf | None:
@@ -82,7 +90,11 @@ def evidence_paths(evidence: Sequence[str], groups: Sequence[FileGroup]) -> Sequ
 
 
 def _add_document(
-    path: str, missions: set[str], by_mission: dict[str, list[RequirementVerdict]], problems: list[str]
+    path: str,
+    missions: set[str],
+    by_mission: dict[str, list[RequirementVerdict]],
+    problems: list[str],
+    runs: list[JudgedRuns],
 ) -> None:
     """Add the verdicts of a file, by the path of the mission and, for a file written elsewhere, by its name."""
     text, problem = read(absolute(path))
@@ -91,7 +103,7 @@ def _add_document(
         return
     try:
         of_file = {
-            key: mission.requirements
+            key: mission
             for mission in read_verdicts(text)
             for key in ((absolute(mission.file), mission.name) if mission.file else (mission.name,))
         }
@@ -101,8 +113,11 @@ def _add_document(
     if missions.isdisjoint(of_file):
         names = "; ".join(key for key in of_file if not os.path.isabs(key))
         problems.append(f"{shown(absolute(path))}: no verdicts of these missions, only of {names}")
-    for key, requirements in of_file.items():
-        by_mission.setdefault(key, []).extend(requirements)
+    for key, mission in of_file.items():
+        by_mission.setdefault(key, []).extend(mission.requirements)
+    asked_for = {id(mission): mission for key, mission in of_file.items() if key in missions}
+    for mission in asked_for.values():
+        runs += judged_runs(mission.sources)
 
 
 def _project(groups: Sequence[FileGroup]) -> Project:
@@ -114,8 +129,8 @@ def is_store(path: str) -> bool:
     return "://" in path or bool(glob(os.path.join(escape(path), "*", ABOUT)))
 
 
-def _verdicts_in_store(store: str, problems: list[str]) -> Sequence[tuple[str, Sequence[RequirementVerdict]]]:
-    """The verdicts of the runs in a store, by the name of the mission."""
+def _verdicts_in_store(store: str, problems: list[str]) -> Sequence[MissionVerdicts]:
+    """The verdicts of the runs in a store."""
     from btq_lang.evidence.store.engine import NoEngine, asked  # which needs DuckDB
     from btq_lang.evidence.store.summary import summary
 
@@ -124,7 +139,7 @@ def _verdicts_in_store(store: str, problems: list[str]) -> Sequence[tuple[str, S
     except NoEngine as error:
         problems.append(str(error))
         return ()
-    return [(mission.name, mission.requirements) for mission in report.missions]
+    return report.missions
 
 
 def _verdicts_by_label(store: str, problems: list[str]) -> Sequence[tuple[str, str, Sequence[RequirementVerdict]]]:
@@ -142,7 +157,7 @@ def _verdicts_by_label(store: str, problems: list[str]) -> Sequence[tuple[str, s
 
 def _verdicts_by_logs(
     log_paths: Sequence[str], groups: Sequence[FileGroup], problems: list[str]
-) -> Iterator[tuple[str, Sequence[RequirementVerdict]]]:
+) -> Sequence[MissionVerdicts]:
     project = _project(groups)
     logs, log_problems = logs_below(log_paths, project)
     sides = {side.mission: side for side in side_files_beside(logs)}
@@ -155,7 +170,7 @@ def _verdicts_by_logs(
     declared = signal_sources(missions, log_problems)
     problems += log_problems
     if log_problems:
-        return
+        return ()
     with Progress(len(logs), "read") as progress:
         verification = judged(
             logs,
@@ -164,5 +179,4 @@ def _verdicts_by_logs(
             progress=lambda files, runs: progress.reached(files, f", {counted(runs, 'run')} judged"),
         )
     problems += verification.report.problems
-    for mission in verification.report.missions:
-        yield mission.file, mission.requirements
+    return verification.report.missions

@@ -10,7 +10,9 @@ from btq_lang.projects.files import Files, no_mission_below, usage_problem
 from btq_lang.projects.messages import CommandOutput
 from btq_lang.projects.options import refuse
 from btq_lang.trace import FORMATS
+from btq_lang.trace.judged import together
 from btq_lang.trace.missions import trace_tables
+from btq_lang.trace.overview import JudgedRuns
 from btq_lang.trace.wording import incomplete
 from btq_lang.util.record import Record, replace
 
@@ -56,14 +58,16 @@ def run(options: TraceOptions, messages: CommandOutput) -> int:
     if problems:
         return 2
     evidence_problems: list[str] = []
-    verdicts_of = verdicts_for(options.evidence, groups, evidence_problems)
+    runs: list[JudgedRuns] = []
+    verdicts_of = verdicts_for(options.evidence, groups, evidence_problems, runs)
     builds_of = builds_for(options.evidence, groups, evidence_problems) if not evidence_problems else None
     for problem in evidence_problems:
         messages.remark(f"btq trace: {problem}")
     parts = [(group.workspace, group.given) for group in groups]
     table = trace_tables(parts, options.bundle, verdicts_of=verdicts_of, builds_of=builds_of)
+    overview = replace(table.overview, judged=together(runs) if verdicts_of is not None else None)
     selection = Selection(options.priority, options.quality, options.state)
-    table = replace(table, overview=selected(table.overview, selection))
+    table = replace(table, overview=selected(overview, selection))
     to_terminal = options.output is None and sys.stdout.isatty()
     colour = is_coloured(options.color, to_terminal)
     form = form_of(options.format, options.output, FORMATS)

@@ -91,6 +91,7 @@ def write(report: VerdictReport, missions: Sequence[Candidate], form: str, **opt
     if form != "html":
         return evidence.write(report, form, **options)
     from btq_lang.trace import page
+    from btq_lang.trace.judged import judged_runs, together
     from btq_lang.trace.missions import trace_tables
     from btq_lang.trace.verdicts import outcomes
 
@@ -98,7 +99,8 @@ def write(report: VerdictReport, missions: Sequence[Candidate], form: str, **opt
     parts = [(mission.workspace, [mission.path]) for mission in missions if mission.path in requirements]
     table = trace_tables(parts, details_of=outcomes(report.missions), verdicts_of=requirements.__getitem__)
     # A table of the page has the verdicts, so the requirements need no column of them.
-    return page.render(replace(table.overview, has_evidence=False), report.missions)
+    judged = together(judged_runs(source for mission in report.missions for source in mission.sources))
+    return page.render(replace(table.overview, has_evidence=False, judged=judged), report.missions)
 
 
 def progress_to_editor(logs: int) -> Callable[[int, int], None]:

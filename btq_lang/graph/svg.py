@@ -123,9 +123,9 @@ def _box(placed: PlacedBox, above: str) -> Iterator[str]:
         data += f' data-name="{escape(box.name)}" data-parent="{escape(above)}" data-hidden="{box.hidden}"'
     state = f" {box.state}" if box.state else ""
     yield f'<g class="box {box.outline}{state}" id="{escape(box.key)}"{data}>'
-    yield f"<title>{escape(box.text or box.title)}</title>"
-    if box.link:
+    if box.link:  # which has the title, its name to a screen reader
         yield f'<a href="{escape(box.link)}">'
+    yield f"<title>{escape(box.text or box.title)}</title>"
     yield _outline(box.outline, area)
     top = area.y + (area.h - len(placed.lines) * LEADING) // 2 + 12
     for number, line in enumerate(placed.lines):
@@ -138,9 +138,9 @@ def _note(placed: PlacedNote) -> Iterator[str]:
     note, area = placed.note, placed.area
     states = " ".join(filter(None, (note.kind, note.state, *dict.fromkeys(each.verdict for each in note.measured))))
     yield f'<g class="note {states}" data-note="{escape(note.key)}">'
-    yield f"<title>{escape(note.text or note.title)}</title>"
     if note.link:
         yield f'<a href="{escape(note.link)}">'
+    yield f"<title>{escape(note.text or note.title)}</title>"
     radius, left = 3, area.x + 8
     if note.kind == "quality" and len(placed.lines) == 1:
         radius, left = area.h // 2, area.x + (area.w - width(placed.lines[0][1], SMALL, bold=True)) // 2

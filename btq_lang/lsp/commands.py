@@ -12,6 +12,7 @@ from lsprotocol import types
 
 from btq_lang import ide as features
 from btq_lang.lsp.editor import Handlers, RequestRefused, Server, UnknownDocument
+from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -73,11 +74,14 @@ def picture(server: Server, document: types.TextDocumentIdentifier, *folded: str
 def overview(server: Server, document: types.TextDocumentIdentifier) -> str:
     """The page that `btq trace --format html` writes for a document in its current state, saved or not."""
     workspace, path = _mission_at(server, document, reads=True)
-    from btq_lang.trace.missions import trace_tables  # as above
+    from btq_lang.trace.judged import judged_runs, together  # as above
+    from btq_lang.trace.missions import trace_tables
 
     evidence = server.session.evidence(workspace)
-    verdicts_of = evidence.verdicts_of if evidence is not None else None
-    return trace_tables([(workspace, (path,))], verdicts_of=verdicts_of).write("html")
+    table = trace_tables([(workspace, (path,))], verdicts_of=evidence.verdicts_of if evidence is not None else None)
+    written = evidence.missions.get(path) if evidence is not None else None
+    judged = together(judged_runs(written.sources)) if written is not None else None
+    return replace(table, overview=replace(table.overview, judged=judged)).write("html")
 
 
 @handlers.command(BUILD)

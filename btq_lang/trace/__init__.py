@@ -13,6 +13,9 @@ One invariant: every fact is in exactly one row with a key, and the same mission
     missions.py    how the built tree covers them, and all of it in one call
     meanings.py    the meaning of quality names
     wording.py     sentences that several writers print
+    judged.py      the runs by which requirements are judged
+    states.py      the state of a requirement in one word, and its sign
+    first_screen.py   what the page opens with; marked_trees.py, its trees
     verdicts.py    verdicts on the page
     run_figure.py  what the nodes of a run did
     table.py, csv_rows.py, json_document.py, needs_json.py, markdown.py, page.py   the writers

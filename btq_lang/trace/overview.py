@@ -298,6 +298,13 @@ class BuildVerdicts(Record):
     verdicts: tuple[tuple[str, Verdict], ...]
 
 
+class JudgedRuns(Record):
+    """The runs by which requirements are judged: how many, and the date of the last one; empty if it is unknown."""
+
+    runs: int
+    last: str
+
+
 class Overview(Record):
     """The whole overview.
 
@@ -311,6 +318,7 @@ class Overview(Record):
         external: what requirements refine or mitigate and other tools keep.
         wants_sources: whether a requirement without a source is a gap.
         is_selection: whether it has some requirements only, so that what others concern is not a gap.
+        judged: the runs of the evidence; None if they are not known.
     """
 
     edition: Edition
@@ -327,6 +335,7 @@ class Overview(Record):
     external: tuple[ExternalRow, ...] = ()
     wants_sources: bool = False
     is_selection: bool = False
+    judged: JudgedRuns | None = None
 
     @property
     def by_build(self) -> Iterator[tuple[RequirementRow, tuple[str, ...]]]:

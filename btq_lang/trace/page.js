@@ -1,7 +1,7 @@
 "use strict";
 (() => {
   const all = (selector) => [...document.querySelectorAll(selector)];
-  const parts = all("[data-note], [data-notes]");
+  const parts = all("[data-note], [data-notes]").filter((part) => !part.closest("#overview"));
   const keysOf = (part) => (part.dataset.note || part.dataset.notes).split(" ");
   const withKeys = (keys) => parts.filter((part) => keysOf(part).some((key) => keys.includes(key)));
   const live = document.querySelector(".live");
@@ -34,7 +34,7 @@
       show(found.find((other) => own && part.matches("tr") ? other.matches(".box") : other.matches("tr")));
     });
   }
-  for (const box of all(".box[data-notes]")) {
+  for (const box of all(".trees .box[data-notes]")) {
     box.setAttribute("tabindex", "0");
     box.setAttribute("role", "button");
     box.addEventListener("keydown", (event) => {
@@ -69,6 +69,29 @@
       button.addEventListener("click", () => sort(head, at));
     });
   }
+  const overview = document.querySelector("#overview");
+  const within = (selector) => [...overview.querySelectorAll(selector)];
+  const buttons = within(".by-quality button"), marks = within("[data-note], [data-notes]");
+  const filterBy = (button) => {
+    const keys = button.dataset.keys.split(" ");
+    const isStrong = (part) => keysOf(part).some((key) => keys.includes(key));
+    overview.classList.toggle("filtering", button.dataset.keys !== "");
+    for (const each of buttons) each.setAttribute("aria-pressed", each === button);
+    for (const part of marks) part.classList.toggle("strong", isStrong(part));
+    for (const row of within("tr[data-keys]")) row.classList.toggle("strong", row.dataset.keys === button.dataset.keys);
+    const strong = marks.filter((part) => part.matches(".box.strong"));
+    const nodes = `${strong.length} ${strong.length === 1 ? "node" : "nodes"}`;
+    live.textContent = button.dataset.keys ? `${button.textContent}: ${nodes}` : "all nodes";
+    for (const frame of within(".scroll")) {
+      const box = frame.querySelector(".box.strong"), edges = frame.getBoundingClientRect();
+      const place = box && box.getBoundingClientRect();
+      if (place && (place.right > edges.right || place.left < edges.left)) {
+        frame.scrollLeft += place.left - edges.left - (edges.width - place.width) / 2;
+      }
+    }
+  };
+  for (const group of within(".by-quality")) group.hidden = false;
+  for (const button of buttons) button.addEventListener("click", () => filterBy(button));
   const form = document.querySelector(".filter");
   const rows = all("tr.row"), gaps = all(".gaps li");
   const filter = () => {
@@ -76,11 +99,14 @@
     const way = form.elements.way.value, of = form.elements.of.value;
     for (const row of rows) {
       row.hidden = !((!text || row.textContent.toLowerCase().includes(text))
-        && (!way || row.dataset.way.includes(way)) && (!of || row.dataset.of === of));
+        && (!way || row.dataset.way.includes(way)) && (!of || row.dataset.of.split(" ").includes(of)));
     }
     for (const gap of gaps) gap.hidden = !gap.textContent.toLowerCase().includes(text);
     live.textContent = `${rows.filter((row) => !row.hidden).length} rows`;
   };
+  const folded = all("details:not([open])");
+  addEventListener("beforeprint", () => { for (const each of folded) each.open = true; });
+  addEventListener("afterprint", () => { for (const each of folded) each.open = false; });
   form.hidden = false;
   form.addEventListener("input", filter);
   form.addEventListener("reset", () => setTimeout(filter));

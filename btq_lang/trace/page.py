@@ -7,13 +7,14 @@ nodes; all marks of the same thing have the same `data-note` and are highlighted
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 from btq_lang.evidence.verdicts import MissionVerdicts
 from btq_lang.graph.placing import Drawing, place
 from btq_lang.graph.svg import STYLE, colours, part
 from btq_lang.render.pages import PageData, page
+from btq_lang.trace.first_screen import first_screen
 from btq_lang.trace.overview import WAYS, At, ExternalRow, HazardRow, Overview, QualityRow, RequirementRow, TreeRow
 from btq_lang.trace.verdicts import verdicts
 from btq_lang.trace.wording import (
@@ -42,6 +43,7 @@ def render(overview: Overview, missions: Sequence[MissionVerdicts] = ()) -> str:
         title=f"{'Verdicts' if missions else 'Requirements and qualities'}: {_files(overview)}",
         light=STYLE + colours(False),
         dark=colours(True),
+        screen=first_screen(overview),
         summary=summary(overview),
         incomplete=why[:1].upper() + why[1:],
         sections=[(key, title) for key, title in _SECTIONS if key not in left_out],
@@ -50,14 +52,14 @@ def render(overview: Overview, missions: Sequence[MissionVerdicts] = ()) -> str:
         has_evidence=overview.has_evidence,
         verdicts=verdicts(missions, {each.name: each.key for each in overview.requirements}),
         layout="below" if any(each.width > _BESIDE for each in drawings) else "beside",
-        chain=[(row, isinstance(row, ExternalRow), *more) for row, *more in chain_rows(overview)],
+        chain=[
+            _chain_row(row, remarks, requirements, characteristics)
+            for row, remarks, requirements in chain_rows(overview)
+        ],
         names={each.key: each.name for each in overview.requirements},
         state_of=state_of,
         requirement_heads=("Requirement", "Holds for", "How", *(("Evidence",) if overview.has_evidence else ())),
-        requirements=[
-            _requirement(requirement, characteristics.get(requirement.quality_key or "") or "-")
-            for requirement in overview.requirements
-        ],
+        requirements=[_requirement(row, _characteristics(row, characteristics)) for row in overview.requirements],
         build_heads=("Requirement", *(build.label or NO_LABEL for build in overview.builds)),
         by_build=list(overview.by_build),
         qualities=_qualities(overview),
@@ -79,12 +81,35 @@ def _files(overview: Overview) -> str:
 # ---- tables ----
 
 
-def _requirement(row: RequirementRow, characteristic: str) -> PageData:
+def _characteristics(row: RequirementRow, of_qualities: Mapping[str, str | None]) -> list[str]:
+    """The characteristics of a requirement's qualities; `-` for none."""
+    keys = (row.quality_key or "", *row.further_quality_keys)
+    return list(dict.fromkeys(of_qualities.get(key) or "-" for key in keys))
+
+
+def _chain_row(
+    row: HazardRow | ExternalRow,
+    remarks: Sequence[str],
+    requirements: Sequence[RequirementRow],
+    of_qualities: Mapping[str, str | None],
+) -> PageData:
+    """A hazard or what another tool keeps, which a filter shows if it shows one of its requirements."""
+    return {
+        "row": row,
+        "is_external": isinstance(row, ExternalRow),
+        "remarks": remarks,
+        "requirements": requirements,
+        "ways": "; ".join(each.way for each in requirements),
+        "characteristics": " ".join(key for each in requirements for key in _characteristics(each, of_qualities)),
+    }
+
+
+def _requirement(row: RequirementRow, characteristics: Sequence[str]) -> PageData:
     ways = [(clause.way, clause.way, clause.why) for use in row.uses for clause in use.clauses]
     loose = [("none", "not attached", f"`{clause}` applies to no node") for clause in row.loose]
     return {
         "row": row,
-        "characteristic": characteristic,
+        "characteristics": " ".join(characteristics),
         "uses": [(use, next(iter(use.nodes), ""), ", ".join(remarks(row, use))) for use in row.uses],
         "ways": [*dict.fromkeys(ways), *loose] if ways else [],
         "evidence": list(evidence_lines(row)),
@@ -145,6 +170,7 @@ def _tree(tree: TreeRow, drawing: Drawing) -> PageData:
 
 
 _SECTIONS: Final = (
+    ("overview", "At a glance"),
     ("verdicts", "Verdicts"),
     ("chain", "Hazards"),
     ("requirements", "Requirements"),

@@ -528,7 +528,7 @@ def test_the_overview_beside_follows_what_is_saved_and_leads_to_the_text(code: W
     row = frame.locator("#requirements tr.row", has_text="soon_there")
     row.wait_for(state="attached")
     assert "takes at most 30 s" in row.inner_text()
-    assert frame.locator("svg .box", has_text="Dock").count() == 1
+    assert frame.locator(".trees svg .box", has_text="Dock").count() == 1
     frame.get_by_label("Show", exact=True).fill("soon")
     row.locator(".at", has_text="demands.btq:1").click()
     code.see(".tab.active:has-text('demands.btq')")

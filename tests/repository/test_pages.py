@@ -33,6 +33,7 @@ WRITERS = {
 # What a template may put on the page as it is: drawings and style sheets, made by the writers above.
 SAFE = {
     "trace/page.html.j2": {"light", "dark", "each.drawing"},
+    "trace/first_screen.html.j2": {"each.drawing"},
     "trace/verdicts.html.j2": {"each.histogram"},
     "evidence/report/page.html.j2": {"each.drawing", "drawing"},
 }

@@ -153,7 +153,8 @@ def test_markdown_and_page(folder: Path) -> None:
     assert "* Hazards without a requirement: H2 (main.btq:4)\n" in markdown
     page = trace(folder, "html", "--evidence", "run.btlog")
     chain = re.sub(r"\s*\n\s*", "", page[page.index('<section id="chain"') : page.index('<section id="requirements"')])
-    assert '<tr id="h1"><th scope="row"><a class="name" href="#h1">H1</a>' in chain
+    row = '<tr class="row" id="h1" data-way="monitored" data-of="performance-efficiency reliability">'
+    assert f'{row}<th scope="row"><a class="name" href="#h1">H1</a>' in chain
     assert "<p>Collision &lt;b&gt;</p>" in chain
     assert '<a class="name" href="https://x.org/1">REQ_1</a>' in chain
     assert '<li><a href="#r2">quick</a> <small>monitored; violated</small></li>' in chain

@@ -103,7 +103,7 @@ def test_in_the_page_nothing_overlaps_and_every_text_fits(
     example: str, seen: Callable[..., dict[str, Any]], tmp_path: Path
 ) -> None:
     page = write(overview_of(example), "html")
-    script = "return { over, outside, boxes: document.querySelectorAll('g.box').length,"
+    script = "return { over, outside, boxes: document.querySelectorAll('.trees g.box').length,"
     script += " broad: document.documentElement.scrollWidth - innerWidth };"
     found = seen(page, script)
     assert found == {"over": [], "outside": [], "boxes": len(overview_of(example).nodes), "broad": 0}
@@ -160,7 +160,8 @@ const chosen = () => [...document.querySelectorAll(".chosen")].map((part) =>
   part.matches(".note") ? `note ${part.dataset.note}` : part.id).sort();
 const press = (key) => document.dispatchEvent(new KeyboardEvent("keydown", { key }));
 const click = (selector) => document.querySelector(selector).dispatchEvent(new MouseEvent("click", { bubbles: true }));
-const faint = () => [...document.querySelectorAll("g.box")].filter((box) => getComputedStyle(box).opacity < 1).length;
+const boxes = [...document.querySelectorAll(".trees g.box")];
+const faint = () => boxes.filter((box) => getComputedStyle(box).opacity < 1).length;
 """
 
 
@@ -173,7 +174,7 @@ def test_a_click_highlights_what_belongs_together(seen: Callable[..., dict[str, 
     found.status = document.querySelector(".live").textContent;
     found.stroke = getComputedStyle(document.querySelector("g.box.chosen .outline")).strokeWidth;
     click("tr#r1"); found.again = chosen();
-    click("g.note[data-note=r2]"); found.note = chosen();
+    click(".trees g.note[data-note=r2]"); found.note = chosen();
     press("Escape"); found.escaped = chosen(); found.clear = faint();
     click("g.box#n3 .outline"); found.node = chosen();
     press("Escape");
@@ -240,7 +241,7 @@ def test_without_a_script_links_lead_to_nodes_and_back(tmp_path: Path, seen: Cal
     const node = document.querySelector("#requirements td a").getAttribute("href");
     location.hash = node;
     const stroke = getComputedStyle(document.querySelector("g.box:target .outline")).strokeWidth;
-    location.hash = document.querySelector("g.note.requirement a").getAttribute("href");
+    location.hash = document.querySelector(".trees g.note.requirement a").getAttribute("href");
     const row = document.querySelector("tr:target").id;
     return { node, stroke, row, form: document.querySelector(".filter").offsetParent === null };"""
     assert seen(page, steps) == {"node": "#n14", "stroke": "3.5px", "row": "r4", "form": True}
@@ -258,7 +259,8 @@ def test_it_prints_and_is_dark_where_the_reader_wants_it(seen: Callable[..., obj
     dark = page.replace("screen and (prefers-color-scheme: dark)", "screen")
     script = """
     const colour = (selector, what) => getComputedStyle(document.querySelector(selector))[what];
-    return [colour("body", "backgroundColor"), colour("svg text", "fill"), colour(".box.action .outline", "fill")];"""
+    const box = colour(".trees .box.action .outline", "fill");
+    return [colour("body", "backgroundColor"), colour("svg text", "fill"), box];"""
     assert seen(dark, script) == ["rgb(22, 25, 29)", "rgb(238, 241, 244)", "rgb(32, 37, 43)"]
     assert seen(page, script) == ["rgb(255, 255, 255)", "rgb(20, 24, 28)", "rgb(255, 255, 255)"]
     keep_screenshot(tmp_path, "trace-dark", dark, "1500,1200")

@@ -289,7 +289,7 @@ def test_violations_that_odds_allow_are_folded(verify: Verify) -> None:
 
 
 def test_the_tree_shows_what_nodes_did(page: str) -> None:
-    tags = Tags(page)
+    tags = Tags(page[page.index('<section class="trees"') :])
     assert [each["class"] for each in tags.of("g", "box")] == [
         "box control mixed",
         "box action good",
@@ -304,7 +304,8 @@ def test_the_tree_shows_what_nodes_did(page: str) -> None:
 def test_a_node_that_did_not_run(verify: Verify) -> None:
     (verify.folder / "main.btq").write_text(MISSION, encoding="utf-8")
     (verify.folder / "run.btlog").write_bytes(btlog(verify.build(MISSION), rows("0 1R 2R 30 2F 1F 1I")))
-    tags = Tags(verify.text("run.btlog", "--mission", "main.btq", "--format", "html"))
+    page = verify.text("run.btlog", "--mission", "main.btq", "--format", "html")
+    tags = Tags(page[page.index('<section class="trees"') :])
     assert [each["class"].split()[-1] for each in tags.of("g", "box")] == ["bad", "bad", "idle", "idle"]
     assert tags.texts.count("did not run") == 2
 
