@@ -95,10 +95,12 @@ def chain_rows(overview: Overview) -> Iterator[tuple[HazardRow | ExternalRow, li
 
 
 def state_of(requirement: RequirementRow) -> str:
-    """How a requirement is covered, its verdict, and whether its approval is outdated."""
-    is_suspect = requirement.state == "suspect"
-    parts = (requirement.way, requirement.verdict, "approval outdated" if is_suspect else None)
-    return "; ".join(part for part in parts if part is not None)
+    """How a requirement is covered, the tests, reports and reviews that it names, its verdict, and whether its approval
+    is outdated.
+    """
+    named = ", ".join(f'{way.method} "{way.id}"' for way in requirement.verification if way.id)
+    parts = (requirement.way, named, requirement.verdict, "approval outdated" if requirement.state == "suspect" else "")
+    return "; ".join(part for part in parts if part)
 
 
 GAPS: Final = {

@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import re
+from html import unescape
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -159,6 +160,16 @@ def test_markdown_and_page(folder: Path) -> None:
     assert '<a class="name" href="https://x.org/1">REQ_1</a>' in chain
     assert '<li><a href="#r2">quick</a> <small>monitored; violated</small></li>' in chain
     assert '<p>refined by <a href="#r2">quick</a></p>' in page
+
+
+def test_the_chain_names_tests_and_reports(tmp_path: Path) -> None:
+    requirement = "QualityReq r1 : safety\n    Move takes at most 1 s\n    mitigates H1\n"
+    ways = '    verified by test "TC-7", test, review "R-2", monitor\n'
+    (tmp_path / "main.btq").write_text(f'hazard H1 "Fire"\n{requirement}{ways}{MAIN}', encoding="utf-8")
+    how = 'monitored; test "TC-7", review "R-2"'
+    assert trace(tmp_path, "table").splitlines()[2] == f"H1, main.btq:1                   r1: {how}"
+    assert f"| **r1** {how} |" in trace(tmp_path, "markdown")
+    assert f'<a href="#r1">r1</a> <small>{how}</small>' in unescape(trace(tmp_path, "html"))
 
 
 def test_needs(folder: Path) -> None:
