@@ -15,6 +15,7 @@ from pathlib import Path
 
 import missions
 from lxml import etree
+from report import Goal, machine, shown
 
 from btq_lang.btcpp.document import Document, write
 from btq_lang.btcpp.export import export
@@ -42,13 +43,20 @@ def main() -> None:
         "btq: build": lambda: write(built(text)),
     }
     seconds = measured(steps, options.rounds)
-    print(f"{options.nodes} nodes, {len(xml) / 1e6:.1f} MB of XML, {options.rounds} rounds")
-    for name, times in seconds.items():
-        print(f"{name:24} {statistics.median(times) * 1000:8.1f} ms   fastest {min(times) * 1000:8.1f} ms")
-    print(f"import over lxml: {quotient(seconds['btq: import'], seconds['lxml: parse and walk']):.1f}")
-    print(f"build, with its parse, over the parse: {quotient(seconds['btq: build'], seconds['btq: parse']):.1f}")
+    imported = quotient(seconds["btq: import"], seconds["lxml: parse and walk"])
+    exported = quotient(seconds["btq: build"], seconds["btq: parse"])
+    goals = [
+        Goal("import, in times of lxml's parse and walk <= 5", imported, imported <= 5),
+        Goal("build, its parse included, in times of the parse <= 3", exported, exported <= 3),
+    ]
     if options.corpus:
-        corpus(options.corpus)
+        taken = corpus(options.corpus)
+        goals.append(Goal(f"files of {options.corpus} there and back: s of processor <= 10", taken, taken <= 10))
+    print(f"{machine()}; {options.nodes:,} nodes, {len(xml) / 1e6:.1f} MB of XML, {options.rounds} rounds\n")
+    print("| step | processor ms, median | fastest |", "|---|---|---|", sep="\n")
+    for name, times in seconds.items():
+        print(f"| {name} | {statistics.median(times) * 1000:.1f} | {min(times) * 1000:.1f} |")
+    print("", *shown(goals), sep="\n")
 
 
 def walk(data: bytes) -> None:
@@ -78,13 +86,13 @@ def quotient(own: list[float], theirs: list[float]) -> float:
     return statistics.median(one / other for one, other in zip(own, theirs, strict=True))
 
 
-def corpus(folder: Path) -> None:
-    """Import every file and build it back."""
+def corpus(folder: Path) -> float:
+    """Seconds of processor to import every file and build it back."""
     texts = [path.read_bytes().decode().removeprefix("\ufeff") for path in sorted(folder.glob("*"))]
     begin = time.process_time()
     for text in texts:
         write(built(import_xml(text, keep_v3=True).text))
-    print(f"{len(texts)} files imported and built back: {time.process_time() - begin:.1f} s")
+    return time.process_time() - begin
 
 
 if __name__ == "__main__":

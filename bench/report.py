@@ -29,8 +29,9 @@ def machine() -> str:
 
 
 def shown(goals: Sequence[Goal]) -> list[str]:
-    """A line for each goal."""
-    return [f"{'met   ' if goal.met else 'MISSED'}  {goal.text}: {goal.reached:,.2f}" for goal in goals]
+    """A table of goals in Markdown, as in docs/performance.md."""
+    rows = [f"| {goal.text} | {goal.reached:,.2f} | {'met' if goal.met else 'missed'} |" for goal in goals]
+    return ["| goal | reached | |", "|---|---|---|", *rows]
 
 
 def as_data(measured: Mapping[str, object], goals: Sequence[Goal]) -> dict[str, object]:

@@ -337,7 +337,7 @@ def as_text(measured: Sequence[Series], goals: Sequence[Goal], slowness: float) 
     converted = (
         f"Converted: divided by {slowness:.2f}, as pygls alone takes {slowness:.2f} times {PYGLS_ALONE} s to start."
     )
-    return "\n".join([*lines, "", converted, *report.shown(goals)])
+    return "\n".join([*lines, "", converted, "", *report.shown(goals)])
 
 
 def _options(arguments: Sequence[str] | None) -> argparse.Namespace:

@@ -32,6 +32,7 @@ from evidence_logs import btlog  # isort: skip
 ROOT = Path(__file__).resolve().parents[1]
 CLAUSES, RUNS = 10, 1000  # of each log
 IN_A_LOG = 50_000  # verdicts
+PROCESSES = {"one": "one process", "two": "two processes"}
 COMMON = """
     printf('%064x', getvariable('log')) AS log, 'v' || getvariable('log') % 4 AS label, 'main' AS mission,
     'r' || getvariable('log') % 50 AS robot
@@ -177,18 +178,19 @@ def main() -> None:
     taken = judged(given.logs, given.transitions, 1)
     faster, size = taken["one"] / taken["two"], taken["store"] / taken["logs"]
     goals = [
-        Goal(f"s to summarise {given.verdicts:,} verdicts (at most 3)", times["btq"], times["btq"] <= 3),
-        Goal("times as fast with two processes (at least 1.7)", faster, faster >= 1.7),
-        Goal("bytes of the store, times those of its logs (at most 1)", size, size <= 1),
+        Goal(f"{given.verdicts:,} verdicts summarised: s <= 3", times["btq"], times["btq"] <= 3),
+        Goal("two processes, times as fast as one >= 1.7", faster, faster >= 1.7),
+        Goal("bytes of the store, in times of those of its logs <= 1", size, size <= 1),
     ]
     if given.json:
         sizes = {"verdicts": given.verdicts, "logs": given.logs, "transitions": given.transitions}
         print(json.dumps(as_data({**sizes, "summaries": times, "judged": taken}, goals), indent=1))
         return
-    print(f"{given.verdicts:,} verdicts, {given.logs:,} logs of {given.transitions:,} transitions, {machine()}")
-    print(", ".join(f"{name} {seconds:.2f} s" for name, seconds in times.items()))
-    print(f"one process {taken['one']:.1f} s, two {taken['two']:.1f} s; {taken['logs']:,.0f} bytes of logs")
-    print(*shown(goals), sep="\n")
+    summarise, judge = f"{given.verdicts:,} verdicts summarised", f"{given.logs:,} logs judged and kept"
+    print(f"{machine()}; logs of {given.transitions:,} transitions, {taken['logs'] / 1e6:,.1f} MB\n")
+    print("| what | s |", "|---|---|", *(f"| {summarise}, {name} | {s:.2f} |" for name, s in times.items()), sep="\n")
+    print(*(f"| {judge}, {jobs} | {taken[key]:.1f} |" for key, jobs in PROCESSES.items()), sep="\n")
+    print("", *shown(goals), sep="\n")
 
 
 if __name__ == "__main__":

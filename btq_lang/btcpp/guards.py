@@ -265,7 +265,7 @@ def _keeps(guard: ClauseGuard) -> None:
 
 
 def _in_span(guard: ClauseGuard, span: ResolvedSpan, code: str) -> str:
-    """A script that need hold only from one event until another: these set and reset a flag."""
+    """A script that must hold only from one event until another; scripts at these events set and reset a flag."""
     for scope in guard.requirement.scopes:
         if scope.word == "when":
             raise NotEnforced(f"whether `{scope.text}` holds at the start of that time is evaluated only in logs")

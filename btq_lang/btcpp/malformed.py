@@ -28,7 +28,7 @@ class Mistake(Record):
 
 
 def first_mistake(text: str) -> Mistake | None:
-    """The first mistake in a text that other tools refuse; None if they only reach limits of their own.
+    """The first mistake in a text that other tools refuse; None if the tools only reach limits of their own.
 
     A mistake in the declarations of a DOCTYPE is placed at the DOCTYPE.
     """

@@ -44,8 +44,8 @@ def marked(tag: str, requirement: str, attributes: Mapping[str, str], children: 
 def leaf(tag: LeafTag, requirement: str, name: str, code: str, failed: str | None = None) -> Element:
     """A Script or a ScriptCondition beside a node; `failed`: script that runs when it fails.
 
-    It does not succeed but is skipped, because a Sequence is skipped only if all its children are: a node that skips
-    itself must not become one that has succeeded.  So a Script runs as the condition of its being skipped.
+    It is skipped and does not succeed: a Sequence is skipped only if all its children are, and a node that skips itself
+    must not turn into one that has succeeded. So the code of a Script runs in its `_skipIf`.
     """
     skipped = code if tag == EVALUATING else f"{code}; true"
     failing = {"_onFailure": failed} if failed is not None else {}

@@ -45,8 +45,8 @@ def statement(word: str) -> str:
 
 
 def branch(word: str) -> str:
-    """How a tree has the branches that a word of programming languages begins, in the words of a message; empty for
-    other words.  A node of a program may be called so."""
+    """How a tree expresses the branches that a word of programming languages begins, for a message; empty for other
+    words. A node of a program may have such a name."""
     return _BRANCHES.get(word, "")
 
 

@@ -59,7 +59,7 @@ def is_port_name(name: str, version: str = DEFAULT_VERSION) -> bool:
 
 
 def is_entry_name(name: str) -> bool:
-    """Whether a blackboard entry is likely called so: `goal`, `stop_sign.wall_id`, and not `a}_{b`."""
+    """Whether a text is likely the name of a blackboard entry: `goal`, `stop_sign.wall_id`, and not `a}_{b`."""
     return all(piece.isidentifier() for piece in name.split("."))
 
 

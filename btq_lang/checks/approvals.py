@@ -1,6 +1,4 @@
-"""Approvals of something else than what a requirement means now, and requirements without one where the project wants
-it.
-"""
+"""Approvals of an earlier meaning of a requirement, and requirements without one in projects that want approvals."""
 
 from __future__ import annotations
 

@@ -101,7 +101,7 @@ def _is_of_all_runs(clause: syntax.Clause) -> bool:
 
 
 def _kind(clause: syntax.Clause) -> object:
-    """Equal for clauses of which the first counts; the share of time and the odds are two."""
+    """Equal for clauses of which only the first counts; it differs for a share of time and for odds."""
     return type(clause), isinstance(clause, syntax.Odds) and clause.is_of_time
 
 

@@ -113,7 +113,8 @@ class Handling(Record):
     Attributes:
         ports: names of its own ports.
         touches: one for each mention.
-        named: values of custom nodes that may be names of entries: programs read them so, of outputs above all.
+        named: values of custom nodes that may be names of entries: programs read some values so, mostly those of
+            outputs.
         calls: the SubTrees in it.
         is_open: whether something in it may read and write any entry: verbatim XML, what could not be read, a name
             that only another language than the engine's understands, as `{a}_{b}`; or it is not here.

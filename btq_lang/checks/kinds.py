@@ -130,7 +130,7 @@ def not_an_engine_node(view: View) -> Iterator[Diagnostic]:
 
 
 def newer_engine_node(view: View) -> Iterator[Diagnostic]:
-    """A built-in that a version lacks for which the file is."""
+    """A built-in that one of the versions lacks that the file is for."""
     for tagged in view.seen.by_tag.values():
         missing = [] if tagged[0].kind is None else _missing(tagged[0].kind.tag, view.engines)
         for resolved in tagged if missing else ():
@@ -413,7 +413,8 @@ def _unknown(view: View, resolved: ResolvedNode, name: Word) -> Iterator[Diagnos
 
 
 def _begun(view: View, resolved: ResolvedNode, name: str) -> tuple[str, ...]:
-    """The one node of Nav2 with children of which a node's name is the first words: `Pipeline`, PipelineSequence."""
+    """The one node of Nav2 with children whose name begins with the words of another name: PipelineSequence for
+    `Pipeline`."""
     distribution = view.ask(lookups.distribution)
     if distribution is None or not resolved.node.children:
         return ()

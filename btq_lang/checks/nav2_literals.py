@@ -25,7 +25,7 @@ from btq_lang.workspace.resolved import ResolvedNode
 
 
 def wrong_number_of_fields(view: View) -> Iterator[Diagnostic]:
-    """A pose that has not the fields that Nav2 reads: its node goes on without it."""
+    """A pose without the fields that Nav2 reads; its node goes on without the pose."""
     distribution = view.ask(lookups.distribution)
     if distribution is None:
         return

@@ -103,7 +103,8 @@ def _never_written(
 
 
 def _unconnected(view: View, signal: ResolvedSignal) -> tuple[ResolvedNode | None, str]:
-    """The first node that has an output of the name of a signal or of its entry and writes it nowhere, and the name."""
+    """The first node with an output that has the name of a signal or of its entry and writes to no entry; and that
+    name."""
     names = dict.fromkeys((signal.name, signal.entry.removeprefix("@")))
     for path, tree in view.ask(inputs.trees):
         for node in [node for node in view.seen_in(path, tree).all if node.is_defined]:

@@ -232,8 +232,7 @@ def _not_passed(view: View) -> Iterator[Diagnostic]:
 
 
 def _expected(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> str:
-    """The need of a tree, as `_need` says, for an entry that only those can give it that run it, and one of them
-    does."""
+    """As `_need`, for an entry that only the trees that run this one can give it, if one of them does."""
     view = View(store, viewpoint)
     use = view.ask(below, tree).use_of(name)
     if not name.isidentifier() or use & (EntryUse.WRITTEN | EntryUse.OPEN | EntryUse.STRANGE):

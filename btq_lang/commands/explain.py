@@ -200,7 +200,7 @@ def _verdicts() -> Iterator[str]:
 
 
 def _likely(name: str) -> tuple[str, ...]:
-    """Names similar to a name, or else names that contain it, of the kind that it has the form of."""
+    """Names similar to a name, or else names that contain it, of the kind whose form it has."""
     kind = _nodes if name[:1].isupper() else _rules if "-" in name else _names
     parts = [known_name for known_name in kind() if len(name) > 2 and name.casefold() in known_name.casefold()]
     close = ELSEWHERE.get(name) or near(name, kind()) or near(name, _names())

@@ -253,8 +253,8 @@ def _package_of(path: str, top: str) -> str:
 def _outside(
     workspace: Workspace, paths: Sequence[str], trees: frozenset[str]
 ) -> tuple[str, str, tuple[str, ...]] | None:
-    """A file of a group that runs a tree of none of them, with that tree and the several other files that define it,
-    of which the program may load any."""
+    """A file of a group that runs a tree which no file of the group defines; that tree; and the other files that define
+    it, any of which the program may load."""
     for path in paths:
         for name in sorted(workspace.files[path].names_used(Kind.TREE) - trees):
             definitions = workspace.pooled(path, Kind.TREE, name)

@@ -123,8 +123,8 @@ def _of_unknown_distribution(which: str) -> NodesLines:
 
 
 def _of_engine(workspace: Workspace, engines: tuple[str, ...], used: Mapping[str, set[str]]) -> Iterator[str]:
-    """The distributions with the engine that the files are for which use some nodes; Nav2's own trees declare a format
-    from version 4 on."""
+    """The distributions with an engine that the files with some nodes are for; Nav2's own trees declare a format from
+    version 4 on."""
     project = replace(workspace.project, engines=engines or VERSIONS, names_all=engines == VERSIONS)
     users = [file for file in workspace.files.values() if not file.names_used(Kind.MODEL).isdisjoint(used)]
     signs = [file.signs for file in users if file.is_foreign]

@@ -257,7 +257,7 @@ class Expanded:
 
 
 def _is_wanted(macro: Macro) -> bool:
-    """Whether a macro matters by itself, or does with what it is given: `#define NODES(X) X(Dock) X(Move)`."""
+    """Whether a macro matters by itself, or through its arguments: `#define NODES(X) X(Dock) X(Move)`."""
     if _IS_KNOWN(macro.name):
         return False
     names = "|".join(map(re.escape, filter(str.isidentifier, macro.parameters or ())))

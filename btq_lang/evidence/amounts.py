@@ -19,7 +19,7 @@ class Amounts(NamedTuple):
     longest: int
 
     def joined(self, other: Amounts) -> Amounts:
-        """What it may be where it is one of two."""
+        """What it may be if it is one of the two."""
         return Amounts(
             min(self.least, other.least),
             max(self.most, other.most),

@@ -5,9 +5,9 @@ row.
 
 The engine does not log when it ticks a node. A node that completes at once leaves one row, its result; an asynchronous
 leaf writes RUNNING after its first tick; and some nodes write RUNNING after their children's rows. When such a node
-began is known where the row before shows that the tick which wrote it went on to the node: it is the RUNNING of a node
-above, or the result of an elder sibling, and all nodes between tick their children at once (`NodeKind.one_tick`).
-Otherwise it began after that row.
+began is known if the tick that wrote the row before went on to the node: that row is the RUNNING of a node above, or
+the result of an elder sibling, and all nodes between tick their children at once (`NodeKind.one_tick`). Otherwise the
+node began at some time after that row.
 
 A row to IDLE, or the result of a leaf that was running, may come from another thread (of a ThreadedAction, or a
 Timeout's timer) and does not show where the tree is; yet a node began after its own last row, and after an elder

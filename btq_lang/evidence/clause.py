@@ -213,8 +213,8 @@ class JudgedClause:
             self._judge_one(activation, observed, path, guard)
 
     def look(self, activation: Activation, path: str) -> bool:
-        """Judge an activation that is still open; returns whether it breaks the clause, whatever comes later, and was
-        not seen to before.
+        """Judge an activation that is still open; returns whether it breaks the clause for certain, and did not when it
+        was looked at before.
         """
         uid, verb = activation.uid, self.claim.verb
         if self._judge is None or not self._is_final or uid in self.broken or uid not in self._nodes:

@@ -1,8 +1,8 @@
 """What the guards, nodes that a build adds around others, did: which nodes they stopped, whose start they refused, and
 whose success they did not accept.
 
-One invariant: an activation is passed on only when what the guards around it did is certain: a halted one when its
-nearest ancestor has ended that was not halted itself, one that succeeded when its success has been checked.  A guard
+One invariant: an activation is passed on only when it is certain what the guards around it did: a halted one when its
+nearest ancestor that was not halted itself has ended, a successful one when its success has been checked.  A guard
 has failed when its check has, also where the log is cut off before the guard's own row.
 """
 

@@ -3,7 +3,7 @@ the end of the run, inside the activations of its node.
 
 One invariant: a span begins when a condition becomes true, or just after what a node does, and does not have its end.
 Where it is unknown whether a span has begun, or has ended,
-only what both cases come to is known.
+only what holds in both cases is known.
 """
 
 from __future__ import annotations

@@ -64,7 +64,7 @@ class Margins:
 
         Args:
             within, beyond: what it is with a bound that it keeps, and with one that it breaks: KEPT to NOTHING.
-            values: where it changes; of two, it is unknown between them; none: that is not known.
+            values: where it changes; between two values it is unknown; none: it is unknown where.
         """
         if within == beyond and not (beyond == VIOLATED and values):
             self._open.append((within, ()))

@@ -72,7 +72,7 @@ class Mean:
         return UNKNOWN if self._confidence is None else UNDECIDED
 
     def _limits(self) -> tuple[float, float]:
-        """Between which the mean is: as far as all values are known, and with the confidence."""
+        """The limits of the mean: of what values with known limits may come to, and with the confidence."""
         number, total, squares, halves, squared_halves = self.sums
         mean, width = self.demanded.value + total / number, halves / number
         if self._confidence is not None and number >= 2:
@@ -82,7 +82,7 @@ class Mean:
         return self._rounded(mean - width), self._rounded(mean + width)
 
     def _rounded(self, end: float) -> float:
-        """A limit, or a bound that it differs from by what sums round off."""
+        """A limit; a bound in its place if they differ only by the rounding of sums."""
         bounds = (self.demanded.value, self.demanded.upper)
         return next((each for each in bounds if each is not None and isclose(end, each, rel_tol=_SAME)), end)
 

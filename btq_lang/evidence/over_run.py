@@ -236,8 +236,8 @@ def _earlier(next_event: Happening, event: Happening) -> Happening:
 
 
 def is_never_at_once(first: ResolvedEvent | ResolvedAnyEvent, last: ResolvedEvent | ResolvedAnyEvent) -> bool:
-    """Whether what happens at one moment is not first the one and then the other event: an event does not follow
-    itself, and a row of a node is one change."""
+    """Whether two events never follow each other at one moment: an event does not follow itself, and a row of a node is
+    one change."""
     return first == last or (first.atoms[0].condition is None and last.atoms[0].condition is None)
 
 

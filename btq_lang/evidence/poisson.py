@@ -1,7 +1,8 @@
-"""Exact confidence limits of the mean of a Poisson distribution, of which one number was seen.
+"""Exact confidence limits of the mean of a Poisson distribution, from one number that was seen.
 
-Those of F. Garwood, Fiducial limits for the Poisson distribution, Biometrika 28 (1936), each one-sided: the means with
-which so many, or more (fewer), are as probable as the confidence leaves.  SciPy has them as quantiles of chi-squared.
+Those of F. Garwood, Fiducial limits for the Poisson distribution, Biometrika 28 (1936), each one-sided: the mean with
+which that number or more (or fewer) has the probability that the confidence leaves.  SciPy has them as quantiles of
+chi-squared.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ def upper_number(number: int, confidence: float) -> float:
 
 
 def _at_most(number: int, mean: float) -> float:
-    """The probability of at most so many; as a sum of its terms, of which those far below the mean are nothing."""
+    """The probability of at most so many; as a sum of terms, of which those far below the mean are negligible."""
     if mean <= 0:
         return 1.0
     first = max(0, int(mean - 40 * mean**0.5 - 40)) if number > mean else max(0, int(number - 40 * mean**0.5 - 40))

@@ -30,14 +30,14 @@ class PoolBound(NamedTuple):
 
     @property
     def columns(self) -> tuple[float | None, ...]:
-        """The lower and the upper bound, whether they violate it themselves, and the time, for a table."""
+        """The lower and the upper bound, whether a value equal to each violates it, and the time, for a table."""
         low = self.value if self.relation in (">=", ">", "between") else None
         high = self.value if self.relation in ("<=", "<") else self.upper
         return low, high, float(self.relation in ("<", ">")), self.seconds
 
     @classmethod
     def of_columns(cls, low: float | None, high: float | None, strict: float, seconds: float, unit: Unit) -> PoolBound:
-        """What has these columns."""
+        """The bound that has these columns."""
         if low is not None and high is not None:
             return cls("between", low, high, seconds, unit)
         relation = ("<" if low is None else ">") + ("" if strict else "=")

@@ -3,9 +3,8 @@
 A log that is given twice, under two names, counts once.
 
 One invariant: a run is left out only if another one that is kept holds all its rows: node and status of each, in their
-order, within a millisecond; of equal ones that of the session with more rows is kept, then the first.
-
-Only sessions in which runs begin or end at the same time are read for this; where there are none, nothing is.
+order, within a millisecond; of equal runs the one in the session with more rows is kept, or else the first. Only
+sessions in which runs begin or end at the same time are read for this.
 """
 
 from __future__ import annotations

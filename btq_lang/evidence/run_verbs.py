@@ -38,10 +38,12 @@ from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
     from btq_lang.evidence.guards import RefusedStart
+    from btq_lang.evidence.model import Moment
     from btq_lang.evidence.observed import Observed
 
 Judgements: TypeAlias = Iterator[Judgement | None]
 RunJudge: TypeAlias = Callable[[ResolvedClaim, OverRun], Judgements]
+_Times: TypeAlias = tuple[Measure, Measure]  # the shortest and the longest that a time may be
 
 
 def run_judge(claim: ResolvedClaim, subject: Subject | None, *, has_span: bool = False) -> RunJudge | None:
@@ -97,23 +99,12 @@ def _answered(
         answer: None: there is none in the run.
         missing: what the node had not done, in words, if there is none.
     """
-    end = answer or Happening(run.root.ended, run.root.ended)
-    until = end.read
-    times = _between_limits(claim, run.observed, event, end)
-    deadline = until
-    if not isinstance(times, UnknownValue):
-        deadline = min(until, (event.read[0] + round(times[1].bound.si * 1e6), until[1]))
-    time = deadline[0]
-    if event.why:  # whether it is in scope is unknown, too
-        yield Judgement(None, time, event.why)
+    times, until, deadline = _time_to(claim, run, event, answer)
+    time, counts = deadline[0], run.counts(event.read, deadline)
+    if (unjudged := _unjudged(event, counts, times, time)) is not None:
+        yield unjudged
         return
-    counts = run.counts(event.read, deadline)
-    if counts is False:
-        yield OUT
-        return
-    if isinstance(times, UnknownValue):
-        yield Judgement(None, time, times.why)
-        return
+    assert isinstance(times, tuple), "the clause has a deadline"
     least, most = times
     if answer is None and least.holds and run.is_cut_off:
         yield None if most.holds else Judgement(None, time, UNKNOWN_BEGIN)
@@ -128,9 +119,33 @@ def _answered(
         yield _timed(claim, times, until[0], event.until[0])
 
 
+def _time_to(
+    claim: ResolvedClaim, run: OverRun, event: Happening, answer: Happening | None
+) -> tuple[_Times | UnknownValue | None, Moment, Moment]:
+    """The time from an event to its answer, or to the end of the run, None without a deadline; its end; and the
+    deadline, if that is earlier."""
+    end = answer or Happening(run.root.ended, run.root.ended)
+    times = _between_limits(claim, run.observed, event, end) if claim.limit is not None else None
+    deadline = end.read
+    if isinstance(times, tuple):
+        deadline = min(deadline, (event.read[0] + round(times[1].bound.si * 1e6), deadline[1]))
+    return times, end.read, deadline
+
+
+def _unjudged(
+    event: Happening, counts: bool | UnknownValue, times: _Times | UnknownValue | None, time: int
+) -> Judgement | None:
+    """The judgement of an event whose time does not count or is unknown; None for any other."""
+    if event.why:  # whether it is in scope is unknown, too
+        return Judgement(None, time, event.why)
+    if counts is False:
+        return OUT
+    return Judgement(None, time, times.why) if isinstance(times, UnknownValue) else None
+
+
 def _between_limits(
     claim: ResolvedClaim, observed: Observed, first: Happening, last: Happening
-) -> tuple[Measure, Measure] | UnknownValue:
+) -> _Times | UnknownValue:
     """The shortest and the longest time from one event to another, compared with the bound of a claim."""
     shortest = compared(claim, max(last.at[0] - first.until[0], 0) / 1e6, observed, first.read)
     longest = compared(claim, (last.until[0] - first.at[0]) / 1e6, observed, first.read)
@@ -139,7 +154,7 @@ def _between_limits(
     return longest if isinstance(longest, UnknownValue) else (shortest, longest)
 
 
-def _timed(claim: ResolvedClaim, times: tuple[Measure, Measure], moment: int, since: int, what: str = "") -> Judgement:
+def _timed(claim: ResolvedClaim, times: _Times, moment: int, since: int, what: str = "") -> Judgement:
     """The judgement of a time between two limits; unknown unless both limits give the same."""
     least, most = times
     sentence = what or VERBS[claim.verb].said
@@ -197,22 +212,12 @@ def _followed_by(
     claim: ResolvedClaim, run: OverRun, event: Happening, answer: Happening | None, unclear: Sequence[Happening]
 ) -> Judgements:
     """The judgement of an event and what follows it; None: the log ends before the deadline."""
-    end = answer or Happening(run.root.ended, run.root.ended)
-    until = deadline = end.read
-    times = _between_limits(claim, run.observed, event, end) if claim.limit is not None else None
-    if isinstance(times, tuple):
-        deadline = min(until, (event.read[0] + round(times[1].bound.si * 1e6), until[1]))
-    time = deadline[0]
-    if event.why:  # whether it is in scope is unknown, too
-        yield Judgement(None, time, event.why)
+    times, until, deadline = _time_to(claim, run, event, answer)
+    time, counts = deadline[0], run.counts(event.read, deadline)
+    if (unjudged := _unjudged(event, counts, times, time)) is not None:
+        yield unjudged
         return
-    counts = run.counts(event.read, deadline)
-    if counts is False:
-        yield OUT
-        return
-    if isinstance(times, UnknownValue):
-        yield Judgement(None, time, times.why)
-        return
+    assert not isinstance(times, UnknownValue), "it cannot be judged"
     is_late, is_surely_in_time = times is not None and not times[0].holds, times is None or times[1].holds
     # The condition may hold after the run, before the time is over.
     is_open = claim.condition is not None and times is not None and times[0].excess < 0
@@ -235,7 +240,7 @@ def _followed_by(
 
 
 def _may_be_in_time(claim: ResolvedClaim, run: OverRun, event: Happening, other: Happening) -> bool:
-    """Whether what may have happened was before the deadline, if it did."""
+    """Whether something that may have happened was before the deadline, if it happened."""
     least = compared(claim, max(other.at[0] - event.until[0], 0) / 1e6, run.observed, event.read)
     return isinstance(least, Measure) and least.holds
 

@@ -153,7 +153,8 @@ class Signals:
 
 def _before_samples(signal: ResolvedSignal, is_sampled: bool, with_initial: bool) -> SampleValue | UnknownValue:
     """The value of a signal before its first sample.  Its value `initially` was not measured: it may decide which
-    activations a requirement is about, but never that one satisfies it, and nothing in a log without any sample.
+    activations a requirement is about, but never that one satisfies the requirement. In a log without any sample it
+    decides nothing.
     """
     if not is_sampled:
         return UnknownValue(_none_of(signal))

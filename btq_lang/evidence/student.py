@@ -1,7 +1,7 @@
 """Quantiles of Student's t distribution.
 
-With x = n / (n + t²), of which the regularised incomplete beta function I_x(n/2, 1/2) is the probability of more than t
-on either side (Abramowitz and Stegun 26.7.1; DLMF 8.17).  SciPy has them as `scipy.stats.t.ppf`.
+With x = n / (n + t²), the regularised incomplete beta function I_x(n/2, 1/2) is the probability of more than t on
+either side (Abramowitz and Stegun 26.7.1; DLMF 8.17).  SciPy has them as `scipy.stats.t.ppf`.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """How much of a resource was used between two moments, from the values of a level or a counter in between.
 
-One invariant: neither refilling nor noise counts as use: their size tells what a level gains, and a restart of a
-counter, from jitter.
+One invariant: neither refilling nor noise counts as use; both the gains of a level and the restarts of a counter differ
+from noise by their size.
 """
 
 from __future__ import annotations

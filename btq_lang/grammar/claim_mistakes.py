@@ -146,7 +146,7 @@ def verb_in_other_words(cursor: Cursor, begin: int, subject: str) -> bool:
 
 
 def written_as(cursor: Cursor, begin: int, end: int, subject: str, words: str) -> None:
-    """Report that the words between two tokens, after a subject, are others here."""
+    """Report that other words are written in place of those between two tokens, after a subject."""
     span = Span(cursor.starts[begin], cursor.starts[end - 1] + len(cursor.raws[end - 1]))
     tail = cursor.text[span.end : cursor.starts[-1]].strip()
     whole = " ".join(part for part in (subject, words, tail) if part)

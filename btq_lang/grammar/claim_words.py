@@ -27,7 +27,7 @@ def at_verb(cursor: Cursor) -> bool:
 
 
 def bound_follows(cursor: Cursor, index: int) -> bool:
-    """Whether a bound begins at a token; `within` begins none of a count."""
+    """Whether a bound begins at a token; in a count, `within` does not begin one."""
     first = cursor.raws[index]
     if first == "between" or (first, *cursor.raws[index + 1 : index + 2]) in RELATIONS:
         return True

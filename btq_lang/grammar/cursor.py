@@ -269,8 +269,8 @@ class Cursor:
         return tuple(elements)
 
     def lists_requirements(self) -> bool:
-        """Whether a comma separates requirements here: in brackets, and on a line with `satisfies`, which is before its
-        first list in a clause.
+        """Whether a comma separates requirements here: in brackets, and on a line on which `satisfies` precedes the
+        first list of a clause.
         """
         if self._listing[0] != self._line_start:
             self._listing = self._line_start, not NODE_CLAUSES.isdisjoint(self.raws[: self.index])

@@ -9,7 +9,6 @@ all features and the checks that they use takes a third of that time.
     place.py, meaning.py   where the cursor is, and what the word there means: the features below use these two
     completion.py          with completion_list, proposals, node_proposals, clause_words, measures, snippets and ports
     xml_completion.py      the same in XML, of the same proposals
-    external.py            requirements of other tools
     hover.py               with describe and clause_enforcement; the ports of a node while it is typed
     external.py            the requirements of other tools, for completion, hover and links
     navigation.py          from a name to its definition, its uses and its callers

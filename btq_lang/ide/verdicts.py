@@ -101,8 +101,8 @@ class ProjectVerdicts:
 def verdict_titles(
     workspace: Workspace, path: str, evidence: ProjectVerdicts
 ) -> Iterator[tuple[Span, str, tuple[tuple[str, Span], ...]]]:
-    """For each requirement in a file of whose mission there are logs: the place of its name, its worst verdict in a few
-    words, and its nodes.
+    """For each requirement in a file whose mission has logs: the place of its name, its worst verdict in a few words,
+    and its nodes.
     """
     by_place: dict[Place, list[tuple[Shown, Judged]]] = {}
     unseen: dict[Place, str] = {}

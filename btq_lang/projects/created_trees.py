@@ -19,8 +19,8 @@ from btq_lang.workspace.workspace import Workspace
 
 
 def with_created_trees(workspace: Workspace, paths: Iterable[str], pools: Collection[str]) -> Workspace:
-    """A workspace whose project names the trees of some files that the C++ of some folders names, if it creates trees
-    by name, and the folders from which a server there creates any tree."""
+    """A workspace whose project knows what programs in some folders create: the trees of some files that their C++
+    names, if it creates trees by name, and the folders from which a server creates any tree."""
     project = workspace.project
     asked_for = {
         name

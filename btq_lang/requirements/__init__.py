@@ -18,7 +18,7 @@ identified by its facts.  What they read is in workspace/inputs.py.
     definitions.py   the requirement of a name
     attach.py    which requirement holds for which node
     durations.py, composition.py, budgets.py   how long nodes take when all that is demanded below them holds:
-                 `control_budgets` and `nav2_budgets` by rules, which `budget_parts` has the parts of
+                 `control_budgets` and `nav2_budgets` by rules, `budget_parts` the parts of these
     spans.py     the node whose time a span is
     external/    reading the requirements that other tools have written
     resolve.py   `requirements(workspace, path)`: all of a file and what it includes

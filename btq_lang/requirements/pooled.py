@@ -1,6 +1,6 @@
 """Claims that are judged of all runs together, `fails at most 1 per 200 h` and `on average`: what they cannot have.
 
-One invariant: a claim that goes on has one bound, whatever the situation, and no odds.
+One invariant: a claim that passes has one bound in all situations, and no odds.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def on_average(
 def judged_together(
     reader: Reader, claims: Sequence[model.ResolvedClaim], odds: object
 ) -> tuple[list[model.ResolvedClaim], list[str]]:
-    """The claims that can be judged, and the texts of the others, of which it is reported why not."""
+    """The claims that can be judged, and the texts of the others; why these cannot is reported."""
     kept: list[model.ResolvedClaim] = []
     others: list[str] = []
     for claim in claims:

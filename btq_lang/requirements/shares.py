@@ -1,6 +1,7 @@
-"""`in at least 95 % of time`: makes another demand of `keeps` and `never`, that of a share of the time.
+"""`in at least 95 % of time` makes `keeps` and `never` demand a share of the time.
 
-One invariant: the share is the bound of each claim, so what measures, compares and explains bounds knows nothing of it.
+One invariant: the share is the bound of each claim, so the code that measures, compares and explains bounds needs no
+case for it.
 """
 
 from __future__ import annotations

@@ -27,7 +27,8 @@ def node_of(span: Interval, budgets: Budgets) -> ResolvedNode | None:
 
 
 def _node(event: ResolvedEvent | ResolvedAnyEvent, happenings: tuple[str, ...]) -> ResolvedNode | None:
-    """The node of an event that is one of these, in all of its instances; None of several events."""
+    """The node of an event, if the event is of these kinds and means all instances of the node; None for several
+    events."""
     if isinstance(event, ResolvedAnyEvent):
         return None
     subject = event.subject

@@ -114,7 +114,7 @@ def tick_run_once(machine: Machine, node: SimulatedNode) -> int:
 
 
 def tick_precondition(machine: Machine, node: SimulatedNode) -> int:
-    """The child while a condition was true when it began."""
+    """The child, if a condition is true when it begins."""
     otherwise = read_status(node, "else")
     if otherwise is None:
         raise EngineError("Missing parameter [else] in Precondition")

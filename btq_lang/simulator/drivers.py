@@ -1,7 +1,7 @@
 """How a program ticks its tree, and how time passes between two ticks.
 
-Nothing happens between ticks that nothing awaits.  So once a tick has left everything as it was, those after it would
-do the same until a timer goes off or the world changes, and time jumps there.
+Once a tick has left everything as it was, the ticks after it do the same until a timer goes off or the world changes,
+so time jumps there.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Which function is which node's."""
+"""The functions of each kind of node."""
 
 from __future__ import annotations
 

@@ -211,7 +211,7 @@ def tick_distance_controller(machine: Machine, node: SimulatedNode) -> int:
 
 
 def tick_speed_controller(machine: Machine, node: SimulatedNode) -> int:
-    """The child again after a time that is the shorter the faster the robot is, and for a new goal."""
+    """The child again after a time, which is shorter the faster the robot is, and for a new goal."""
     low, high = read_real(node, "min_rate"), read_real(node, "max_rate")
     if low <= 0 or high <= 0:
         raise NotModelled(f"{node.path} has a rate that is not above 0, and the program refuses that")

@@ -1,4 +1,4 @@
-"""What Nav2's conditions answer that notice changes, time and distance.
+"""The answers of Nav2's conditions that notice changes, time and distance.
 
 What a node compares with before it has begun is what its class sets, or 0 where it sets nothing, as in those runs.
 Source: facts about Nav2's nodes from Humble to Lyrical, seen in runs of them on the engine.

@@ -58,7 +58,7 @@ class SimulatedNode:
         index: of the current child; of a node that chooses one at every tick, counted from 1, and 0 if none runs.
         count: how often a child has ended, failed or been tried.
         skipped: how many children have been skipped since it began.
-        is_on: that it runs its child, is in its catch, or has ended for ever: what its function calls so.
+        is_on: a flag of its function: it runs its child, is in its catch, or has ended for ever.
         completed: the children that have ended.
         seen: the number of writes that it knows of an entry.
         result: that of its only run.

@@ -29,7 +29,7 @@ class GivenActivation(Record):
         result: SUCCESS, FAILURE or SKIPPED; RUNNING: it does not end.  None: not given.
         takes: in milliseconds; None: not given.
         writes: at its end; None: not given.
-        times: in how many activations after each other; 0: in all later ones.
+        times: in how many successive activations; 0: in all later ones.
     """
 
     result: int | None = None

@@ -110,7 +110,7 @@ def check_rounds(node: SimulatedNode, rounds: int) -> None:
 
 
 def halt_children(machine: Machine, node: SimulatedNode) -> None:
-    """Halt a node that has children and remembers nothing that a halt makes it forget."""
+    """Halt a node with children and without memory that a halt clears."""
     reset_children(machine, node)
     if not machine.dialect.is_old:  # there only its parent does that
         reset_status(machine, node)

@@ -17,7 +17,7 @@ NEVER: Final = -1
 
 
 def tick_timeout(machine: Machine, node: SimulatedNode) -> int:
-    """The child, and FAILURE in the tick after it was halted for its time."""
+    """The child; FAILURE in the tick after the timer halted it."""
     limit = _milliseconds(node, "msec", "TimeoutNode")
     if not node.is_on:
         node.is_on = True
@@ -37,7 +37,7 @@ def tick_timeout(machine: Machine, node: SimulatedNode) -> int:
 
 
 def tick_delay(machine: Machine, node: SimulatedNode) -> int:
-    """The child, from the tick after a time on."""
+    """The child, from the first tick after a time has passed."""
     wait = _milliseconds(node, "delay_msec", "DelayNode")
     if not node.is_on:
         node.is_on = True

@@ -1,4 +1,4 @@
-"""What BehaviorTree.CPP 3.8 has and version 4 has not, or does otherwise.
+"""What BehaviorTree.CPP 3.8 does that version 4 does not, or does otherwise.
 
 Source: facts about BehaviorTree.CPP 3.8.7, read in its sources and seen in runs of it with the nodes of Nav2.
 """

@@ -1,4 +1,4 @@
-"""What a node does otherwise in another version of the engine.
+"""How nodes differ between versions of the engine.
 
 Source: facts about BehaviorTree.CPP 3.8 and 4.6 to 4.10, seen in runs of 3.8.7, 4.6.2 and 4.10.0, and read in the
 sources between.

@@ -5,9 +5,7 @@ One invariant: every fact is in exactly one row with a key, and the same mission
     overview.py    the rows
     collect.py     a workspace as an overview
     chain.py       which requirements refine and mitigate what, also of other tools
-    selection.py   the rows of some requirements only
     metadata.py    hazards, and what requirements say beside their demands
-    chain.py       hazards, requirements, and those that refine them
     selection.py   some of the requirements, and what these concern
     ways.py        how clauses are covered
     missions.py    how the built tree covers them, and all of it in one call

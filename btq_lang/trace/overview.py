@@ -358,7 +358,7 @@ class Overview(Record):
 
     @property
     def unjudged(self) -> tuple[RequirementRow, ...]:
-        """Requirements that are not judged, nor any that refines them, though there is evidence."""
+        """Requirements that are not judged and that no judged requirement refines, although there is evidence."""
         return self._lacking(lambda row: row.is_judged) if self.has_evidence else ()
 
     @property
@@ -373,7 +373,7 @@ class Overview(Record):
         return self._lacking(lambda row: bool(row.uses))
 
     def _lacking(self, has_it: Callable[[RequirementRow], bool]) -> tuple[RequirementRow, ...]:
-        """The requirements that lack something that none of those that refine them has either."""
+        """The requirements that lack something, as do all that refine them."""
         refined_by = {row.key: row.refined_by for row in self.requirements}
         having = {row.key for row in self.requirements if has_it(row)}
         lacking: list[RequirementRow] = []

@@ -1,6 +1,6 @@
 """The numbers of a mission on both sides, as a store has them.
 
-One invariant: what is loaded are means and counts of each run, group of runs or robot.
+One invariant: only means and counts of each run, group of runs or robot are loaded.
 """
 
 from __future__ import annotations

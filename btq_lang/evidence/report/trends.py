@@ -2,7 +2,7 @@
 
 A step is a minute, an hour, a day or some weeks, by the length of the time.
 
-One invariant: the engine counts; what is loaded are at most as many values of a clause as its drawing has places.
+One invariant: the engine counts; at most as many values of a clause are loaded as its drawing has places.
 """
 
 from __future__ import annotations

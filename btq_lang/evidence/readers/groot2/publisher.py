@@ -64,7 +64,7 @@ class Publisher:
 
         Raises:
             NoAnswer: none came in time.
-            NotAPublisher: none has ever come, but from something else.
+            NotAPublisher: no publisher has ever replied, and something else has.
             BadReply: as `messages.reply`.
         """
         if self._socket is None:

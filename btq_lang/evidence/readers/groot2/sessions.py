@@ -53,7 +53,7 @@ def sessions_of(
     """The sessions that the events of a `Following` make; each must be read before the next is requested.
 
     Args:
-        look: given the times until when all that the robot did has been read.
+        look: called with each time until which all that the robot did has been read.
     """
     for event in events:
         began = [event] if isinstance(event, Began) else []
