@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from btq_lang.commands.output import page_problem, write_output
-from btq_lang.commands.stored import NO_STORE, store_of_project
+from btq_lang.commands.stored import NO_STORE, meanings_here, store_of_project
 from btq_lang.projects.messages import CommandOutput
 from btq_lang.projects.options import Refused
 from btq_lang.util.record import Record
@@ -37,7 +37,7 @@ def run(options: ReportOptions, messages: CommandOutput) -> int:
     from btq_lang.evidence.store.engine import NoEngine, asked
 
     try:
-        page = overview(asked(store), store, options.by or ("label", "robot"), options.sides or ())
+        page = overview(asked(store), store, options.by or ("label", "robot"), options.sides or (), meanings_here())
     except (NoEngine, UnknownSide) as error:
         raise Refused(error) from error
     write_output(messages, options.output, render(page))

@@ -14,6 +14,7 @@ from btq_lang.util.record import replace
 from btq_lang.workspace.loader import find_project, shown
 
 if TYPE_CHECKING:
+    from btq_lang.evidence.meanings import Meanings
     from btq_lang.evidence.store.sets import Keeping
     from btq_lang.workspace.config import Project
 
@@ -115,10 +116,18 @@ def summarise(options: VerifyOptions, store: str, messages: CommandOutput) -> in
             from btq_lang.evidence.store.engine import asked_by
 
             ask = asked_by(options.engine, store)
-        report = summary(ask, store, tuple(dict.fromkeys(options.by)))
+        report = summary(ask, store, tuple(dict.fromkeys(options.by)), meanings=meanings_here())
     except NoEngine as error:
         raise Refused(error) from error
     return print_report(options, report, (), messages)
+
+
+def meanings_here() -> Meanings:
+    """What the requirements of this folder's project mean; a mission that cannot be read is left out."""
+    from btq_lang.commands.candidates import candidates
+    from btq_lang.evidence.meanings import meanings_of
+
+    return meanings_of((mission.name, mission.fingerprints) for mission in candidates((), (), []))
 
 
 NO_STORE: Final = (

@@ -6,6 +6,7 @@ One invariant: what a log does not show is unknown, with the reason; nothing is 
     model.py       what a log holds: the tree that ran, transitions, activations, samples
     runs.py, begins.py   transitions to activations and runs, and when nodes began
     identity.py    which node of a log is which written node
+    meanings.py    which verdicts are on requirements that meant something else
     named_runs.py  the same for a log without a tree, run by run
     signals.py, history.py   values of signals at a moment, and what nodes did in the open run
     observed.py, conditions.py   what was observed during an activation or a run, whether conditions held, and measures

@@ -12,6 +12,7 @@ The columns, which later versions add to but do not change:
     result          in words, of an open requirement the reason
     look_at         what to look at, for a violated clause
     limits          which limits low and high are: one look | window | every look
+    suspect         yes: the requirement meant something else when it was judged
 """
 
 from __future__ import annotations
@@ -50,11 +51,12 @@ def _rows(report: VerdictReport) -> Iterator[dict[str, str | float]]:
                     "result": result(clause),
                     "look_at": headline(clause, mission.medians) if clause.verdict == VIOLATED else "",
                     "limits": clause.limits if clause.interval is not None else "",
+                    "suspect": "yes" if requirement.is_suspect else "",
                 }
 
 
 _AS_THEY_ARE: Final = ("verdict", "unit", "counted", "violated", "unknown", "cut_off")
 _COLUMNS: Final = (
     *("requirement", "title", "mission", "clause", "path", *_AS_THEY_ARE),
-    *("worst", "worst_si", "worst_run", "low", "high", "more", "result", "look_at", "limits"),
+    *("worst", "worst_si", "worst_run", "low", "high", "more", "result", "look_at", "limits", "suspect"),
 )

@@ -251,6 +251,7 @@ class MissionEvaluation:
                 worst_of(clause_verdict.verdict for clause_verdict in clauses),
                 tuple(clauses),
                 RequirementLinks.of(requirements.all[name]),
+                tuple(filter(None, (self.mission.fingerprints.get(name),))),
             )
             for name, clauses in by_requirement.items()
         )

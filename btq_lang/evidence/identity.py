@@ -19,6 +19,7 @@ from btq_lang.btcpp.marks import MARK
 from btq_lang.btcpp.outputs import as_xml
 from btq_lang.btcpp.side_file import BuiltFile, RunningTree
 from btq_lang.catalog.versions import VERSIONS
+from btq_lang.evidence.meanings import fingerprints
 from btq_lang.evidence.model import LoggedTree
 from btq_lang.evidence.readers.tree import delay_of, kind_of
 from btq_lang.requirements.model import NodeTarget
@@ -57,6 +58,11 @@ class Candidate:
     def indices(self) -> dict[int, int]:
         """The index of each written node among those of the mission, by its `id`."""
         return {id(node): index for index, node in enumerate(self.requirements.nodes.all)}
+
+    @cached_property
+    def fingerprints(self) -> dict[str, str]:
+        """As of the function."""
+        return fingerprints(self.workspace, self.requirements)
 
     def builds(self, tree: str = "") -> Iterator[Build]:
         """The builds of the mission that a program may run, the one without options first.

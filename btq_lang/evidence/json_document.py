@@ -97,6 +97,8 @@ def _requirement(requirement: RequirementVerdict, mission: MissionVerdicts) -> J
         "title": requirement.title,
         "verdict": requirement.verdict,
         **{name: links if isinstance(links, str) else [*links] for name, links in requirement.links.named.items()},
+        **({"fingerprints": [*requirement.fingerprints]} if requirement.fingerprints else {}),
+        **({"suspect": True} if requirement.is_suspect else {}),
         "clauses": [_clause(each) for each in requirement.clauses],
     }
 
@@ -218,6 +220,7 @@ def _read_requirement(data: dict[str, Any]) -> RequirementVerdict:
     return RequirementVerdict(
         *(data["id"], data["title"], data["verdict"], tuple(map(_read_clause, data["clauses"]))),
         RequirementLinks(**links),
+        tuple(data.get("fingerprints", ())),
     )
 
 

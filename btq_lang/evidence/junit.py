@@ -61,6 +61,7 @@ def _case(requirement: RequirementVerdict, mission: MissionVerdicts) -> Iterator
         "verified_by": ",".join(links.verified_by),
         "source": "; ".join(links.sources),
         "priority": links.priority,
+        "suspect": "true" if requirement.is_suspect else "",
     }
     listed = (f'<property name="{name}" value="{escaped(value)}"/>' for name, value in properties.items() if value)
     yield f"      <properties>{''.join(listed)}</properties>"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btq_lang.evidence.folding import folded_sources
+from btq_lang.evidence.meanings import SUSPECT
 from btq_lang.evidence.node_rows import node_rows
 from btq_lang.evidence.sentences import headline, result
 from btq_lang.evidence.verdicts import WORST_FIRST, MissionVerdicts, VerdictReport
@@ -39,7 +40,7 @@ def _lines(mission: MissionVerdicts) -> Iterator[str]:
             f"**{clause.verdict}**" if clause.verdict == WORST_FIRST[0] else clause.verdict,
             "<br>".join(filter(None, (f"**{escaped(requirement.id)}**", escaped(requirement.title)))),
             "<br>".join(code(text) for text in (clause.text, clause.path) if text),
-            escaped(result(clause)),
+            escaped(result(clause)) + (f"<br>{SUSPECT}" if requirement.is_suspect else ""),
         )
         for requirement, clause in clauses
     ]

@@ -8,6 +8,7 @@ from itertools import zip_longest
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.folding import folded, folded_sources
+from btq_lang.evidence.meanings import SUSPECT
 from btq_lang.evidence.node_rows import node_rows
 from btq_lang.evidence.sentences import explained, headline, result, worst_violation
 from btq_lang.evidence.signals import NO_SAMPLES
@@ -73,6 +74,7 @@ def requirement_rows(
     for requirement in sorted(requirements, key=lambda requirement: _ORDER.index(requirement.verdict)):
         title = requirement.title
         name = requirement.id
+        suspect = [SUSPECT] if requirement.is_suspect else []
         for clause in sorted(requirement.clauses, key=lambda clause: _ORDER.index(clause.verdict)):
             hint = "give them with --signals FILE" if clause.why.startswith(NO_SAMPLES) else ""
             result_text = result(clause)
@@ -80,8 +82,9 @@ def requirement_rows(
                 result_text += f", not started in {counted(clause.idle, 'run')}"
             texts = [name, title, _clause(clause, requirement), result_text, hint]
             below: Sequence[str] = [*_explanation(clause, medians, verbose)] if clause.verdict == VIOLATED else []
-            rows.append((clause.verdict, [printable(text) for text in texts], below))
+            rows.append((clause.verdict, [printable(text) for text in texts], [*suspect, *below]))
             name = title = ""  # shown once
+            suspect.clear()
     indent = len(NEVER) + 4
     widths = [max(cells_of(row[column]) for _, row, _ in rows) if rows else 0 for column in range(4)]
     fitting = narrowed(widths, room - indent - 2 * (sum(map(bool, widths)) - 1))

@@ -311,13 +311,21 @@ class RequirementLinks(Record):
 
 
 class RequirementVerdict(Record):
-    """A requirement; its verdict is the worst of its clauses.  links: unknown, and so empty, by a store."""
+    """A requirement; its verdict is the worst of its clauses.
+
+    Attributes:
+        links: unknown, and so empty, by a store.
+        fingerprints: of what it meant when it was judged, by a store perhaps several; empty: unknown.
+        is_suspect: whether it means something else now.
+    """
 
     id: str
     title: str
     verdict: Verdict
     clauses: tuple[ClauseVerdict, ...]
     links: RequirementLinks = RequirementLinks()
+    fingerprints: tuple[str, ...] = ()
+    is_suspect: bool = False
 
 
 class EvidenceFile(Record):

@@ -16,6 +16,7 @@ from btq_lang.btcpp.enforceability import way_instead
 from btq_lang.catalog.qualities import Edition, get, qualities
 from btq_lang.diagnostics.model import Place
 from btq_lang.evidence.boxes import measured_by
+from btq_lang.evidence.meanings import fingerprints, is_suspect
 from btq_lang.evidence.sentences import result
 from btq_lang.evidence.verdicts import WORST_FIRST, RequirementVerdict, worst_of
 from btq_lang.graph.figure import Box, MeasuredClause, Note
@@ -116,7 +117,9 @@ class _Collector:
         self._uses: defaultdict[_Key, dict[AppliedRequirement, None]] = defaultdict(dict)
         self._loose: dict[_Key, list[str]] = {}  # without a node in every mission in which other clauses have one
         self._verdicts: defaultdict[_Key, list[ClauseEvidence]] = defaultdict(list)
-        self._builds: defaultdict[str, defaultdict[_Key, list[Verdict]]] = defaultdict(lambda: defaultdict(list))
+        self._builds: defaultdict[str, defaultdict[_Key, list[tuple[Verdict, bool]]]] = defaultdict(
+            lambda: defaultdict(list)
+        )
         self._qualities: dict[str, QualityRow] = {}
         self._hazards: dict[int, HazardRow] = {}  # by `id` of the syntax
         self._concerned: defaultdict[str, dict[str, None]] = defaultdict(dict)  # the nodes that satisfice a quality
@@ -135,7 +138,7 @@ class _Collector:
         self._declared(workspace, path, meanings, place)
         self._concerns(resolved, meanings, place)
         self._definitions(resolved, meanings, place)
-        self._evidence(path, resolved)
+        self._evidence(workspace, path, resolved)
         own = self._add_uses(workspace, path, resolved, place)
         for source in resolved.nodes.all:
             node = self._nodes[id(source.node)]
@@ -170,7 +173,12 @@ class _Collector:
             self._verdicts_of is not None,
             builds=tuple(
                 BuildVerdicts(
-                    label, tuple((self._requirements[key].key, worst_of(own)) for key, own in verdicts.items())
+                    label,
+                    tuple(
+                        (self._requirements[key].key, worst_of(verdict for verdict, _ in own))
+                        for key, own in verdicts.items()
+                    ),
+                    tuple(self._requirements[key].key for key, own in verdicts.items() if any(old for _, old in own)),
                 )
                 for label, verdicts in self._builds.items()
             ),
@@ -231,17 +239,26 @@ class _Collector:
                     **metadata_fields(requirement, approval),
                 )
 
-    def _evidence(self, path: str, resolved: Requirements) -> None:
+    def _evidence(self, workspace: Workspace, path: str, resolved: Requirements) -> None:
+        meanings = fingerprints(workspace, resolved) if self._verdicts_of is not None else {}
+
+        def is_outdated(verdicts: RequirementVerdict) -> bool:
+            now = meanings.get(verdicts.id)
+            return is_suspect(verdicts.fingerprints, {now} if now is not None else None)
+
         for verdicts in self._verdicts_of(path) if self._verdicts_of is not None else ():
             if (requirement := resolved.all.get(verdicts.id)) is not None:
                 self._verdicts[_place_of(requirement)] += [
-                    ClauseEvidence(self._shown(path), clause.text, clause.path, clause.verdict, result(clause))
+                    ClauseEvidence(
+                        *(self._shown(path), clause.text, clause.path, clause.verdict, result(clause)),
+                        is_suspect=is_outdated(verdicts),
+                    )
                     for clause in verdicts.clauses
                 ]
         for label, of_build in self._builds_of(path) if self._builds_of is not None else ():
             for verdicts in of_build:
                 if (requirement := resolved.all.get(verdicts.id)) is not None:
-                    self._builds[label][_place_of(requirement)].append(verdicts.verdict)
+                    self._builds[label][_place_of(requirement)].append((verdicts.verdict, is_outdated(verdicts)))
 
     def _quality(self, name: str, meanings: Meanings, location: At) -> str:
         """The key of a quality, which is added if it is new."""

@@ -15,6 +15,7 @@ The columns, which later versions add to but do not change:
     source, line    of what attached it, or of the node or tree
     defined, defined_line   where the requirement or the quality is defined or first named
     verdict, result     of a clause by logs, at the node whose path in the engine is in holds_for
+    suspect         of a verdict: yes if the requirement meant something else when it was judged
     build           the label of the runs by which a requirement has the verdict
     hazard, severity    the hazard that the requirement mitigates; how is then how it is covered, verdict its worst
     external        the ID in another tool of what the requirement refines or mitigates, likewise
@@ -57,12 +58,14 @@ def _rows(overview: Overview) -> Iterator[dict[str, str | int]]:
             yield {"kind": "clause without node", **row, "clause": loose}
         for evidence in requirement.evidence:
             verdict = {"clause": evidence.clause, "verdict": evidence.verdict, "result": evidence.result}
+            verdict |= {"suspect": "yes"} if evidence.is_suspect else {}
             source = {"source": evidence.mission} if evidence.mission else {}
             yield {"kind": "evidence", **row, "holds_for": evidence.path, **verdict, **source}
     for requirement, verdicts in overview.by_build:
         row = _requirement(requirement, characteristics.get(requirement.quality_key or "", ""))
-        for build, of_build in zip(overview.builds, verdicts, strict=True):
-            yield {"kind": "build", **row, "verdict": of_build, "build": build.label}
+        for build, (of_build, is_old) in zip(overview.builds, verdicts, strict=True):
+            suspect = "yes" if is_old else ""
+            yield {"kind": "build", **row, "verdict": of_build, "build": build.label, "suspect": suspect}
     yield from _chain(overview, characteristics)
     for requirement in overview.unenforced:
         row = _requirement(requirement, characteristics.get(requirement.quality_key or "", ""))
@@ -127,4 +130,5 @@ COLUMNS: Final = (
     *("kind", "requirement", "title", "quality", "characteristic", "holds_for", "tree", "clause", "how", "why"),
     *("attached_by", "source", "line", "defined", "defined_line", "verdict", "result", "build"),
     *("hazard", "severity", "external", "refines", "mitigates", "origin", "priority", "verified_by", "approval"),
+    "suspect",
 )

@@ -15,7 +15,7 @@ The document, format 1; a later btq adds keys but changes none without a new num
                        "evidence": [{"mission": PATH, "clause": TEXT, "path": PATH IN THE ENGINE,
                                      "verdict": "violated" | "unknown" | "undecided" | "satisfied" | "never exercised"
                                                 | "open",
-                                     "result": TEXT}] | null,
+                                     "result": TEXT, "suspect": BOOL}] | null,
                        "holds_for": [{"subject": TEXT, "nodes": [KEY], "arguments": TEXT, "at": PLACE,
                                       "attached_by": "subject" | "satisfies" | "apply" | "link",
                                       "clauses": [{"text": TEXT, "why": TEXT,
@@ -37,13 +37,14 @@ The document, format 1; a later btq adds keys but changes none without a new num
               "hazards_without_requirements": [KEY], "requirements_without_verdicts": [KEY],
               "requirements_without_sources": [KEY]},
      "skills": {"own": N, "above": N, "none": N},
-     "builds": [{"label": TEXT, "verdicts": [{"requirement": KEY, "verdict": VERDICT}]}]}
+     "builds": [{"label": TEXT, "verdicts": [{"requirement": KEY, "verdict": VERDICT, "suspect": BOOL}]}]}
 
     PLACE = {"path": PATH, "line": N, "column": N}, counted from 1, columns in Unicode code points
 
 A `skill` is an action or a condition that is not built in; it `carries` a quality or a requirement itself, through a
 node above it, or not at all.  Keys are valid in this document only.  `mission` is empty in the overview of
-one mission; `evidence` is null where neither logs nor verdicts are given.  A build is the runs in a store that have its
+one mission; `evidence` is null where neither logs nor verdicts are given.  A verdict is `suspect` if the requirement
+meant something else when it was judged; `state` is that of its approval.  A build is the runs in a store that have its
 label.  The text is ASCII.
 """
 
@@ -52,7 +53,14 @@ from __future__ import annotations
 import json
 from typing import TypeAlias
 
-from btq_lang.trace.overview import CharacteristicTotals, ExternalRow, HazardRow, Overview, RequirementRow
+from btq_lang.trace.overview import (
+    CharacteristicTotals,
+    ClauseEvidence,
+    ExternalRow,
+    HazardRow,
+    Overview,
+    RequirementRow,
+)
 from btq_lang.util.record import as_dict
 from btq_lang.util.version import __version__
 
@@ -103,7 +111,10 @@ def render(overview: Overview) -> str:
         "builds": [
             {
                 "label": build.label,
-                "verdicts": [{"requirement": key, "verdict": verdict} for key, verdict in build.verdicts],
+                "verdicts": [
+                    {"requirement": key, "verdict": verdict, "suspect": key in build.suspect}
+                    for key, verdict in build.verdicts
+                ],
             }
             for build in overview.builds
         ],
@@ -135,7 +146,7 @@ def _requirement(requirement: RequirementRow, has_evidence: bool) -> Json:
         "state": requirement.state,
         "fingerprint": requirement.fingerprint,
         "clauses_without_nodes": list(requirement.loose),
-        "evidence": [as_dict(clause) for clause in requirement.evidence] if has_evidence else None,
+        "evidence": [*map(_evidence, requirement.evidence)] if has_evidence else None,
         "holds_for": [
             {
                 "subject": use.subject,
@@ -176,3 +187,8 @@ def _external(external: ExternalRow) -> Json:
 def _total(totals: CharacteristicTotals) -> Json:
     fields = as_dict(totals)
     return {"characteristic": fields.pop("id") or None, **fields}
+
+
+def _evidence(clause: ClauseEvidence) -> Json:
+    fields = as_dict(clause)
+    return {**{name: value for name, value in fields.items() if name != "is_suspect"}, "suspect": clause.is_suspect}

@@ -28,7 +28,11 @@ def _lines(overview: Overview) -> Iterator[str]:
         names = {each.key: each.name for each in overview.requirements}
         heading = ["Requirement", "Quality", "Holds for", "How", *(["Evidence"] if has_evidence else ()), "Defined"]
         yield from table(heading, (_requirement(each, has_evidence, names) for each in overview.requirements))
-    if builds := [(escaped(each.name), *verdicts) for each, verdicts in overview.by_build]:
+    builds = [
+        (escaped(each.name), *(f"{verdict} (suspect)" if is_old else verdict for verdict, is_old in verdicts))
+        for each, verdicts in overview.by_build
+    ]
+    if builds:
         yield from ("", "### By build", "")
         labels = [escaped(build.label or NO_LABEL) for build in overview.builds]
         yield from table(("Requirement", *labels), builds)

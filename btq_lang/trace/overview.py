@@ -82,6 +82,7 @@ class ClauseEvidence(Record):
         mission: by whose logs; empty if the overview is of one mission.
         clause, path: as in `ClauseVerdict`.
         result: the counts, in words.
+        is_suspect: whether the requirement meant something else when it was judged.
     """
 
     mission: str
@@ -89,6 +90,7 @@ class ClauseEvidence(Record):
     path: str
     verdict: Verdict
     result: str
+    is_suspect: bool = False
 
 
 class ApprovalRow(Record):
@@ -158,6 +160,11 @@ class RequirementRow(Record):
     def verdict(self) -> Verdict | None:
         """The worst by logs; None without any."""
         return self.evidence[0].verdict if self.evidence else None
+
+    @property
+    def is_suspect(self) -> bool:
+        """Whether it, or what it refines, has changed since it was approved, or it since it was judged."""
+        return self.state == "suspect" or any(clause.is_suspect for clause in self.evidence)
 
     @property
     def is_judged(self) -> bool:
@@ -292,10 +299,12 @@ class BuildVerdicts(Record):
     Attributes:
         label: of its runs in the store; empty if they have none.
         verdicts: on requirements, by the keys of their rows.
+        suspect: the keys of those that meant something else when they were judged.
     """
 
     label: str
     verdicts: tuple[tuple[str, Verdict], ...]
+    suspect: tuple[str, ...] = ()
 
 
 class JudgedRuns(Record):
@@ -338,12 +347,15 @@ class Overview(Record):
     judged: JudgedRuns | None = None
 
     @property
-    def by_build(self) -> Iterator[tuple[RequirementRow, tuple[str, ...]]]:
-        """The requirements that logs of any build judge, each with its verdict of every build; empty without one."""
-        of_builds = [dict(build.verdicts) for build in self.builds]
+    def by_build(self) -> Iterator[tuple[RequirementRow, tuple[tuple[str, bool], ...]]]:
+        """The requirements that logs of any build judge, each with its verdict of every build, empty without one, and
+        whether that is suspect.
+        """
+        of_builds = [(dict(build.verdicts), build.suspect) for build in self.builds]
         for requirement in self.requirements:
-            verdicts = tuple(of_build.get(requirement.key, "") for of_build in of_builds)
-            if any(verdicts):
+            key = requirement.key
+            verdicts = tuple((of_build.get(key, ""), key in suspect) for of_build, suspect in of_builds)
+            if any(verdict for verdict, _ in verdicts):
                 yield requirement, verdicts
 
     @property

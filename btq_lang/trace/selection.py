@@ -56,8 +56,7 @@ def selected(overview: Overview, selection: Selection) -> Overview:
             if not keys.isdisjoint(external.requirements)
         ),
         builds=tuple(
-            replace(build, verdicts=tuple(verdict for verdict in build.verdicts if verdict[0] in keys))
-            for build in overview.builds
+            replace(build, verdicts=tuple(one for one in build.verdicts if one[0] in keys)) for build in overview.builds
         ),
         is_selection=True,
     )
@@ -71,7 +70,7 @@ def _is_asked_for(row: RequirementRow, selection: Selection, names: dict[str, Se
     if selection.qualities and own.isdisjoint(selection.qualities):
         return False
     states = {*row.way.split(", "), row.verdict, "" if row.is_judged else NO_VERDICT}
-    states |= {row.state if row.state != "open" else NOT_APPROVED}
+    states |= {row.state if row.state != "open" else NOT_APPROVED, "suspect" if row.is_suspect else ""}
     return not selection.states or not states.isdisjoint(selection.states)
 
 
@@ -95,4 +94,5 @@ def _tree(tree: TreeRow, keys: Set[str | None]) -> TreeRow:
 NO_VERDICT: Final = "without verdict"
 NOT_APPROVED: Final = "not approved"
 # How a requirement is covered, its verdict, and its approval; `open` is the verdict on what people verify.
+# What has changed since it was judged is suspect, too.
 STATES: Final = (*WAYS, "not attached", *WORST_FIRST, NO_VERDICT, "approved", "suspect", NOT_APPROVED)

@@ -39,7 +39,10 @@ def _lines(overview: Overview, paint: Paint, width: int) -> Iterator[str]:
             rows = [(*row, _evidence(each)) for row, each in zip(rows, overview.requirements, strict=True)]
         yield from _table(heading, rows, paint, width)
         yield ""
-    builds = [((each.name,), *((verdict,) for verdict in verdicts[-_BUILDS:])) for each, verdicts in overview.by_build]
+    builds = [
+        ((each.name,), *((f"{verdict} (suspect)" if is_old else verdict,) for verdict, is_old in verdicts[-_BUILDS:]))
+        for each, verdicts in overview.by_build
+    ]
     if builds:
         labels = [build.label or NO_LABEL for build in overview.builds[-_BUILDS:]]
         yield from _table(("By build", *labels), builds, paint, width)

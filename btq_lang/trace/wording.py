@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.evidence.meanings import SUSPECT
 from btq_lang.trace.overview import (
     WAYS,
     AppliedRequirement,
@@ -66,7 +67,8 @@ def evidence_lines(requirement: RequirementRow) -> Iterator[tuple[Verdict, str]]
             for one in of_all
         ):
             parts += [f"at {evidence.path}"] if evidence.path else []
-        yield evidence.verdict, f"{' '.join(parts)}: {evidence.result}" if parts else evidence.result
+        text = f"{' '.join(parts)}: {evidence.result}" if parts else evidence.result
+        yield evidence.verdict, f"{text}; {SUSPECT}" if evidence.is_suspect else text
 
 
 def remarks(requirement: RequirementRow, use: AppliedRequirement) -> Iterator[str]:
@@ -99,7 +101,9 @@ def state_of(requirement: RequirementRow) -> str:
     is outdated.
     """
     named = ", ".join(f'{way.method} "{way.id}"' for way in requirement.verification if way.id)
-    parts = (requirement.way, named, requirement.verdict, "approval outdated" if requirement.state == "suspect" else "")
+    is_old = any(clause.is_suspect for clause in requirement.evidence)
+    verdict = f"{requirement.verdict} (suspect)" if is_old else requirement.verdict
+    parts = (requirement.way, named, verdict, "approval outdated" if requirement.state == "suspect" else "")
     return "; ".join(part for part in parts if part)
 
 

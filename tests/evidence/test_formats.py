@@ -83,6 +83,7 @@ def test_csv(judged: Verify) -> None:
         "result": "1 of 2 activations, worst 30 ms in run 1",
         "look_at": LOOK,
         "limits": "",
+        "suspect": "",
     }
     assert (found["works"]["title"], found["works"]["verdict"], found["works"]["look_at"]) == (
         'It <works> & "well"',

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Sequence
 
 from btq_lang.evidence.compare.comparison import UnknownSide, compare
 from btq_lang.evidence.compare.model import RunComparison
+from btq_lang.evidence.meanings import NO_MEANINGS, Meanings
 from btq_lang.evidence.report.trends import MeasureTrend, Steps, Trends, measures, steps_of, trends
 from btq_lang.evidence.store.queries import OVERVIEW, Ask, Row, only
 from btq_lang.evidence.store.summary import parted
@@ -94,7 +95,9 @@ class StoreOverview(Record):
         return any(comparison.is_worse for comparison in self.comparisons)
 
 
-def overview(ask: Ask, store: str, by: Sequence[str], sides: Sequence[str] = ()) -> StoreOverview:
+def overview(
+    ask: Ask, store: str, by: Sequence[str], sides: Sequence[str] = (), meanings: Meanings = NO_MEANINGS
+) -> StoreOverview:
     """The overview of a store.
 
     Args:
@@ -102,6 +105,7 @@ def overview(ask: Ask, store: str, by: Sequence[str], sides: Sequence[str] = ())
         store: its name, as people read it.
         by: `label`, `robot` or both.
         sides: two labels to compare, which count as the last ones; none: the two that began last.
+        meanings: as of `parted`.
 
     Raises:
         Unknown: one of `sides` has no runs, or no mission in common with the other.
@@ -122,7 +126,7 @@ def overview(ask: Ask, store: str, by: Sequence[str], sides: Sequence[str] = ())
     of_time, measured = trends(ask, steps), measures(ask, steps, labels_at)
     failures, active = (grouped((row["mission"], row) for row in ask(OVERVIEW[name])) for name in ("failures", "nodes"))
     missions = []
-    for name, parts in _parts(ask, store, names if "label" in by else None).items():
+    for name, parts in _parts(ask, store, names if "label" in by else None, meanings).items():
         labels = [part.name for part in parts] if "label" in by else None
         began, ran = (_nodes(rows_of.get(name, ()), labels) for rows_of in (failures, active))
         missions.append(
@@ -139,7 +143,7 @@ def overview(ask: Ask, store: str, by: Sequence[str], sides: Sequence[str] = ())
     return StoreOverview(store, tuple(by), labels_at, steps, tuple(missions), last, comparisons)
 
 
-def _parts(ask: Ask, store: str, labels: Sequence[str] | None) -> dict[str, list[RunGroup]]:
+def _parts(ask: Ask, store: str, labels: Sequence[str] | None, meanings: Meanings) -> dict[str, list[RunGroup]]:
     """The parts of each mission.
 
     Args:
@@ -151,7 +155,7 @@ def _parts(ask: Ask, store: str, labels: Sequence[str] | None) -> dict[str, list
         for row in ask(OVERVIEW["exercised"].format(by=", ".join(("mission", *by))))
     }
     parts_of: dict[str, list[RunGroup]] = {}
-    for row, verdicts in parted(ask, store, by, 1):
+    for row, verdicts in parted(ask, store, by, 1, meanings=meanings):
         label = row.get("label", "")
         part = _part(row, verdicts, label, exercised.get((row["mission"], label), 0))
         parts_of.setdefault(row["mission"], []).append(part)

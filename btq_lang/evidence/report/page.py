@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.compare.lines import BY_CHANCE, DifferenceLine, by_chance, certain, heading, remarks, untestable
 from btq_lang.evidence.compare.model import WORSE, RunComparison
+from btq_lang.evidence.meanings import SUSPECT
 from btq_lang.evidence.report.charts import NO_NAME, bars, measure_figures
 from btq_lang.evidence.sentences import explained, result, worst_violation
 from btq_lang.evidence.verdicts import NEVER, OPEN, VIOLATED, WORST_FIRST, ClauseVerdict, RequirementVerdict
@@ -251,7 +252,8 @@ def _standing(requirement: RequirementVerdict | None, is_last: bool = False) -> 
         text = f"{place}{text}; {same} of {counted(len(requirement.clauses), 'clause')}"
     is_explained = is_last and clause.verdict == VIOLATED and clause.violations
     more = (explained(clause, worst_violation(clause), {}),) if is_explained else ()
-    return Cell(verdict=clause.verdict, lines=(text, *more))
+    suspect = (SUSPECT,) if requirement.is_suspect else ()
+    return Cell(verdict=clause.verdict, lines=(text, *suspect, *more))
 
 
 def _worst(clauses: Sequence[ClauseVerdict]) -> ClauseVerdict:

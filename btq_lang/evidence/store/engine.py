@@ -176,7 +176,8 @@ def asked_by(url: str, store: str) -> Callable[[str], list[dict[str, Any]]]:
             if not {name for name, _ in columns} <= {*tables[table].columns}:
                 raise NoEngine(f"{store}: {judged_earlier('logs in it', store)}")
         for table, names in OPTIONAL.items():
-            lacking = {name: ibis.null("float64") for name in names if name not in tables[table].columns}
+            types = {name: "string" if ROWS[table][name] == "VARCHAR" else "float64" for name in names}
+            lacking = {name: ibis.null(types[name]) for name in names if name not in tables[table].columns}
             tables[table] = tables[table].mutate(**lacking) if lacking else tables[table]
         left_out = ibis.memtable(ask(REPEATED), schema={"log": "string", "run": "int32"})
         kept = {name: rows.anti_join(left_out, ["log", "run"]) for name, rows in tables.items() if name != "clauses"}

@@ -129,7 +129,8 @@ QUERIES: Final = {
             MAX(rate_strict) AS rate_strict, MAX(rate_seconds) AS rate_seconds,
             MAX(mean_low) AS mean_low, MAX(mean_high) AS mean_high, MAX(mean_strict) AS mean_strict,
             MAX(CASE WHEN exercised THEN 1 ELSE 0 END) AS exercised,
-            SUM(cut_off) AS cut_off, MIN(missing) AS missing
+            SUM(cut_off) AS cut_off, MIN(missing) AS missing,
+            MIN(fingerprint) AS fingerprint, MAX(fingerprint) AS other_fingerprint
         FROM clauses
         GROUP BY {by}, requirement, clause, node
         ORDER BY {by}, clause_index, requirement, clause, node

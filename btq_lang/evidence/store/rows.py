@@ -65,6 +65,7 @@ class MissionRows:
         self._whose: Final = (mission, robot)
         self._clauses: Final[list[_Clause]] = []
         self._open: Sequence[ResolvedRequirement] = ()
+        self._fingerprints: Mapping[str, str] = {}
         self._tree: tuple[object, ...] = ()
         self._nodes: dict[int, tuple[object, ...]] = {}
         self._names: Final[dict[str, dict[str, None]]] = {}  # of all nodes by their paths, in all trees of the log
@@ -88,6 +89,7 @@ class MissionRows:
                 odds = clause.requirement.odds
                 of_runs = odds is not None and odds.experiments == "runs"
                 clause.record(partial(self._judged, written, of_runs))
+            self._fingerprints = joined.mission.fingerprints
             self._open = [
                 requirement for requirement in joined.mission.requirements.all.values() if open_reason(requirement)
             ]
@@ -168,7 +170,8 @@ class MissionRows:
         if pool is not None:
             *bounds, seconds = pool.demanded.columns
             rate = (*bounds, seconds, None, None, None) if seconds else (None, None, None, None, *bounds)
-        self._rows.write["clauses"]((*self._whose, clause.index, *named, *means, *state, *marked, *rate))
+        meant = self._fingerprints.get(requirement.name)
+        self._rows.write["clauses"]((*self._whose, clause.index, *named, *means, *state, *marked, *rate, meant))
 
     def _judged(self, clause: _Clause, of_runs: bool, judgement: Judgement, begin: int, end: int, path: str) -> None:
         verdict = UNKNOWN if judgement.holds is None else SATISFIED if judgement.holds else VIOLATED

@@ -215,7 +215,7 @@ def _folder_of(log: str, by: str) -> str:
 
 
 FORMAT: Final = "btq-evidence"
-VERSION: Final = 3  # one more with each new column: older versions then leave the set as it is
+VERSION: Final = 4  # one more with each new column: older versions then leave the set as it is
 ABOUT: Final = "about.json"
 DRAFT: Final = ".draft-"
 _OLD: Final = ".old-"

@@ -16,6 +16,7 @@ from btq_lang.diagnostics.model import Place
 from btq_lang.evidence.amounts import Amounts
 from btq_lang.evidence.clause_findings import verdict_of
 from btq_lang.evidence.conditions import Measure
+from btq_lang.evidence.meanings import NO_MEANINGS, Meanings, is_suspect
 from btq_lang.evidence.means import Mean
 from btq_lang.evidence.odds import Limits
 from btq_lang.evidence.rates import PoolBound, Rate
@@ -49,26 +50,36 @@ from btq_lang.util.text import Span, counted
 _VIOLATIONS: Final = 10  # named of each clause
 
 
-def summary(ask: Ask, store: str, parts: Sequence[str] = (), *, by_run: bool = False) -> VerdictReport:
+def summary(
+    ask: Ask, store: str, parts: Sequence[str] = (), *, by_run: bool = False, meanings: Meanings = NO_MEANINGS
+) -> VerdictReport:
     """The verdicts of all runs in a store.
 
     Args:
         ask: gives an engine a question.
         store: its name, as people read it.
         parts: `label` and `robot`, as far as those have verdicts of their own.
-        by_run: as in `parted`.
+        by_run, meanings: as in `parted`.
     """
-    return VerdictReport(tuple(mission for _, mission in parted(ask, store, parts, by_run=by_run)), (), ())
+    missions = parted(ask, store, parts, by_run=by_run, meanings=meanings)
+    return VerdictReport(tuple(mission for _, mission in missions), (), ())
 
 
 def parted(
-    ask: Ask, store: str, parts: Sequence[str], violations: int = _VIOLATIONS, *, by_run: bool = False
+    ask: Ask,
+    store: str,
+    parts: Sequence[str],
+    violations: int = _VIOLATIONS,
+    *,
+    by_run: bool = False,
+    meanings: Meanings = NO_MEANINGS,
 ) -> Iterator[tuple[Row, MissionVerdicts]]:
     """What happened in the runs of each mission and part, as counts, and their verdicts.
 
     Args:
         violations: how many of each clause are named.
         by_run: what the last runs show of each clause is asked for, too.
+        meanings: of requirements now; the verdicts on those that meant something else are suspect.
     """
     by = ("mission", *parts)
     columns = {"by": ", ".join(by), "by_verdicts": ", ".join(f"verdicts.{column}" for column in by)}
@@ -85,13 +96,23 @@ def parted(
     for part in rows_by_question["runs"]:
         judged: dict[str, list[ClauseVerdict]] = {}
         titles = {}
+        meant: dict[str, set[str]] = {}
         for row in clauses.get(part_of(part), ()):
             key = clause_of(row)
             verdict = _verdict(row, counts.get(key), broken.get(key, ()), recent.get(key, ()), runs.get(key, ()))
             judged.setdefault(row["requirement"], []).append(verdict)
             titles[row["requirement"]] = row["title"] or ""
+            fingerprints = {row["fingerprint"], row["other_fingerprint"]} - {None, ""}
+            meant.setdefault(row["requirement"], set()).update(fingerprints)
         requirements = [
-            RequirementVerdict(name, titles[name], worst_of(verdict.verdict for verdict in verdicts), tuple(verdicts))
+            RequirementVerdict(
+                name,
+                titles[name],
+                worst_of(verdict.verdict for verdict in verdicts),
+                tuple(verdicts),
+                fingerprints=tuple(sorted(meant[name])),
+                is_suspect=is_suspect(meant[name], meanings.get((part["mission"], name))),
+            )
             for name, verdicts in judged.items()
         ]
         yield part, _mission(part, parts, store, requirements, repeated.get(part_of(part)))

@@ -71,7 +71,7 @@ ROWS: Final = {
     # judged, or not at all its nodes; `lower_si`, `upper_si`: of a clause with two bounds, unless they vary; `goal_si`:
     # what its requirement aims at; `rate_low` to `rate_high` in `rate_seconds`: the failure rate that it
     # demands, of whose time `unit` is the unit; `rate_strict`: whether the bound itself violates it; `mean_low`,
-    # `mean_high` and `mean_strict`: the same of a mean.
+    # `mean_high` and `mean_strict`: the same of a mean; `fingerprint`: of what its requirement means, as in approvals.
     "clauses": {
         **_WHOSE,
         "clause_index": "INTEGER",
@@ -102,6 +102,7 @@ ROWS: Final = {
         "mean_low": "DOUBLE",
         "mean_high": "DOUBLE",
         "mean_strict": "DOUBLE",
+        "fingerprint": "VARCHAR",
     },
     # What was judged: an activation, or a run for clauses about runs.  `verdict`: `satisfied`, `violated` or `unknown`;
     # `counted`: whether it counts: where runs are counted, one judgement of each run does; `at_us`: when it was
@@ -140,6 +141,7 @@ OPTIONAL: Final = {
         "mean_low",
         "mean_high",
         "mean_strict",
+        "fingerprint",
     ),
     "verdicts": ("number", "number_most", "exposure_s", "exposure_most_s"),
 }

@@ -84,7 +84,7 @@ def keep(
     tables: dict[str, list[tuple[object, ...]]] = {name: [] for name in ROWS}
     of = (mission, robot)
     clause = (requirement, "Be quick", f"Move takes at most {bound:g} s", "Move", "", "activations", "s")
-    tables["clauses"].append((*of, 0, *clause, *[None] * 7, True, 0, "", *[None] * 10))
+    tables["clauses"].append((*of, 0, *clause, *[None] * 7, True, 0, "", *[None] * 11))
     for number, (move, dock, succeeded) in enumerate(runs, start=1):
         begin = start + number * 60_000_000
         middle, end = begin + round(move * 1e6), begin + round((move + dock) * 1e6)

@@ -96,7 +96,7 @@ def test_what_is_kept_of_a_log(robot: Path) -> None:
         (*whose, *clause, 2, "Move::2", *times[0], "satisfied", True, None, 0.01, 0.015, *[None] * 6),
     ]
     none = (None,) * 7
-    assert of(store, "clauses", "* EXCLUDE (title, measures)") == [
+    assert of(store, "clauses", "* EXCLUDE (title, measures, fingerprint)") == [
         (*whose, 0, *clause, "activations", "ms", *none, True, 0, *[None] * 11),
     ]
 

@@ -111,7 +111,7 @@ def judged_earlier(folder: Path) -> None:
         duckdb.sql(f"COPY (SELECT * EXCLUDE ({column}) FROM '{path}') TO '{path}.new' (FORMAT parquet)")
         Path(f"{path}.new").replace(path)
     about = folder / "about.json"
-    about.write_text(about.read_text(encoding="utf-8").replace('"version": 3', '"version": 1'), encoding="utf-8")
+    about.write_text(about.read_text(encoding="utf-8").replace('"version": 4', '"version": 1'), encoding="utf-8")
 
 
 @pytest.mark.parametrize(
