@@ -162,8 +162,13 @@ def plain(part: object) -> Json:
         return [plain(element) for element in part]
     if part is None or isinstance(part, str | int):
         return part
-    fields = {field: getattr(part, field) for field in fields_of(part) if field not in _PLACE}
-    return {"is": type(part).__name__, **{field: plain(value) for field, value in fields.items() if value}}
+    given = {field: value for field in fields_of(part) if field not in _PLACE and (value := getattr(part, field))}
+    fields = {"is": type(part).__name__, **{field: plain(value) for field, value in given.items()}}
+    if isinstance(part, syntax.Odds):
+        fields.setdefault("experiments", "activations")  # which may be left out
+    elif isinstance(part, syntax.Claim) and part.verb.raw == "tries" and fields.get("per") == "run":
+        del fields["per"]  # likewise
+    return fields
 
 
 def _value(word: syntax.Word, sign: str = "") -> Json:

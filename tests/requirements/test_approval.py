@@ -98,6 +98,33 @@ def test_what_counts(old: str, new: str) -> None:
     assert state(MISSION.replace(old, new)).fingerprint != state(MISSION).fingerprint
 
 
+@pytest.mark.parametrize(
+    ("short", "whole"),
+    [
+        ("A succeeds with probability >= 98 %", "A succeeds with probability >= 98 % of activations"),
+        ("A succeeds with probability >= 98 %", "A succeeds in at least 98 % of activations"),
+        ("A tries at most 3", "A tries at most 3 per run"),
+    ],
+)
+def test_what_may_be_left_out_does_not_count(short: str, whole: str) -> None:
+    one, other = (state(f"QualityReq r\n    {clause}\n", "r").fingerprint for clause in (short, whole))
+    assert one == other
+
+
+@pytest.mark.parametrize(
+    ("short", "other"),
+    [
+        ("A succeeds with probability >= 98 %", "A succeeds with probability >= 98 % of runs"),
+        ("A succeeds with probability >= 98 %", "A succeeds with probability > 98 % of activations"),
+        ("A tries at most 3", 'A tries at most 3 per "run"'),
+        ("A tries at most 3", "A tries at most 3 per B"),
+    ],
+)
+def test_other_experiments_count(short: str, other: str) -> None:
+    one, another = (state(f"QualityReq r\n    {clause}\n", "r").fingerprint for clause in (short, other))
+    assert one != another
+
+
 def test_definitions_in_included_files_count() -> None:
     text = 'include "lib.btq"\n' + MISSION.partition("\n")[2]
     signal = MISSION.partition("\n")[0]
