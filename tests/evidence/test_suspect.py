@@ -53,7 +53,7 @@ def verify(*arguments: str, code: int = 1) -> str:
 
 def suspects(text: str) -> dict[str, bool]:
     document = json.loads(text)
-    assert not [*violations(SCHEMA, document)]
+    assert not [*violations(document, SCHEMA)]
     return {each["id"]: each.get("suspect", False) for each in document["requirements"]}
 
 

@@ -6,6 +6,7 @@ One invariant: only what chance hardly explains is called a change, whatever the
     mission_numbers.py  the answers, of a mission
     measures.py     durations and other measures by run, and how they differ
     failures.py     in how many runs nodes failed and clauses were violated
+    rates.py        failure rates
     chance.py       how likely a difference is without a change
     requirements.py what changed in the verdicts on requirements
     causes.py       which differences have one cause

@@ -81,7 +81,7 @@ def with_causes(changes: Sequence[ComparedNumber], numbers: Numbers, at_least: f
 
 def _reaches_above(change: ComparedNumber) -> bool:
     """Whether what happens in a node happens in those above it, too."""
-    return change.what == "failures" or is_time(change.unit)
+    return change.what == "failures" or (change.what == "mean" and is_time(change.unit))
 
 
 def _explained(

@@ -10,13 +10,14 @@ import random
 from collections import Counter
 from collections.abc import Hashable, Iterable, Iterator, Sequence
 from itertools import chain, compress, islice
-from math import comb, erfc, exp, lgamma, prod, sqrt
+from math import comb, erfc, exp, lgamma, log, log1p, prod, sqrt
 from operator import mul
 from typing import Final, TypeAlias
 
 from btq_lang.util.grouping import grouped
 
 Failures: TypeAlias = tuple[tuple[int, int], tuple[int, int]]  # of each side, how many, of how many
+Exposed: TypeAlias = tuple[int, float]  # how many failures, in how long
 
 
 class Shuffles:
@@ -101,14 +102,50 @@ def exact(strata: Iterable[Failures]) -> float:
     `mantelhaen.test(exact = TRUE)`: how likely each number of failures on the first side is, given those of both
     sides in each stratum.  Of one stratum that is Fisher's exact test.
     """
+    return _both_ways((failed, *_given_runs(failed + other, n, m)) for (failed, n), (other, m) in strata)
+
+
+def exact_rates(strata: Iterable[tuple[Exposed, Exposed]]) -> float:
+    """The p-value, in both directions, of as many failures in two exposures where the rates of the sides are the same.
+
+    It is the exact conditional test of two Poisson counts (Przyborowski and Wilenski, *Biometrika* 31, 1940): given the
+    failures of both sides, those of the first are binomial, with its share of the exposure; as R's `poisson.test`.  Of
+    several strata it is the test of their sum.
+    """
+    return _both_ways(
+        (failed, *_given_exposures(failed + other, first / (first + second)))
+        for (failed, first), (other, second) in strata
+    )
+
+
+def expected_rates(strata: Iterable[tuple[Exposed, Exposed]]) -> float:
+    """How many failures the first side has on average, as `expected`."""
+    return sum((failed + other) * first / (first + second) for (failed, first), (other, second) in strata)
+
+
+def _given_runs(both: int, n: int, m: int) -> tuple[int, list[float]]:
+    """As `_likely`, of the failures in the first n of n + m runs."""
+    possible = range(max(0, both - m), min(both, n) + 1)
+    logs = (_log_comb(n, number) + _log_comb(m, both - number) - _log_comb(n + m, both) for number in possible)
+    return _likely(possible[0], map(exp, logs))
+
+
+def _given_exposures(both: int, share: float) -> tuple[int, list[float]]:
+    """As `_likely`, of the failures in the first exposure, which has a share of both."""
+    hit, miss = log(share), log1p(-share)
+    return _likely(0, (exp(_log_comb(both, k) + k * hit + (both - k) * miss) for k in range(both + 1)))
+
+
+def _both_ways(strata: Iterable[tuple[int, int, Sequence[float]]]) -> float:
+    """The p-value of a sum: how likely the numbers are that are at most as likely as it.
+
+    Args:
+        strata: of each the number observed, the least number, and how likely each one from that on is.
+    """
     first, chances, observed = 0, [1.0], 0
-    for (failed, n), (other, m) in strata:
-        both = failed + other
-        possible = range(max(0, both - m), min(both, n) + 1)
-        logs = [_log_comb(n, number) + _log_comb(m, both - number) - _log_comb(n + m, both) for number in possible]
-        least, own = _likely(possible[0], map(exp, logs))
+    for number, least, own in strata:
         first, chances = _likely(first + least, _of_sums(chances, own))
-        observed += failed
+        observed += number
     if observed not in range(first, first + len(chances)):
         return _RARE
     limit = chances[observed - first] * (1 + _ALIKE)

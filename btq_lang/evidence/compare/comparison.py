@@ -11,7 +11,7 @@ from btq_lang.evidence.compare.chance import LEVEL, exact, expected, holm, is_to
 from btq_lang.evidence.compare.failures import totals
 from btq_lang.evidence.compare.measures import difference, probability, sizes
 from btq_lang.evidence.compare.mission_numbers import Numbers
-from btq_lang.evidence.compare.model import AT_LEAST, ComparedNumber, RunComparison, is_time
+from btq_lang.evidence.compare.model import AT_LEAST, ComparedNumber, Key, RunComparison, is_time
 from btq_lang.evidence.compare.requirements import edited, turned, verdicts
 from btq_lang.evidence.store.tables import quoted
 from btq_lang.evidence.verdicts import UNKNOWN, VIOLATED
@@ -19,6 +19,7 @@ from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.compare.failures import FailedRuns
+    from btq_lang.evidence.compare.rates import ComparedRate
     from btq_lang.evidence.compare.requirements import Newly, Verdicts
     from btq_lang.evidence.store.queries import Ask, Row
 
@@ -115,7 +116,7 @@ class _Mission:
         durations = {key: measure for key, measure in self._numbers.measures.items() if self._numbers.is_duration(key)}
         others = [[key] for key in self._numbers.measures if key not in durations]
         self._measures: Final = [*chains(durations, self._numbers.leaves), *others]
-        self.comparisons: Final = len(self._measures) + len(self._numbers.failures)
+        self.comparisons: Final = len(self._measures) + len(self._numbers.failures) + len(self._numbers.rates)
 
     def changes(self, comparisons: int) -> Iterator[ComparedNumber]:
         """All comparisons, with p-values before Holm.
@@ -152,6 +153,7 @@ class _Mission:
                 cause=None,
             )
         yield from (_failed(failed_runs, comparisons) for failed_runs in numbers.failures)
+        yield from (_rate(rate, numbers.symbol(rate.key), numbers.periods[rate.key]) for rate in numbers.rates)
 
     def result(self, changes: Sequence[ComparedNumber], at_least: float) -> RunComparison:
         """The comparison, with p-values after Holm."""
@@ -182,9 +184,11 @@ class _Mission:
         direction = "less reliable" if newly.after == VIOLATED else "more reliable"
         p = [
             change.p if change.direction == direction else 1.0
-            for change, failed_runs in zip(changes[len(self._measures) :], self._numbers.failures, strict=True)
-            if newly.id in {key.requirement for key in (failed_runs.key, *failed_runs.same)}
+            for change in changes[len(self._measures) :]
+            if newly.id in {key.requirement for key in (change.key, *change.same)}
         ]
+        mean = Key(newly.id, newly.clause, newly.node)  # if it is one
+        p += [change.p for change in changes[: len(self._measures)] if mean in (change.key, *change.same)]
         return replace(newly, p=min(p), may_be_chance=min(p) > LEVEL) if p else newly
 
 
@@ -211,6 +215,30 @@ def _failed(failed_runs: FailedRuns, comparisons: int) -> ComparedNumber:
         finding="",
         same=failed_runs.same,
         cause=None,
+    )
+
+
+def _rate(rate: ComparedRate, symbol: str, period: float) -> ComparedNumber:
+    """A failure rate."""
+    before, after = (failed / seconds for failed, seconds in zip(rate.failures, rate.seconds, strict=True))
+    return ComparedNumber(
+        *rate.key,
+        what="rate",
+        unit=symbol,
+        before=before,
+        after=after,
+        interval=None,
+        counts=rate.runs,
+        units=rate.runs,
+        failed=rate.failures,
+        p_alone=rate.p,
+        p=rate.p,
+        too_few=False,
+        finding="",
+        same=(),
+        cause=None,
+        exposures=rate.seconds,
+        period=period,
     )
 
 

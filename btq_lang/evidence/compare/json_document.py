@@ -10,7 +10,7 @@ from btq_lang.evidence.compare.model import ComparedNumber, RunComparison
 from btq_lang.util.record import as_dict
 
 FORMAT: Final = "btq-comparison"
-VERSION: Final = 2
+VERSION: Final = 3
 
 
 def render(comparisons: Sequence[RunComparison], by: str, sides: tuple[str, str]) -> str:

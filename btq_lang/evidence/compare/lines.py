@@ -11,7 +11,7 @@ from btq_lang.evidence.compare.chance import LEVEL
 from btq_lang.evidence.compare.model import WORSE, ComparedNumber, RunComparison, is_time
 from btq_lang.evidence.compare.requirements import Newly
 from btq_lang.evidence.verdicts import VIOLATED
-from btq_lang.evidence.wording import duration, first_of, period, quantity, share
+from btq_lang.evidence.wording import duration, first_of, measured, period, quantity, share
 from btq_lang.util.grouping import grouped
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import counted
@@ -109,9 +109,10 @@ def _turned(newly: Newly) -> DifferenceLine:
     is_worse = newly.after == VIOLATED
     verdict = f"was {newly.before}" if is_worse else f"is {newly.after}"
     chance = f", {_chance(newly.p)}" if newly.p is not None else ""
+    counts = f"violated in {first} → {second}" if newly.pooled is None else " → ".join(newly.pooled)
     name = f"{newly.id} {newly.title}".rstrip()
     finding = "newly violated" if is_worse else "no longer violated"
-    return DifferenceLine(finding, is_worse, newly.id, name, f"{verdict}; violated in {first} → {second}{chance}", "")
+    return DifferenceLine(finding, is_worse, newly.id, name, f"{verdict}; {counts}{chance}", "")
 
 
 def _causes_in_requirements(changes: Sequence[ComparedNumber]) -> dict[str, str]:
@@ -137,6 +138,13 @@ def _folded(change: ComparedNumber, changes: Sequence[ComparedNumber]) -> str:
 
 def _numbers(change: ComparedNumber, comparison: RunComparison) -> str:
     """Both numbers, how they differ, and of how many runs, or what is shuffled in their place."""
+    if change.failed is not None and change.exposures is not None and change.period is not None:
+        unit, period = parse_unit(change.unit), change.period
+        before, after = (
+            f"{k:,} in {measured(seconds, unit)}" for k, seconds in zip(change.failed, change.exposures, strict=True)
+        )
+        rates = " → ".join(f"{rate * period:.3g}" for rate in (change.before, change.after))
+        return f"{before} → {after}, {rates} per {measured(period, unit)}"
     if change.failed is not None:
         verb = "violated" if change.requirement else "failed"
         before, after = (f"{k:,} of {n:,}" for k, n in zip(change.failed, change.counts, strict=True))

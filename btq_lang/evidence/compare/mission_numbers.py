@@ -13,6 +13,7 @@ from btq_lang.evidence.compare.chance import Shuffles
 from btq_lang.evidence.compare.failures import FailedRuns, failed_runs
 from btq_lang.evidence.compare.measures import Measure, ShuffledUnit, Values
 from btq_lang.evidence.compare.model import Key, Over, is_time
+from btq_lang.evidence.compare.rates import compared_rates
 from btq_lang.evidence.compare.requirements import Edited
 from btq_lang.evidence.store.queries import Ask, Row
 from btq_lang.evidence.store.tables import quoted
@@ -27,6 +28,7 @@ class Numbers:
         measures: what both sides have, in a stratum that both have.
         leaves: the nodes among them that have none inside.
         failures: what failed in some of the runs.
+        rates: failure rates that are demanded; `periods`: the time, in seconds, for which each is.
         units: of both sides, in their order.
         shuffles: of these.
     """
@@ -54,16 +56,19 @@ class Numbers:
             "robots": "robot" if first & second else "''",
             "clause": questions.clause_of(edited),
         }
-        self._symbols: Final = {_key(row): row["unit"] or "1" for row in self._asked(questions.UNITS)}
+        units = {_key(row): row for row in self._asked(questions.UNITS)}
+        self._symbols: Final = {key: row["unit"] or "1" for key, row in units.items()}
+        self.periods: Final = {key: row["seconds"] for key, row in units.items() if row["seconds"]}
         rows = grouped((_key(row), row) for row in self._asked(questions.MEASURES))
         measures = {key: _measure(of_key) for key, of_key in rows.items()}
         self.measures: Final = {key: measure for key, measure in measures.items() if self._is_in_both(measure)}
         self.leaves: Final = {key for key in self.measures if any(row["leaf"] for row in rows[key])}
-        units = {unit for measure in self.measures.values() for unit in measure}
-        self.units: Final = sorted(units, key=lambda unit: (unit.side != sides[0], unit.stratum, unit.number))
+        places = {unit for measure in self.measures.values() for unit in measure}
+        self.units: Final = sorted(places, key=lambda unit: (unit.side != sides[0], unit.stratum, unit.number))
         first_units, second_units = ([unit.stratum for unit in self.units if unit.side == side] for side in sides)
         self.shuffles: Final = Shuffles(first_units, second_units)
         self.failures: Final[Sequence[FailedRuns]] = failed_runs(self._asked(questions.FAILURES), sides)
+        self.rates: Final = compared_rates(self._asked(questions.RATES), sides)
 
     def symbol(self, key: Key) -> str:
         """The unit in which a measure is shown."""

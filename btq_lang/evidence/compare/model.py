@@ -39,25 +39,27 @@ class ComparedNumber(Record):
 
     Attributes:
         requirement, clause, node: as in `Key`.
-        what: `mean` of a measure, by run; `failures`: the share of runs with a failure or a violation.
-        unit: that the measure is shown in; values are in SI.
+        what: `mean` of a measure, by run; `failures`: the share of runs with a failure or a violation; `rate`: of
+            failures, per second.
+        unit: that the measure is shown in, or of a rate its time; values are in SI.
         before, after: the number on each side; of several robots, the average over those that ran both.
         interval: the 95 % interval of the difference, `after` less `before`; None where the spread is unknown.
         counts: how many values, or runs, each side has.
         units: how many runs, groups of runs or robots with such values each side has.
-        failed: in how many of the runs it failed, or was violated; None for a measure.
+        failed: in how many of the runs it failed, or was violated; of a rate how often; None for a measure.
         p_alone: the probability of such a difference by chance, if nothing else were compared.
         p: the same after Holm.
         too_few: so few runs or robots cannot show any change.
         finding: what is certain and large enough to be called a change; else empty.
         same: what was closed by the same completions, and so is the same comparison.
         cause: what explains the difference, inside of this node; None where nothing does.
+        exposures: of a rate, how long each side might have failed, in seconds; `period`: the time that it is for.
     """
 
     requirement: str
     clause: str
     node: str
-    what: Literal["mean", "failures"]
+    what: Literal["mean", "failures", "rate"]
     unit: str
     before: float
     after: float
@@ -71,6 +73,8 @@ class ComparedNumber(Record):
     finding: Finding
     same: tuple[Key, ...]
     cause: Key | None
+    exposures: tuple[float, float] | None = None
+    period: float | None = None
 
     @property
     def key(self) -> Key:
@@ -92,7 +96,7 @@ class ComparedNumber(Record):
     def direction(self) -> Finding:
         """The word for the difference if it is a change."""
         is_more = self.after > self.before
-        if self.what == "failures":
+        if self.what != "mean":
             return "less reliable" if is_more else "more reliable"
         if is_time(self.unit):
             return "slower" if is_more else "faster"

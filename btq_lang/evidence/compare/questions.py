@@ -142,8 +142,15 @@ ONE_SIDED: Final = """
     )
     GROUP BY side
 """
+# What each side adds to failure rates.
+RATES: Final = """
+    SELECT requirement, {clause} AS clause, node, {by} AS side, {robots} AS stratum, COUNT(*) AS runs,
+        SUM(number) AS least, SUM(number_most) AS most, SUM(exposure_s) AS seconds, SUM(exposure_most_s) AS longest
+    FROM verdicts WHERE mission = {mission} AND {by} IN ({sides}) AND number IS NOT NULL
+    GROUP BY ALL ORDER BY requirement, clause, node, stratum, side
+"""
 UNITS: Final = """
-    SELECT requirement, {clause} AS clause, node, MAX(unit) AS unit FROM clauses
+    SELECT requirement, {clause} AS clause, node, MAX(unit) AS unit, MAX(rate_seconds) AS seconds FROM clauses
     WHERE mission = {mission} AND {by} IN ({sides}) GROUP BY ALL
 """
 SAMPLE: Final = 400  # runs of each side

@@ -27,6 +27,8 @@ class Newly(Record):
         p: how likely it is by chance that so many more runs of a side are violations, after Holm; None where only one
             side has judgements to compare.
         may_be_chance: whether chance may explain it.
+        pooled: what all runs of each side come to, if a failure rate or a mean is what is violated; else None.
+        clause, node: that demand it; else empty.
     """
 
     id: str
@@ -37,6 +39,9 @@ class Newly(Record):
     counted: tuple[int, int]
     p: float | None
     may_be_chance: bool
+    pooled: tuple[str, str] | None = None
+    clause: str = ""
+    node: str = ""
 
 
 class Edited(Record):
@@ -105,8 +110,25 @@ def turned(before: Verdicts, after: Verdicts, edits: Sequence[Edited]) -> list[N
                 for what in ("violated", "counted")
             )
             numbers = (violated[0], violated[1]), (counts[0], counts[1])
-            requirements.append(Newly(name, title, first, second, *numbers, None, False))
+            pooled = _pooled(pair[0] or (), pair[1] or ()) if not any(violated) else ()
+            requirements.append(Newly(name, title, first, second, *numbers, None, False, *pooled))
     return requirements
+
+
+def _pooled(
+    before: Sequence[ClauseVerdict], after: Sequence[ClauseVerdict]
+) -> tuple[()] | tuple[tuple[str, str], str, str]:
+    """What both sides come to in the first clause about all runs together that only one violates; and the clause."""
+    of_after = {(clause.path, clause.text): clause for clause in after}
+    for was in before:
+        now = of_after.get((was.path, was.text))
+        if now is None or was.pooled is None or now.pooled is None:
+            continue
+        if (was.verdict == VIOLATED) != (now.verdict == VIOLATED):
+            # Whether more time decides it says nothing beside the other side.
+            texts = (clause.text.partition(", ")[0] for clause in (was.pooled, now.pooled))
+            return (next(texts), next(texts)), was.text, was.path
+    return ()
 
 
 def _without_numbers(clause: ClauseVerdict) -> str:

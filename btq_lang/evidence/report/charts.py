@@ -79,10 +79,10 @@ def _chart(measured: MeasureTrend) -> str:
         pairs = zip(dates, values, strict=True)
         return tuple("" if value is None else f"{day}: {label}{written(value, unit)}" for day, value in pairs)
 
-    series = [ChartSeries("dots", measured.worst, titles(measured.worst, "worst "))]
-    middle = measured.medians if measured.medians is not None else measured.worst
+    series = [ChartSeries("dots", measured.values, titles(measured.values, f"{measured.what} "))]
+    middle = measured.medians if measured.medians is not None else measured.values
     series.insert(0, ChartSeries("line", middle, titles(middle, "median ")))
-    values = [each for each in (*measured.worst, *middle) if each is not None]
+    values = [each for each in (*measured.values, *middle) if each is not None]
     levels = [Level(kind.rpartition(" ")[2], f"{kind} {written(si, unit)}", si) for kind, si in measured.levels]
     every = [from_si(each, unit) for each in (*values, *(level.value for level in levels))]
     ticks = round_values(min(every), max(every), _TICKS)
@@ -116,7 +116,8 @@ def _change(measured: MeasureTrend) -> str:
         return f"{label} from {first} to {last}{between}" if len(numbers) > 1 else f"{label} {first}"
 
     unit = measured.unit
-    parts = [words(measured.worst, f"the worst of each {measured.by}")]
+    what = f"failures per {measured.period}" if measured.period else f"the {measured.what}"
+    parts = [words(measured.values, f"{what} of each {measured.by}")]
     if measured.medians is not None:
         parts.insert(0, words(measured.medians, "the median"))
     parts.append(", ".join(f"{kind} {written(si, unit)}" for kind, si in measured.levels))

@@ -267,18 +267,27 @@ OVERVIEW: Final = {
         GROUP BY mission, place
     """,
     "verdicts": """
-        SELECT mission, requirement, CAST(FLOOR((start_us - {origin}) / {step}.0) AS BIGINT) AS place,
+        SELECT verdicts.mission AS mission, verdicts.requirement AS requirement,
+            CAST(FLOOR((start_us - {origin}) / {step}.0) AS BIGINT) AS place,
             COUNT(*) AS judged, SUM(CASE WHEN verdict = 'violated' THEN 1 ELSE 0 END) AS violated
         FROM verdicts
-        WHERE counted AND verdict <> 'unknown'
-        GROUP BY mission, requirement, place
+        LEFT JOIN (
+            SELECT DISTINCT mission, requirement, clause, node, 1 AS pooled
+            FROM clauses
+            WHERE rate_seconds IS NOT NULL OR mean_strict IS NOT NULL
+        ) AS pooled
+            ON verdicts.mission = pooled.mission AND verdicts.requirement = pooled.requirement
+            AND verdicts.clause = pooled.clause AND verdicts.node = pooled.node
+        WHERE counted AND verdict <> 'unknown' AND pooled IS NULL
+        GROUP BY verdicts.mission, verdicts.requirement, place
     """,
     # The clauses that measured something, in their order, and the extreme bounds.
     "measured": """
         SELECT clauses.mission AS mission, clauses.requirement AS requirement, clauses.clause AS clause,
             clauses.node AS node, MIN(clauses.clause_index) AS clause_index, MAX(clauses.unit) AS unit,
             MIN(bounds.least_si) AS least_si, MAX(bounds.most_si) AS most_si,
-            MAX(clauses.lower_si) AS lower_si, MAX(clauses.upper_si) AS upper_si, MAX(clauses.goal_si) AS goal_si
+            MAX(clauses.lower_si) AS lower_si, MAX(clauses.upper_si) AS upper_si, MAX(clauses.goal_si) AS goal_si,
+            MAX(clauses.mean_strict) AS mean_strict
         FROM clauses
         JOIN (
             SELECT mission, requirement, clause, node, MIN(bound_si) AS least_si, MAX(bound_si) AS most_si
@@ -357,6 +366,60 @@ OVERVIEW: Final = {
         SELECT mission, requirement, clause, node, place, worst_si, median_si
         FROM steps
         JOIN found ON steps.id = found.id
+    """,
+    # The means of runs, of clauses about a mean that few runs measured.
+    "mean_runs": """
+        SELECT means.*, runs.label AS run_label, runs.start_us AS run_start_us
+        FROM (
+            SELECT verdicts.mission AS mission, verdicts.requirement AS requirement, verdicts.clause AS clause,
+                verdicts.node AS node, log, run, AVG((measured_si + COALESCE(most_si, measured_si)) / 2) AS measured_si
+            FROM verdicts
+            JOIN (
+                SELECT mission, requirement, clause, node
+                FROM (
+                    SELECT DISTINCT verdicts.mission AS mission, verdicts.requirement AS requirement,
+                        verdicts.clause AS clause, verdicts.node AS node, verdicts.log AS log, verdicts.run AS run
+                    FROM verdicts
+                    JOIN clauses
+                        ON verdicts.log = clauses.log AND verdicts.mission = clauses.mission
+                        AND verdicts.requirement = clauses.requirement AND verdicts.clause = clauses.clause
+                        AND verdicts.node = clauses.node
+                    WHERE measured_si IS NOT NULL AND mean_strict IS NOT NULL
+                ) AS of_runs
+                GROUP BY mission, requirement, clause, node
+                HAVING COUNT(*) <= {runs}
+            ) AS few
+                ON verdicts.mission = few.mission AND verdicts.requirement = few.requirement
+                AND verdicts.clause = few.clause AND verdicts.node = few.node
+            WHERE measured_si IS NOT NULL
+            GROUP BY verdicts.mission, verdicts.requirement, verdicts.clause, verdicts.node, log, run
+        ) AS means
+        JOIN runs ON means.log = runs.log AND means.run = runs.run
+    """,
+    # Of each step of the time what clauses about a mean or a failure rate come to.
+    "pooled_steps": """
+        SELECT verdicts.mission AS mission, verdicts.requirement AS requirement, verdicts.clause AS clause,
+            verdicts.node AS node, CAST(FLOOR((start_us - {origin}) / {step}.0) AS BIGINT) AS place,
+            AVG((measured_si + COALESCE(most_si, measured_si)) / 2) AS mean_si,
+            SUM(number) AS number, SUM(exposure_s) AS seconds
+        FROM verdicts
+        JOIN (
+            SELECT DISTINCT mission, requirement, clause, node
+            FROM clauses
+            WHERE rate_seconds IS NOT NULL OR mean_strict IS NOT NULL
+        ) AS pooled
+            ON verdicts.mission = pooled.mission AND verdicts.requirement = pooled.requirement
+            AND verdicts.clause = pooled.clause AND verdicts.node = pooled.node
+        GROUP BY verdicts.mission, verdicts.requirement, verdicts.clause, verdicts.node, place
+    """,
+    # The clauses about a failure rate.
+    "rates": """
+        SELECT mission, requirement, clause, node, MIN(clause_index) AS clause_index, MAX(unit) AS unit,
+            MAX(rate_low) AS lower_si, MAX(rate_high) AS upper_si, MAX(rate_seconds) AS rate_seconds,
+            MAX(goal_si) AS goal_si
+        FROM clauses
+        WHERE rate_seconds IS NOT NULL
+        GROUP BY mission, requirement, clause, node
     """,
     # Where failures began.
     "failures": """

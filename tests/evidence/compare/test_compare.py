@@ -252,7 +252,8 @@ def test_json_is_as_its_schema_says(changed: Path) -> None:
     assert (found["sides"], mission["runs"], mission["over"], mission["group"]) == (["v1", "v2"], [60, 50], "runs", 1)
     turned = {"before": "satisfied", "after": "violated", "violated": [0, 10], "counted": [60, 50]}
     (newly,) = mission["newly"]
-    assert newly == {"id": "quick", "title": "Be quick", **turned, "p": newly["p"], "may_be_chance": False}
+    others = {"may_be_chance": False, "pooled": None, "clause": "", "node": ""}
+    assert newly == {"id": "quick", "title": "Be quick", **turned, "p": newly["p"], **others}
     assert newly["p"] == pytest.approx(0.00044, rel=0.01)
     assert mission["no_longer"] == []
     clause = {"requirement": "quick", "clause": "Move takes at most 12 s", "node": "Move"}
