@@ -16,6 +16,7 @@ from btq_lang.evidence.clause_nodes import events_in, judged_together
 from btq_lang.evidence.conditions import Measure
 from btq_lang.evidence.edges import WHILE_IT_RUNS, edge_of, key_of
 from btq_lang.evidence.history import History, Nearby
+from btq_lang.evidence.kept_spans import broken_spans, ends_by_row
 from btq_lang.evidence.model import (
     BEGUN_BEFORE,
     CLOCK_SET_BACK,
@@ -86,7 +87,8 @@ class JudgedClause:
     Attributes:
         findings: what the logs so far show of it.
         judged: the claim as it is judged.
-        broken: the open activations that break it already, by node, each with the path.
+        broken: what breaks it already in the open run, each with the path: open activations, by node, and spans, by
+            node and begin.
         explainer: of the current log.
     """
 
@@ -143,7 +145,8 @@ class JudgedClause:
         self._written: tuple[Activation, Guard | None] | None = None  # in the open run, if its root's result counts
         self._records: Final[list[Callable[[Judgement, int, int, str], None]]] = []
         self._looked: Final[dict[int, tuple[Moment, Moment]]] = {}  # of open activations: their start, and up to when
-        self.broken: Final[dict[int, tuple[Judgement, str]]] = {}
+        self._looked_until: Moment = _FIRST  # the same of the open run
+        self.broken: Final[dict[int | tuple[int, int], tuple[Judgement, str]]] = {}
         self.explainer: Explainer
 
     def record(self, record: Callable[[Judgement, int, int, str], None]) -> None:
@@ -233,6 +236,37 @@ class JudgedClause:
         self.broken[uid] = judgement, path
         return True
 
+    def look_over(self, root: Activation, active: Sequence[Activation]) -> Iterator[tuple[Judgement, str]]:
+        """The violations in spans of the open run, each with the path, that stay such, and were not seen before.
+
+        Args:
+            root: its activation so far; `active`: those that are still open, with it.
+        """
+        if self.requirement.span is None or self._judge_run is None or not self._is_final:
+            return
+        with self._history.including(active if ends_by_row(self.requirement.span) else [root]):
+            for place in self._places:
+                for judgement in broken_spans(self.judged, self._over(place, root), self._looked_until):
+                    assert judgement.since is not None, "a span has a begin"
+                    key = place.uids[0], judgement.since
+                    if key not in self.broken:
+                        self.broken[key] = judgement, place.path
+                        yield judgement, place.path
+        self._looked_until = root.ended
+
+    def was_seen(self, judgement: Judgement, path: str, begin: int) -> bool:
+        """Whether a violation in the open run, which has ended, was seen before.
+
+        A span may begin before the row of its node; each one that was seen is the first violation like it.
+        """
+        for key, (seen, known_path) in self.broken.items():
+            if isinstance(key, int) and path == known_path:
+                return True
+            if isinstance(key, tuple) and (path, judgement.sentence) == (known_path, seen.sentence) and begin <= key[1]:
+                del self.broken[key]
+                return True
+        return False
+
     def refuse(self, refusal: RefusedStart, path: str) -> None:
         """Count a start that a guard refused: it violates the demand that the guard enforces, and for `succeeds` it is
         a failure.
@@ -294,6 +328,7 @@ class JudgedClause:
         self._written = None
         self.broken.clear()
         self._looked.clear()
+        self._looked_until = _FIRST
 
     def _judge_result(self, root: Activation) -> None:
         """Judge a run by the result of its root, from the begin of the written root to its end, if that ran."""
@@ -574,6 +609,7 @@ def _clocked(judgement: Judgement | None, root: Activation | None) -> Judgement 
     return Judgement(None, judgement.at, CLOCK_SET_BACK)
 
 
+_FIRST: Final[Moment] = (0, 0)
 _WITHOUT_SUCCESS: Final[dict[Outcome, str]] = {"F": "failed", "H": "halted"}
 # The operands that bound the time since something began.
 _OF_TIME: Final = ("duration", "deadline", "reaction", "answer", "stretch")

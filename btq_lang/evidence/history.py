@@ -7,7 +7,8 @@ of the subtree; outside of it, all its instances in the innermost tree around bo
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from operator import attrgetter
 from typing import TYPE_CHECKING, Final
 
@@ -35,6 +36,18 @@ class History:
         kept = self._by_node.get(activation.uid)
         if kept is not None:
             kept.append(activation)
+
+    @contextmanager
+    def including(self, activations: Iterable[Activation]) -> Iterator[None]:
+        """Meanwhile, what is still active counts as if the log ended now."""
+        including = [activation for activation in activations if activation.uid in self._by_node]
+        for activation in including:
+            self._by_node[activation.uid].append(activation)
+        try:
+            yield
+        finally:
+            for activation in including:
+                self._by_node[activation.uid].pop()
 
     def activations_of(self, uids: Sequence[int]) -> list[Activation]:
         """The activations of nodes, in the order of their starts."""

@@ -20,7 +20,7 @@ from btq_lang.evidence.wording import duration
 from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
-    from btq_lang.requirements.model import ResolvedClaim
+    from btq_lang.requirements.model import ResolvedClaim, ResolvedSpan
 
 
 class KeptTime(Record):
@@ -54,6 +54,23 @@ def kept_in_spans(claim: ResolvedClaim, run: OverRun) -> Iterator[Judgement | No
             yield judgement
         if is_stopped:
             yield _stopped(activation)
+
+
+def broken_spans(claim: ResolvedClaim, run: OverRun, since: Moment) -> Iterator[Judgement]:
+    """The violations in an open run that stay such, whatever comes later, in spans that were open after a moment."""
+    is_end_seen = ends_by_row(run.span)
+    spans = [span for span in _spans(run) if (is_end_seen if span.end is None else span.end > since)]
+    for activation in run.own:
+        for span in spans if activation.ended > since else ():
+            judgement, _ = _kept(claim, run, activation, span)
+            if judgement is not None and judgement.holds is False:
+                yield judgement
+
+
+def ends_by_row(span: ResolvedSpan | None) -> bool:
+    """Whether a span ends only when a row says so; a node may have started, or been halted, before its next row."""
+    assert span is not None, "it holds from an event until another one"
+    return all(atom.happening not in _SEEN_LATER for atom in span.last.atoms)
 
 
 def _stopped(activation: Activation) -> Judgement:
@@ -164,4 +181,5 @@ def _just_before(moment: Moment) -> Moment:
     return (moment[0], moment[1] - 1) if moment[1] else (moment[0] - 1, _LAST)
 
 
+_SEEN_LATER: Final = ("starts", "halts")
 _LAST: Final = 1 << 62  # after all rows of a time

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.clause import JudgedClause
 from btq_lang.evidence.clause_findings import verdict_of
-from btq_lang.evidence.model import GAP, PLACES, RUNNING, Activation, LogSession, Moment, NamedLog, Transition
+from btq_lang.evidence.model import GAP, PLACES, ROOT, RUNNING, Activation, LogSession, Moment, NamedLog, Transition
 from btq_lang.evidence.sentences import result
 from btq_lang.evidence.tally import Run
 from btq_lang.evidence.verbs import Judgement
@@ -86,9 +86,13 @@ class Watched:
         Args:
             time: until when all that the robot did is known.
         """
-        for uid, began in self._open.items():
+        active = [Activation(uid, began, (time, self._rows), "O") for uid, began in self._open.items()]
+        for activation in active:
             if self._listener is not None:
-                self._listener.look(Activation(uid, began, (time, self._rows), "O"))
+                self._listener.look(activation)
+        root = next((activation for activation in active if activation.uid == ROOT), None)
+        if self._listener is not None and root is not None:
+            self._listener.look_over(root, active)
 
     def so_far(self) -> Iterator[tuple[RequirementVerdict, ...]]:
         """The verdicts of each mission that was judged, including the open run."""
@@ -152,6 +156,13 @@ class _Listener:
             if clause.requirement.odds is None and clause.look(activation, path):
                 self._tell(clause, clause.broken[activation.uid][0], path, "; it is still active")
 
+    def look_over(self, root: Activation, active: Sequence[Activation]) -> None:
+        """Tell which clauses are broken from an event until another one; `active`: all that is, with the root."""
+        for clause in self._clauses:
+            if clause.requirement.odds is None:
+                for judgement, path in clause.look_over(root, active):
+                    self._tell(clause, judgement, path)
+
     def see(self, activation: Activation) -> None:
         self._note(activation)
 
@@ -184,7 +195,7 @@ class _Listener:
         return Run(self._watched.outcomes.total() + 1, self._watched.address, self._begin, self._end)
 
     def _judged(self, clause: JudgedClause, judgement: Judgement, begin: int, end: int, path: str) -> None:
-        if judgement.holds is False and path not in [known_path for _, known_path in clause.broken.values()]:
+        if judgement.holds is False and not clause.was_seen(judgement, path, begin):
             self._tell(clause, judgement, path)
 
     def _tell(self, clause: JudgedClause, judgement: Judgement, path: str, more: str = "") -> None:

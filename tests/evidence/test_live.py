@@ -344,6 +344,49 @@ def test_samples_are_those_of_the_blackboard(live: Live) -> None:
     assert "  violated         rq  Move needs battery >= 20 %: Move::2 " in live.errors  # the report has the output
 
 
+SPAN = "QualityReq rq : safety\n    mission keeps battery >= 20 %\n    from {0} until {1}\n"
+
+
+@pytest.mark.parametrize(
+    ("first", "last", "times"),
+    [
+        ("Move starts", "Pick succeeds", 1),
+        ("Move succeeds", "Pick finishes", 1),
+        ("when battery < 15 %", "Pick succeeds", 1),
+        ("Pick succeeds", "Move succeeds", 0),
+        # Pick may have started just after Move, as far as its row tells, so the verdict is unknown.
+        ("Move starts", "Pick starts", 0),
+    ],
+)
+def test_what_is_kept_from_an_event_until_another_is_news_at_once(
+    first: str, last: str, times: int, live: Live
+) -> None:
+    """The battery is low from Move until Pick starts, in the second of three runs."""
+    signal_line = "signal battery : % from {level} level\n"
+
+    def drive() -> None:
+        robot.wait_for("B", "t")
+        robot.play(GOOD)
+        robot.play("1R 2R 20 2S")
+        robot.boards["Main"]["level"] = 10
+        robot.wait_for("B", "B", "t")
+        time.sleep(0.3)
+        robot.boards["Main"]["level"] = 50
+        robot.wait_for("B", "B", "t")
+        time.sleep(0.3)
+        robot.play("3R 20 3S 1S 2I 3I 1I")
+        robot.play(GOOD)
+
+    with Robot(MAIN_XML, {"Main": {"level": 50}}) as robot:
+        printed = live.watch(robot, drive, mission=signal_line + SPAN.format(first, last) + MAIN)
+    news = [line for line in plain(printed, robot) if line.startswith("TIME")]
+    told = [place for place, line in enumerate(news) if "violated" in line]
+    second = next(place for place, line in enumerate(news) if "run 2 succeeded" in line)
+    assert len(told) == times
+    assert [place < second for place in told] == [True] * times
+    assert live.code == times, printed
+
+
 def test_odds_use_limits_that_hold_at_every_look(live: Live) -> None:
     mission = (
         f"QualityReq rq : reliability\n    mission succeeds\n    in at least 10 % of runs\n    confidence 90 %\n{MAIN}"
