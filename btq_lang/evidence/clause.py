@@ -207,6 +207,7 @@ class JudgedClause:
     def _judge_in(self, activation: Activation, guard: Guard | None, observed: Observed, path: str) -> None:
         if guard is not None and self._is_own(guard) and self._judge is None:
             self._stopped.append(activation)
+            self._margins.is_exact = False  # as below
         elif guard is not None and self._is_own(guard):
             self._margins.is_exact = False  # with another bound the guard would have done something else
             self._count(self._broken(activation, guard, observed), activation, path)
@@ -361,6 +362,7 @@ class JudgedClause:
             self.findings.missed += len(over.missed)
             if self._extremes:
                 self._measure([self._judged_over(claim, overs) for claim in self._extremes], root)
+                self._margins.is_exact = self._margins.is_exact and not over.unsettled
         if len(judged) > 1:
             judged.sort(key=lambda entry: entry[0].at if entry[0] is not None else 0)
         for judgement, place, over in judged:
@@ -391,7 +393,7 @@ class JudgedClause:
         own = self._history.activations_of(place.uids)
         refused = [refusal for refusal in self._refused if refusal.uid in place.uids]
         stopped, scopes, span = self._stopped, self.requirement.scopes, self.requirement.span
-        return OverRun(self.claim.verb, scopes, root, place.uids, own, observed, refused, stopped, [], span)
+        return OverRun(self.claim.verb, scopes, root, place.uids, own, observed, refused, stopped, [], span, [])
 
     def _judged_over(self, claim: ResolvedClaim, overs: Sequence[OverRun]) -> Sequence[Judgement | None]:
         """The judgements of a run by a claim; `overs`: the run as it may have been."""

@@ -59,10 +59,12 @@ class Edge(Record):
 
 def edge_of(claim: ResolvedClaim, subject: Subject | None, requirement: ResolvedRequirement) -> Edge | None:
     """The bound of a claim at a subject; None if it has none that may be moved."""
-    if requirement.window is not None or requirement.span is not None:
-        return None  # a window holds other judgements for another bound, and the end of a span may be unknown
-    if isinstance(subject, DurationSum | ResolvedEachEvent):
-        return None  # parts of a sum, and earlier answers, may be unknown
+    if requirement.window is not None:
+        return None  # it holds other judgements for another bound
+    if isinstance(subject, DurationSum):
+        return None  # parts of a sum may be unknown
+    if isinstance(subject, ResolvedEachEvent) and any(scope.word == "while" for scope in requirement.scopes):
+        return None  # until the deadline
     if claim.limit is not None:
         if claim.verb in POOLED:
             return None  # all runs decide together

@@ -157,6 +157,8 @@ def _kept(claim: ResolvedClaim, run: OverRun, activation: Activation, span: Kept
     if counts is False:
         return OUT, reaches_end
     judgement = _keeps(claim, run, activation, sure)
+    if whole != sure or activation.timing != "exact":
+        run.unsettled.append(sure[0])
     if whole != sure:
         wider = _keeps(claim, run, activation, whole)
         if wider.holds is not judgement.holds:

@@ -94,6 +94,7 @@ class OverRun(Record):
             where its requirement has a span.
         missed: events that a judge found to concern no activation are appended.
         span: of the requirement.
+        unsettled: moments are appended of judgements that, with another bound, do not follow from their measure.
     """
 
     verb: str
@@ -105,7 +106,8 @@ class OverRun(Record):
     refused: Sequence[RefusedStart]
     stopped: Sequence[Activation]
     missed: list[Moment]
-    span: ResolvedSpan | None = None
+    span: ResolvedSpan | None
+    unsettled: list[Moment]
 
     @property
     def is_cut_off(self) -> bool:

@@ -221,6 +221,9 @@ def _followed_by(
     is_late, is_surely_in_time = times is not None and not times[0].holds, times is None or times[1].holds
     # The condition may hold after the run, before the time is over.
     is_open = claim.condition is not None and times is not None and times[0].excess < 0
+    is_of_limits = answer is None and times is not None and times[0].si != times[1].si
+    if unclear or is_of_limits or (answer is None and claim.condition is not None and not run.is_cut_off):
+        run.unsettled.append(event.at)
     earlier = [other.why for other in unclear if times is None or _may_be_in_time(claim, run, event, other)]
     if earlier and (answer is None or not is_surely_in_time):
         yield Judgement(None, time, earlier[0])

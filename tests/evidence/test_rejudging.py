@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from check_asserts import workspace_of
-from evidence_logs import MAIN, MAIN_XML, btlog, rows
+from evidence_logs import MAIN, MAIN_XML, btlog, rows, samples
 from random_runs import Case, case
 from seeds import seeds
 
@@ -22,9 +22,11 @@ from btq_lang.evidence.judging import Means
 from btq_lang.evidence.margins import Margins
 from btq_lang.evidence.model import LogSession
 from btq_lang.evidence.outline import demands, outline
+from btq_lang.evidence.readers.samples import read
 from btq_lang.evidence.rejudging import shown_now
 from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, VerdictReport
 from btq_lang.evidence.verifying import verify
+from btq_lang.util.record import replace
 
 KEPT, VIOLATED = 0, 1
 
@@ -157,3 +159,62 @@ def test_edited_odds_and_scopes(before: str, after: str, seen: tuple[object, ...
     (shown,) = shown_now(new.requirements, written(mission).requirements)
     verdict = shown.verdict
     assert (None if verdict is None else (verdict.verdict, verdict.counted, verdict.violated)) == seen
+
+
+TWICE = "0 1R 2R 20 2F 2R 60 2S 80 3R 90 3S 1S 1I 100 1R 2R 140 2S 145 3R 150 3S 1S"
+BATTERY = "signal battery : % from {level}\n"
+
+
+@pytest.mark.parametrize(
+    ("demand", "bounds"),
+    [
+        # Move succeeds at 60 and 140; Pick succeeds at 90 and 150, its row comes at 80 and 145.
+        ("each Move succeeds is followed by Pick succeeds within {} ms", (29, 30, 31, 9, 10, 100)),
+        ("each Move finishes is followed by Pick succeeds within {} ms", (5, 30, 69, 70, 71)),
+        # In the second run Move does not fail, and in the first one it has not succeeded again 41 ms before the end.
+        ("each Move fails is followed by Move fails within {} ms", (5, 69, 70, 71)),
+        ("each Move succeeds is followed by Pick succeeds within {} ms\n    in at least 40 % of occurrences", (5, 20)),
+        ("each Move succeeds is followed by Pick succeeds within {} ms\n    in at least 60 % of runs", (5, 20, 40)),
+        ("mission keeps battery >= {} %\n    from Move succeeds until Pick succeeds", (5, 14, 15, 16, 40)),
+        ("mission never battery < {} %\n    from Move fails until Move succeeds", (5, 50, 51)),
+        ("Move keeps battery > {} %\n    from when battery < 60 % until Pick succeeds", (5, 15, 16, 50)),
+    ],
+)
+def test_edited_bounds_of_answers_and_spans(demand: str, bounds: tuple[float, ...], tmp_path: Path) -> None:
+    (tmp_path / "run.btlog").write_bytes(btlog(MAIN_XML, rows(TWICE)))
+    (tmp_path / "samples.csv").write_text(samples("battery", {-1: 50, 70: 15, 95: 90, 120: 30, 142: 80}))
+    means = Means([], {"battery": read(str(tmp_path / "samples.csv"))["battery"]}, with_measures=True)
+
+    def mission_of(bound: float) -> Candidate:
+        text = f"{BATTERY}QualityReq rq : safety\n    {demand.format(bound)}\n{MAIN}"
+        return Candidate(workspace_of({"main.btq": text}), "main.btq", "main", None)
+
+    def judged_by(bound: float) -> MissionVerdicts:
+        (found,) = verify([str(tmp_path / "run.btlog")], replace(means, missions=[mission_of(bound)])).missions
+        return found
+
+    first, *others = bounds
+    before = written(judged_by(first))
+    for bound in others:
+        (shown,) = shown_now(mission_of(bound).requirements, before.requirements)
+        ((clause,),) = (requirement.clauses for requirement in judged_by(bound).requirements)
+        assert shown.verdict is not None
+        assert counts(shown.verdict) == counts(clause), bound
+        assert clause.counted
+
+
+@pytest.mark.parametrize(
+    "demand",
+    [
+        "each Move succeeds is followed by when battery > {} % within 5 ms",  # its time is what is bounded
+        "each Move fails is followed by when battery > 99 % within {} ms",  # the run ends before, so it may not count
+        "each Move succeeds is followed by Pick succeeds within {} ms\n    while battery > 5 %",  # up to the deadline
+    ],
+)
+def test_what_a_bound_does_not_decide_alone_is_judged_by_logs(demand: str, tmp_path: Path) -> None:
+    (tmp_path / "run.btlog").write_bytes(btlog(MAIN_XML, rows(TWICE)))
+    texts = [f"{BATTERY}QualityReq rq : safety\n    {demand.format(bound)}\n{MAIN}" for bound in (20, 30)]
+    old, new = (Candidate(workspace_of({"main.btq": text}), "main.btq", "main", None) for text in texts)
+    (mission,) = verify([str(tmp_path / "run.btlog")], Means([old], with_measures=True)).missions
+    (shown,) = shown_now(new.requirements, written(mission).requirements)
+    assert shown.verdict is None
