@@ -364,6 +364,12 @@ def list_goes_on(cursor: Cursor, qualities: bool = False) -> bool:
             return False
         if cursor.kinds[following] == NAME and cursor.raws[following] in _ATTRIBUTE_WORDS:
             return False
+    elif cursor.raws[following] in NODE_CLAUSES and cursor.kinds[following + 1] in (NAME, STRING):
+        comma = Span(cursor.last_end() + cursor.base, cursor.here().end)
+        message = f"there is no comma before `{cursor.raws[following]}`"
+        cursor.complain(cursor.here(), message, replace_fix("Remove `,`", comma, "", safe=True))
+        cursor.advance()
+        return False
     cursor.advance()
     return True
 

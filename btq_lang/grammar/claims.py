@@ -14,6 +14,7 @@ from btq_lang.grammar.claim_mistakes import (
     blank_in_path,
     choice_in_other_words,
     every_meant,
+    is_time,
     no_relation,
     no_verb,
     no_within,
@@ -32,6 +33,7 @@ from btq_lang.grammar.claim_words import (
 )
 from btq_lang.grammar.conditions import (
     BOUNDS,
+    COMPARISONS,
     RELATIONS,
     accept_one,
     bound_ahead,
@@ -44,7 +46,7 @@ from btq_lang.grammar.conditions import (
 )
 from btq_lang.grammar.cursor import Cursor
 from btq_lang.grammar.prose import MODALS
-from btq_lang.syntax.tokens import BRACED, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
+from btq_lang.syntax.tokens import BRACED, NAME, NEWLINE, NODE_CLAUSES, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
 from btq_lang.syntax.tree import (
     AnyEvent,
     Between,
@@ -65,6 +67,9 @@ from btq_lang.syntax.tree import (
 )
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span
+
+_NO_MORE: Final = (("no", "more", "than"), ("not", "more", "than"))
+_AFTER_VISITS: Final = NODE_CLAUSES | {"QualityReq", "parameters"}
 
 
 def parse_claim(cursor: Cursor) -> Claim | None:
@@ -113,8 +118,10 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
         elif cursor.at_word("to") and verb_in_other_words(cursor, cursor.index - 1, before_verb(cursor, subject)):
             cursor.recover()
         elif not signal_last(cursor, verb.raw):
-            condition = parse_cond(cursor)
-            bound = parse_stretch(cursor) if verb.raw == "never" and cursor.raw == "for" else None
+            if verb.raw == "never":
+                condition, bound = parse_forbidden(cursor)
+            else:
+                condition = parse_cond(cursor)
     elif operand == "use":
         bound = parse_bound(cursor)
         resource = cursor.plain_name("a signal") if cursor.expect_word("of", forgotten=cursor.kind == NAME) else None
@@ -293,16 +300,38 @@ def parse_within(cursor: Cursor) -> Bound:
     return Bound(min(start, end), end, "<=", value)
 
 
-def parse_stretch(cursor: Cursor) -> Bound | None:
-    """ "for" "more" "than" Bounded; other words for `more than` are reported"""
+def parse_forbidden(cursor: Cursor) -> tuple[Condition | None, Bound | None]:
+    """Cond [ "for" "more" "than" Bounded ], after `never`"""
+    time = words_for_time(cursor) if "than" in cursor.raws else 0
+    if not time:
+        condition = parse_cond(cursor)
+        return condition, parse_stretch(cursor, after_name=False)
+    kept, cursor.raws[time] = cursor.raws[time], "for"  # else a comparison
+    condition = parse_cond(cursor)
+    cursor.raws[time] = kept
+    cursor.go_to(cursor.index)
+    after_name = cursor.kinds[time - 1] == NAME and not (time > 1 and cursor.raws[time - 2] in COMPARISONS)
+    return condition, parse_stretch(cursor, after_name)
+
+
+def parse_stretch(cursor: Cursor, after_name: bool) -> Bound | None:
+    """ "for" "more" "than" Bounded; other words for it are reported
+
+    Args:
+        after_name: of a condition that is a name only, which may be that of a time.
+    """
     start = cursor.start()
-    relation = BOUNDS.get(tuple(cursor.raws[cursor.index + 1 : cursor.index + 3]))
-    if relation not in (("more", "than"), ("at", "least")):
+    has_for = cursor.at_word("for")
+    if [cursor.raw, *cursor.raws[cursor.index + 1 : cursor.index + 3]] == ["for", "more", "than"]:
+        cursor.go_to(cursor.index + 3)
+    elif length := time_in_words(cursor, cursor.index + has_for, is_any=has_for or not after_name):
+        stretch_in_other_words(cursor, length + has_for, after_name and not has_for)
+        cursor.go_to(cursor.index + length + has_for)
+    elif has_for and cursor.kinds[cursor.index + 1] == QUANTITY and is_time(cursor.raws[cursor.index + 1]):
+        cursor.advance()
+        cursor.complain(cursor.here(), "this time is written `for more than`", cursor.put_before("more than"))
+    else:
         return None
-    cursor.advance()
-    if not cursor.at_word("more"):
-        written_otherwise(cursor, "this time", 2, "more than")
-    cursor.go_to(cursor.index + 2)
     value = parse_bounded(cursor)
     return Bound(start, cursor.last_end(), "<=", value)
 
@@ -319,13 +348,64 @@ def parse_bounded(cursor: Cursor) -> Bounded | None:
 
 def nodes_to_visit(cursor: Cursor) -> tuple[tuple[NodeRef, ...], Word | None]:
     """The nodes after `visits`, and the word `order` if they are to be visited in order."""
-    visits = cursor.listed(parse_node_ref, lambda cursor: cursor.accept_and() or cursor.accept(","))
+    visits = cursor.listed(parse_node_ref, visits_go_on)
     if len(visits) == 1:
         cursor.expected("`,` and another node", ("for one node write `Dock tries at least 1`",))
     if not (cursor.at_word("in") and cursor.is_word(cursor.index + 1, "order")):
         return visits, None
     cursor.advance()
     return visits, cursor.take()
+
+
+def time_in_words(cursor: Cursor, index: int, is_any: bool = False) -> int:
+    """How many words there are at a token that bound a time from above, which follows them; 0 if there are none.
+
+    Args:
+        is_any: any bound that is in words; else one that is mostly said of a time.
+    """
+    for length in (3, 2, 1):
+        found = tuple(cursor.raws[index : index + length])
+        if found in BOUNDS and cursor.kinds[index] == NAME and BOUNDS[found] != ("less", "than"):
+            is_of_time = is_any or "longer" in found or found in _NO_MORE
+            value = index + length
+            return length if is_of_time and cursor.kinds[value] == QUANTITY and is_time(cursor.raws[value]) else 0
+    return 0
+
+
+def words_for_time(cursor: Cursor) -> int:
+    """The token with which `longer than 30 s` begins, after a condition; 0 if there is none."""
+    first = cursor.index + 1
+    return next((index for index in range(first, next_head(cursor)) if time_in_words(cursor, index)), 0)
+
+
+def stretch_in_other_words(cursor: Cursor, length: int, may_be_time: bool) -> None:
+    """Report words for `for more than`.
+
+    Args:
+        length: how many there are.
+        may_be_time: what they follow may be a time, which is then compared.
+    """
+    first, last = cursor.index, cursor.index + length - 1
+    span = Span(cursor.here().start, cursor.starts[last] + len(cursor.raws[last]))
+    bound = BOUNDS[tuple(word for word in cursor.raws[first : last + 1] if word != "for")]
+    notes: tuple[str, ...] = ()
+    fixes = [write_fix("for more than", span, safe=bound != ("at", "most") and not may_be_time)]
+    if may_be_time:
+        notes = (f"`{cursor.raws[first - 1]} {RELATIONS[bound]} {cursor.raws[last + 1]}` compares a time",)
+        fixes.append(write_fix(RELATIONS[bound], span))
+    cursor.complain(span, "this time is written `for more than`", *fixes, notes=notes)
+
+
+def visits_go_on(cursor: Cursor) -> bool:
+    """Skip the comma after a node to visit, unless what follows it belongs to the node above: in brackets an attribute,
+    after `satisfies` another requirement with its definition.
+    """
+    if cursor.at(",") and cursor.lists_requirements():
+        following = cursor.index + 1
+        word, is_named = cursor.raws[following], cursor.kinds[following + 1] in (NAME, STRING)
+        if (is_named and word in _AFTER_VISITS) or (cursor.group and cursor.is_operator(following + 1, "=")):
+            return False
+    return cursor.accept_and() or cursor.accept(",")
 
 
 def port_value(cursor: Cursor) -> Pair | None:

@@ -7,7 +7,7 @@ from check_asserts import workspace_of
 
 from btq_lang.checks import check
 from btq_lang.parser import parse
-from btq_lang.syntax.tree import Assuming, Binary, Choice, Claim, Clause, Operand, Path, Requirement, walk
+from btq_lang.syntax.tree import Assuming, Binary, Choice, Claim, Clause, Operand, Path, Requirement, Tags, walk
 
 
 def clauses(text: str) -> tuple[Clause, ...]:
@@ -99,6 +99,68 @@ def test_nodes_to_visit(text: str, paths: list[str] | None, in_order: bool) -> N
         assert pairs == [("to", "A"), ("speed", "3 m/s")]
 
 
+@pytest.mark.parametrize(
+    ("line", "visited", "after"),
+    [
+        ("Go (satisfies QualityReq r visits A, B, tags t)", ["A", "B"], [["t"]]),
+        ("Go (satisfies QualityReq r visits A, B, x = 3)", ["A", "B"], []),
+        ("Go (satisfies QualityReq r visits A, B, satisfices safety)", ["A", "B"], []),
+        ("Go (satisfies QualityReq r visits A, tags)", ["A", "tags"], []),  # a node of that name
+        ("Go satisfies QualityReq r visits A, B tags t", ["A", "B"], [["t"]]),
+        ("Go satisfies QualityReq r visits A, B, QualityReq s succeeds", ["A", "B"], []),
+    ],
+)
+def test_what_follows_nodes_to_visit_on_the_line_of_a_node(
+    line: str, visited: list[str], after: list[list[str]]
+) -> None:
+    parsed = parse(f"BehaviorTree Main\n    {line}\n")
+    assert parsed.diagnostics == ()
+    claims = [each for entry in parsed.entries for each in walk(entry.item) if isinstance(each, Claim) and each.visits]
+    assert [visit.path.names[0].text for visit in claims[0].visits] == visited
+    tags = [each for entry in parsed.entries for each in walk(entry.item) if isinstance(each, Tags)]
+    assert [[name.text for name in each.names] for each in tags] == after
+
+
+@pytest.mark.parametrize("before", ["satisfies r", "satisfies QualityReq r visits A, B", "satisfices safety", "tags a"])
+@pytest.mark.parametrize("word", ["tags", "satisfies", "satisfices"])
+def test_a_comma_before_another_clause_of_a_node(before: str, word: str) -> None:
+    text = f"BehaviorTree Main\n    Go {before}, {word} t\n"
+    (found,) = parse(text).diagnostics
+    (fix,) = found.fixes
+    assert (found.message, fix.title, fix.safe) == (f"there is no comma before `{word}`", "Remove `,`", True)
+    assert parse(text.replace(f", {word}", f" {word}")).diagnostics == ()
+
+
+@pytest.mark.parametrize(
+    ("text", "fixes"),
+    [
+        ("never lamp_on longer than 30 s", {"Write `for more than`": False, "Write `>`": False}),
+        ("never lamp_on no more than 30 s", {"Write `for more than`": False, "Write `<=`": False}),
+        ("never lamp_on no longer than 30 s", {"Write `for more than`": False, "Write `<=`": False}),
+        ("never lamp_on for longer than 30 s", {"Write `for more than`": True}),
+        ("never lamp_on for over 30 s while near", {"Write `for more than`": True}),
+        ("never lamp_on for no more than 30 s", {"Write `for more than`": False}),
+        ("never lamp_on for at most 30 s", {"Write `for more than`": False}),
+        ("never speed > 1 m/s longer than 30 s", {"Write `for more than`": True}),
+        ("never speed > limit longer than 30 s", {"Write `for more than`": True}),
+        ("never lamp_on and near longer than 30 s", {"Write `for more than`": False, "Write `>`": False}),
+        ("never (lamp_on or near) longer than 30 s", {"Write `for more than`": True}),
+        ("never lamp_on for 30 s", {"Put `more than` before it": False}),
+        ("never lamp_on more than 30 s", {"Write `>`": True}),  # as of any comparison
+        ("never speed longer than 30 m/s", {"Write `>`": True}),  # no time
+    ],
+)
+def test_how_long_in_other_words(text: str, fixes: dict[str, bool]) -> None:
+    source = f"QualityReq r : safety\n    {text}\n"
+    (found,) = parse(source).diagnostics
+    assert {fix.title: fix.safe for fix in found.fixes} == fixes
+    for fix in found.fixes:
+        (change,) = fix.changes
+        span = change.place.span
+        fixed = source[: span.start] + change.text + source[span.end :]
+        assert parse(fixed).diagnostics == (), fixed
+
+
 @pytest.mark.parametrize("text", ["visits takes at most 3 s", "visits/Move needs calm", "Go/visits needs calm"])
 def test_a_node_that_is_called_visits(text: str) -> None:
     found = claim(text)
@@ -126,7 +188,9 @@ def test_a_node_that_is_called_for() -> None:
         ("Move finishes with battery >= 3 %", "this clause is written `Move ends with battery >= 3 %`"),
         ("Move shall end with calm", "this clause is written `Move ends with calm`"),
         ("Move ends with at least 3 % battery", "expected a condition, which begins with its signal, found `at`"),
-        ("never calm for longer than 3 s", "this time is written `more than`"),
+        ("never calm for longer than 3 s", "this time is written `for more than`"),
+        ("never calm for 3 s", "this time is written `for more than`"),
+        ("never speed > 1 m/s over 3 s", "this time is written `for more than`"),
         (
             "keeps calm for 3 s",
             "only `never` says how long a condition may hold: `never low for more than 30 s`",
