@@ -136,7 +136,8 @@ class Session:
         for run, ones, others in zip(self.runs, early, late, strict=False):
             (few, one_many, short, one_long), (other_few, many, other_short, long) = ones, others
             added = min(few, other_few), max(one_many, many), min(short, other_short), max(one_long, long)
-            found.append((Judged(run.run, uids[0], True if added[3] else OUT, run.end), added))
+            one = Judged(run.run, uids[0], True if added[3] else OUT, run.end)
+            found.append((self.in_run(one, applied.requirement), added))
         return found
 
     def followed(self, each: ResolvedEachEvent, claim: ResolvedClaim, requirement: ResolvedRequirement) -> list[Judged]:
@@ -225,7 +226,7 @@ class Session:
         }
 
 
-OVER_RUNS = ("tries", "runs", "follows", "starts", "ends", "followed", "visits")
+OVER_RUNS = (*OF_RUNS, "starts", "ends", "followed")
 
 
 def alike(one: Verdict, other: Verdict) -> Verdict:
@@ -331,6 +332,7 @@ class Literal:
         few, many, short, long = (sum(column) for column in zip(*counted, strict=True)) if counted else (0, 0, 0, 0)
         one, other = self.of_rate(requirement, claim, many, short), self.of_rate(requirement, claim, few, long)
         verdict = "never exercised" if not counted else one if one == other else "unknown"
+        verdict = "unknown" if any(each.verdict is None for each in judged) else verdict
         uids = {each.uid for each in judged}
         if isinstance(applied.subject, NodeTarget):
             uids = {*self.sessions[0].late.uids(applied.subject)}
