@@ -172,7 +172,8 @@ class JudgedClause:
             instances = [others.find(target) for target in needed]
             lost = [uids_of_target for uids_of_target in instances if isinstance(uids_of_target, UnknownValue)]
             for target in self._running:
-                others.find(target)
+                for uid in uids:
+                    nearby(uid).find(target)
             if lost:
                 self.findings.missing = self.findings.missing or lost[0].why
                 continue
@@ -404,7 +405,7 @@ class JudgedClause:
             if len(early) != len(late):
                 is_any = any(judgement is not OUT for judgement in (*early, *late))
                 return [Judgement(None, root.end, UNKNOWN_BEGIN)] if is_any else []
-            late = [agreed(*pair, root) for pair in zip(late, early, strict=True)]
+            late = [_in_order(agreed(*pair, root), pair[0]) for pair in zip(late, early, strict=True)]
         return [_clocked(judgement, root) for judgement in late if judgement is not OUT]
 
     def _judge_one(
@@ -602,6 +603,13 @@ def _kind(judgement: Judgement | None, activation: Activation) -> int:
     if judgement is None:
         return margins.CUT_OFF if activation.outcome == "O" else margins.NOTHING
     return margins.UNKNOWN if judgement.holds is None else margins.KEPT if judgement.holds else margins.VIOLATED
+
+
+def _in_order(judgement: Judgement | None, late: Judgement | None) -> Judgement | None:
+    """The judgement, if it is unknown at the place of the one for the latest begins: a window keeps the last ones."""
+    if judgement is None or judgement is OUT or judgement.holds is not None or late is None or late is OUT:
+        return judgement
+    return judgement._replace(at=late.at)
 
 
 def _clocked(judgement: Judgement | None, root: Activation | None) -> Judgement | None:

@@ -37,7 +37,7 @@ def rate(claim: ResolvedClaim, run: OverRun) -> Iterator[Judgement]:
 
 def _counts(run: OverRun, activation: Activation) -> bool | UnknownValue:
     """Whether the end of an activation is in scope, or its start for `when`."""
-    observed = run.observed.during(activation).in_scope
+    observed = run.during(activation).in_scope
     starts, meanwhile = ([scope.condition for scope in run.scopes if scope.word == word] for word in ("when", "while"))
     is_about_it = truth(All(tuple(starts)), observed, observed.begin)
     counts = truth(All(tuple(meanwhile)), observed, observed.end)

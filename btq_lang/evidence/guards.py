@@ -35,6 +35,11 @@ class Guard(Record):
     checks: bool = False
     halts: bool = True
 
+    @property
+    def refuses(self) -> bool:
+        """Whether it looks only before the node starts, so that each time it fails it has refused a start."""
+        return bool(self.verbs) and not (self.checks or self.halts)
+
 
 class RefusedStart(Record):
     """A start that a guard refused because it would have violated a clause."""
@@ -80,7 +85,12 @@ class Guards:
         """
         uid = activation.uid
         if activation.outcome == "F" and uid in self._holders:
-            self._failed[self._holders[uid]] = activation.ended
+            holder = self._holders[uid]
+            inside = self._inside.get(holder)
+            if inside is not None and self._guards[holder].refuses:  # whatever rows its other nodes have
+                self.last = self._guards[holder].requirement
+                return [], RefusedStart(inside, activation.ended, self._guards[holder])
+            self._failed[holder] = activation.ended
         settled: list[tuple[Activation, Guard | None]] = []
         refusal = self._refusal(activation)
         for failed, failed_at in [*self._failed.items()] if uid == ROOT else ():

@@ -82,6 +82,7 @@ class Nearby:
         self._joined: Final = joined
         self._history: Final = history
         self._uids: Final[dict[NodeTarget, tuple[int, ...] | UnknownValue]] = {}
+        self._beside: Final[dict[int, Nearby]] = {}
 
     def find(self, target: NodeTarget) -> tuple[int, ...] | UnknownValue:
         """The instances of a node, whose activations are kept from now on."""
@@ -95,6 +96,16 @@ class Nearby:
             self._history.watch(uids)
         self._uids[target] = uids
         return uids
+
+    def beside(self, uid: int) -> Nearby:
+        """The same nodes, relative to another of the clause's own."""
+        if uid == self._uid:
+            return self
+        if uid not in self._beside:
+            self._beside[uid] = Nearby(uid, self._joined, self._history)
+            for target in self._uids:
+                self._beside[uid].find(target)
+        return self._beside[uid]
 
     def activations(self, target: NodeTarget) -> list[Activation]:
         """The activations of a node in the run, in the order of their starts."""

@@ -163,6 +163,8 @@ def _kept(claim: ResolvedClaim, run: OverRun, activation: Activation, span: Kept
         wider = _keeps(claim, run, activation, whole)
         if wider.holds is not judgement.holds:
             judgement = Judgement(None, until[0], span.why)
+    if judgement.holds is not False:
+        judgement = judgement._replace(at=until[0])
     if judgement.holds and activation.outcome == "O" and reaches_end:
         return None, reaches_end
     if isinstance(counts, UnknownValue):

@@ -88,6 +88,12 @@ class Observed:
         begin, is_end_known = activation.begun(self.is_early), activation.timing != "latest"
         return Observed(self.signals, self.nodes, begin, activation.ended, is_end_known, is_early=self.is_early)
 
+    def beside(self, uid: int) -> Observed:
+        """The same, as seen from another of the clause's own nodes."""
+        same = self.begin, self.end, self.is_end_known
+        nodes = self.nodes.beside(uid)
+        return Observed(self.signals, nodes, *same, is_early=self.is_early, reads_initial=self.reads_initial)
+
     def earlier(self, begin: Moment) -> Observed:
         """The same from an earlier moment, as if all nodes had begun as early as they may have."""
         return Observed(self.signals, self.nodes, begin, self.end, self.is_end_known, is_early=True)

@@ -122,7 +122,13 @@ class OverRun(Record):
         """Whether the scopes include an activation."""
         if not self.scopes:
             return True
-        return in_scope(self.scopes, self.verb, self.observed.during(activation))
+        return in_scope(self.scopes, self.verb, self.during(activation))
+
+    def during(self, activation: Activation) -> Observed:
+        """What was observed during an activation; of one of several nodes of the clause, as seen from it."""
+        observed = self.observed.during(activation)
+        is_one_of_several = len(self.uids) > 1 and activation.uid in self.uids
+        return observed.beside(activation.uid) if is_one_of_several else observed
 
     def begins(self, event: ResolvedEvent | ResolvedAnyEvent) -> list[Moment]:
         """When the clause's nodes began, to be compared with an event: a moment, or the row of another node."""

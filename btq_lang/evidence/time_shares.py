@@ -91,14 +91,14 @@ def pieces(
     """The time of an activation that counts or may count, from as early as it may have begun to its end: pieces in µs,
     whether each counts, and whether a condition holds in it.
     """
-    observed = run.observed.during(activation)
+    observed = run.during(activation)
     starts, meanwhile = ([scope.condition for scope in run.scopes if scope.word == word] for word in ("when", "while"))
     is_about_it = truth(All(tuple(starts)), observed.in_scope, observed.begin)
     if is_about_it is False:
         return
     scope = All(tuple(meanwhile))
     begin, end = activation.begun(True), activation.ended
-    before = run.observed.between(begin, end)
+    before = observed.between(begin, end)
     moments = sorted({*before.moments(condition, scope), activation.started})
     for moment, following in zip(moments, [*moments[1:], end], strict=True):
         seen = observed if moment >= observed.begin else before

@@ -158,7 +158,7 @@ class OverRuns(OfActivations):
                 continue
             too_many = [x for number, x in enumerate(sure, 1) if self.within(number, claim.limit, p)[0] is False]
             found.append((verdict, too_many[0].shown[0] if verdict is False and too_many else p.end))
-        return [*found, *((False, each.end) for each in refused[:1])]  # of those that no activation holds
+        return [*found, *((False, each.end) for each in refused)]  # those that no activation holds: a case each
 
     def tried(self, p: Activation, number: int, claim: ResolvedClaim) -> Verdict:
         """What an activation comes to that holds a number of starts that count: without any, no upper bound."""
@@ -480,7 +480,7 @@ class OverRuns(OfActivations):
             spans = self.kept_times(requirement.span, replace(run, uid=uid))
             for a in (each for each in self.of(uid) if each.run == run.run):
                 pieces = [self.kept_in_span(a, span, claim, requirement) for span in spans]
-                is_stopped = self.is_stopped(a, claim, requirement)
+                is_stopped = self.is_stopped(a, claim, requirement) or self.is_refuted(a, claim, requirement)
                 for verdict, decided, is_last in pieces:
                     is_guarded, is_stopped = is_stopped and is_last, is_stopped and not is_last
                     found.append(

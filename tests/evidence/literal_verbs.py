@@ -22,6 +22,9 @@ OPEN: Final = "open"  # cut off by the end of the log before it breaks anything
 OUT: Final = "out"  # not counted
 
 
+REFUSING = ("needs", "tries", "starts per", "follows")  # what guards look at only before a node starts
+
+
 @dataclass(frozen=True)
 class Judged:
     """What one activation came to: true, false, unknown, open, or not counted.
@@ -97,6 +100,7 @@ class OfActivations(Log):
         """Whether the guard around the node for this clause has checked it after it succeeded, and failed."""
         return any(
             verb == claim.verb
+            and verb not in REFUSING
             and self.guards[guard.uid] == requirement.name
             and self.held(a.uid, guard, check)[-1:] == [a]
             for verb, guard, check in self.failed_checks(a.uid)
@@ -123,8 +127,9 @@ class OfActivations(Log):
         ]
 
     def refusals(self, uid: int) -> list[tuple[str, Activation, Activation]]:
-        """The checks of guards around a node that have failed before the node started; see `failed_checks`."""
-        return [each for each in self.failed_checks(uid) if not self.held(uid, *each[1:])]
+        """The checks of guards around a node that have failed before the node started, as all do that are made only
+        then; see `failed_checks`."""
+        return [each for each in self.failed_checks(uid) if each[0] in REFUSING or not self.held(uid, *each[1:])]
 
     def failed_checks(self, uid: int) -> list[tuple[str, Activation, Activation]]:
         """The checks of requirements' guards around a node that have failed: the verb that is enforced, the guard, and

@@ -21,12 +21,10 @@ RARE = (
 )
 # In these the two judges once differed.
 DIFFERED = (
-    *(841, 978, 1754),
+    *(841, 978, 1754, 28, 191, 2490, 4261, 4303),
     *(165, 538, 957, 1318, 1344, 1712, 1734, 1769, 2044, 2245, 2894, 2912, 2986, 3175, 3342, 3619, 4198, 5138, 5291),
     *(11072, 5576, 5773, 6032, 6146, 6202, 6517, 6967, 8781, 9318, 9404, 9819, 9922, 9976, 20143, 20744, 22573, 22938),
 )
-# In these they differ today, and in no other of the seeds up to 6 000: refused starts, spans, a sum in a scope.
-DIFFERING = (28, 191, 2490, 4261, 4303)
 
 
 @pytest.fixture(scope="module")
@@ -47,13 +45,6 @@ def hunt(request: pytest.FixtureRequest) -> Hunt:
 
 def test_both_say_the_same(hunt: Hunt) -> None:
     assert hunt.differences == []
-
-
-@pytest.mark.parametrize("seed", DIFFERING)
-def test_they_differ_today(seed: int) -> None:
-    made = Hunt()
-    made.judge(seed)
-    assert made.differences != []
 
 
 @pytest.mark.parametrize("verb", [*VERBS, "from … to", "sum of", "from … until"])

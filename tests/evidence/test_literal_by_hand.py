@@ -371,3 +371,61 @@ def numbered(xml: str) -> tuple[LoggedTree, set[int]]:
 
     add(next(each for each in trees.values() if each.get("_uid") == "1"), 0)
     return LoggedTree(nodes), subtrees
+
+
+# 1 n0 (2 guard (3 check, 4 a), 5 b); the guard has a row of its own only when it fails, or none.
+HALTED = "0 1R 3S 4R 30 4I 3I"
+
+
+@pytest.mark.parametrize(
+    ("log", "expected"),
+    [
+        # A guard that only looks before a start has refused one each time it fails, and stopped nothing.
+        (f"{HALTED} 40 3F 2F 1F", "violated 1/1 ?1"),
+        (f"{HALTED} 40 3S 4R 50 4I 3I 60 3F 2F 1F", "violated 1/1 ?2"),
+        (f"{HALTED} 40 3F 3I 50 3F 2F 1F", "violated 2/2 ?1"),
+        (f"{HALTED} 40 3F", "violated 1/1 ?1"),
+    ],
+)
+def test_each_failure_of_a_check_before_the_start_is_a_refused_start(log: str, expected: str) -> None:
+    assert said(f"a needs battery >= 50 %{FAIL}", log) == expected
+
+
+# 1 init (2 start, 3 n0 (4 tries (5 check, 6 counted (7 counter, 8 a)), 9 per (10 zero, 11 b)))
+@pytest.mark.parametrize(
+    ("log", "expected"),
+    [
+        ("0 1R 2S 3R 5F 4F 3F 1F 1I 10 1R 2S 3R 5F 4F 3F 1F", "violated 2/2"),
+        ("0 1R 2S 3R 5F 5I 10 5F 4F 3F 1F", "violated 2/2"),
+    ],
+)
+def test_refused_tries_that_no_activation_holds_are_a_case_each(log: str, expected: str) -> None:
+    assert said(f"a tries at most 1 per b{FAIL}", log) == expected
+
+
+def test_a_span_that_its_guard_ends_is_violated_where_the_log_ends_first() -> None:
+    # 1 init (2 start, 3 guard (4 check, 5 n0 …
+    demand = f"mission never battery < 50 %\n    from a starts until b finishes{FAIL}"
+    assert said(demand, "0 1R 2S 3R 4S 5R 30 4F") == "violated 1/1"
+
+
+@pytest.mark.parametrize(("last", "expected"), [(1, "satisfied 0/1"), (2, "unknown 0/1 ?1")])
+def test_a_window_keeps_the_spans_that_end_last(last: int, expected: str) -> None:
+    """The first one may have ended before 55 ms, when a started again; the second one is from 100 to 200 ms."""
+    demand = "mission keeps battery >= 50 %\n    from a fails or a succeeds until a starts or b finishes"
+    battery = [(-1.0, 90.0), (55.0, 10.0), (58.0, 90.0)]
+    assert said(f"{demand}\n    over last {last} activations", TWICE, TWO, battery=battery) == expected
+
+
+USES = (
+    "-> n0\n  SubTree Part p\n  SubTree Part q\nBehaviorTree Part\n    -> n1\n      Action Move a\n      Action Pick b"
+)
+
+
+def test_the_nodes_of_a_scope_are_those_of_the_use_of_each_node_of_a_sum() -> None:
+    """1 n0 (2 p (3 n1 (4 a, 5 b)), 6 q (7 n1 (8 a, 9 b)))"""
+    log = "0 1R 2R 3R 4R 10 4S 5R 30 5S 3S 2S 6R 7R 8R 40 8S 9R 70 9S 7S 6S 1S"
+    tree = USES.split("\nBehaviorTree")[0]
+    part = USES[len(tree) + 1 :]
+    demand = "sum of b takes at most {} ms\n    while node n1" + "\n" + part
+    assert (said(demand.format(50), log, tree), said(demand.format(49), log, tree)) == ("satisfied 0/1", "violated 1/1")
