@@ -6,7 +6,7 @@ and path are as the build wrote them: another file that the XML includes may hav
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -61,25 +61,44 @@ def descriptions_from(side: str, xml: str, included: tuple[str, ...]) -> Element
     except (ValueError, LookupError, TypeError, AttributeError, RecursionError):
         return ElementDescriptions("cannot be read", {})
     documents = [document for text in (xml, *included) if (document := read(text).document) is not None]
-    lines_at: dict[int, dict[str, None]] = {}
+    lines_at: dict[int, dict[str, str]] = {}
     own = {id(element) for element in documents[0].root.walk()} if documents else set()
     for instance in instances(documents, main):
         if id(instance.element) in own and instance.uid in lines and paths.get(instance.uid) == instance.path:
-            lines_at.setdefault(instance.element.tag_span.start, {}).update(dict.fromkeys(lines[instance.uid]))
-    return ElementDescriptions("", {offset: tuple(texts) for offset, texts in lines_at.items()})
+            lines_at.setdefault(instance.element.tag_span.start, {}).update(lines[instance.uid])
+    in_xml = dict(described(xml))
+    return ElementDescriptions(
+        "", {offset: _as_described(texts, in_xml.get(offset, ())) for offset, texts in lines_at.items()}
+    )
 
 
-def _lines_by_number(data: Mapping[str, Any]) -> Iterator[tuple[int, list[str]]]:
-    """What holds for each node, by its number."""
-    lines: dict[int, list[str]] = {}
+def _as_described(lines: Mapping[str, str], in_xml: Sequence[str]) -> tuple[str, ...]:
+    """The lines of an element in the order in which the build has described it, as far as it has.
+
+    Args:
+        lines: each with what it is about.
+    """
+
+    def place(line: str) -> int:
+        about = lines[line]
+        starts = tuple(f"{about}{sign}" for sign in ("(", " (", ":"))
+        return next((at for at, one in enumerate(in_xml) if one == about or one.startswith(starts)), len(in_xml))
+
+    return tuple(sorted(lines, key=place))
+
+
+def _lines_by_number(data: Mapping[str, Any]) -> Iterator[tuple[int, dict[str, str]]]:
+    """What holds for each node, by its number: lines, each with the quality or requirement that it is about."""
+    lines: dict[int, dict[str, str]] = {}
     for concern in data["concerns"]:
         for uid in concern["nodes"]:
-            lines.setdefault(uid, []).extend(f"satisfices {quality}" for quality in concern["qualities"])
+            qualities = (f"satisfices {quality}" for quality in concern["qualities"])
+            lines.setdefault(uid, {}).update((line, line) for line in qualities)
     requirements = {each["id"]: each for each in data["requirements"]}
     for applied in data["applied"]:
         line = _line(requirements[applied["requirement"]], applied)
         for uid in applied.get("nodes", ()):
-            lines.setdefault(uid, []).append(line)
+            lines.setdefault(uid, {})[line] = " ".join(applied["requirement"].split())
     yield from lines.items()
 
 

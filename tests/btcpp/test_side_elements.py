@@ -56,6 +56,38 @@ def test_lines_of_elements(tmp_path: Path) -> None:
     }
 
 
+ORDER = """\
+QualityReq a
+    mission takes at most 30 s
+QualityReq ab(limit : s = 20 s)
+    takes at most limit
+QualityReq c
+    every Move succeeds
+QualityReq "d e" : safety "D"
+    takes at most 10 s
+apply ab to Move
+Root Main
+BehaviorTree Main
+    -> satisfies "d e", ab satisfices comfort
+        Move satisfices safety satisfies "d e"
+"""
+
+
+def test_requirements_are_in_the_order_in_which_the_build_has_described_them(tmp_path: Path) -> None:
+    """What a node satisfies, as it is written, then what is applied to it, or is about it or the mission."""
+    xml, side = built(tmp_path, ORDER)
+    heads = {
+        at: [re.split(r": | \(|\(", line)[0] for line in lines]
+        for at, lines in descriptions_from(side, xml, ()).lines.items()
+    }
+    assert [*heads.values()] == [
+        ["d e", "ab", "satisfices comfort", "a"],
+        ["satisfices safety", "d e", "ab", "c"],
+    ]
+    shown = {at: [re.split(r": | \(|\(", line)[0] for line in lines] for at, lines in described(xml)}
+    assert shown == heads
+
+
 def test_nodes_after_an_include_that_has_changed(tmp_path: Path) -> None:
     """Their numbers are others now, and nothing is said of them."""
     part = "BehaviorTree Part\n    Move\n"
