@@ -34,7 +34,7 @@ from btq_lang.evidence.run_verbs import run_judge
 from btq_lang.evidence.scopes import in_scope, within
 from btq_lang.evidence.signals import Signals, UnknownValue
 from btq_lang.evidence.tally import Run
-from btq_lang.evidence.verbs import JUDGES, OUT, Judgement, agreed
+from btq_lang.evidence.verbs import JUDGES, OUT, Judgement, agreed, in_order
 from btq_lang.evidence.verbs import duration as lasted
 from btq_lang.evidence.verdicts import CauseLink, ClauseVerdict, Measures
 from btq_lang.evidence.wording import duration
@@ -256,19 +256,6 @@ class JudgedClause:
                         yield judgement, place.path
         self._looked_until = root.ended
 
-    def was_seen(self, judgement: Judgement, path: str, begin: int) -> bool:
-        """Whether a violation in the open run, which has ended, was seen before.
-
-        A span may begin before the row of its node; each one that was seen is the first violation like it.
-        """
-        for key, (seen, known_path) in self.broken.items():
-            if isinstance(key, int) and path == known_path:
-                return True
-            if isinstance(key, tuple) and (path, judgement.sentence) == (known_path, seen.sentence) and begin <= key[1]:
-                del self.broken[key]
-                return True
-        return False
-
     def refuse(self, refusal: RefusedStart, path: str) -> None:
         """Count a start that a guard refused: it violates the demand that the guard enforces, and for `succeeds` it is
         a failure.
@@ -405,7 +392,7 @@ class JudgedClause:
             if len(early) != len(late):
                 is_any = any(judgement is not OUT for judgement in (*early, *late))
                 return [Judgement(None, root.end, UNKNOWN_BEGIN)] if is_any else []
-            late = [_in_order(agreed(*pair, root), pair[0]) for pair in zip(late, early, strict=True)]
+            late = [in_order(agreed(*pair, root), pair[0]) for pair in zip(late, early, strict=True)]
         return [_clocked(judgement, root) for judgement in late if judgement is not OUT]
 
     def _judge_one(
@@ -503,7 +490,7 @@ class JudgedClause:
                 judgements.clear()
             limits = [judgements[0].measure, judgements[0].most] if judgements else []
             values = [self._edge.across(measure.si) for measure in limits if measure is not None]
-            self._margins.add(_kind(kept, activation), _kind(broken, activation), values)
+            self._margins.add(margins.kind_of(kept, activation), margins.kind_of(broken, activation), values)
 
     def _count(self, judgement: Judgement | None, activation: Activation, path: str) -> None:
         if judgement is None:
@@ -596,20 +583,6 @@ class JudgedClause:
     def text(self) -> str:
         """As of its demand."""
         return self.demand.text
-
-
-def _kind(judgement: Judgement | None, activation: Activation) -> int:
-    """What a judgement is for margins."""
-    if judgement is None:
-        return margins.CUT_OFF if activation.outcome == "O" else margins.NOTHING
-    return margins.UNKNOWN if judgement.holds is None else margins.KEPT if judgement.holds else margins.VIOLATED
-
-
-def _in_order(judgement: Judgement | None, late: Judgement | None) -> Judgement | None:
-    """The judgement, if it is unknown at the place of the one for the latest begins: a window keeps the last ones."""
-    if judgement is None or judgement is OUT or judgement.holds is not None or late is None or late is OUT:
-        return judgement
-    return judgement._replace(at=late.at)
 
 
 def _clocked(judgement: Judgement | None, root: Activation | None) -> Judgement | None:

@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 
 if TYPE_CHECKING:
     from btq_lang.evidence.edges import Edge
+    from btq_lang.evidence.model import Activation
+    from btq_lang.evidence.verbs import Judgement
 
     # The kind of a judgement with a bound that it keeps, and the values at which it changes, the largest first.
     _Judged: TypeAlias = tuple[int, tuple[tuple[float, int], ...]]
@@ -161,6 +163,13 @@ class Margins:
         margins._steps = [CountStep(low, high, Counts(*change)) for low, high, *change in written["steps"]]
         margins._worst, margins._furthest = (tuple(written[name]) if written[name] else None for name in _EXTREMES)
         return margins
+
+
+def kind_of(judgement: Judgement | None, activation: Activation) -> int:
+    """What a judgement is for margins."""
+    if judgement is None:
+        return CUT_OFF if activation.outcome == "O" else NOTHING
+    return UNKNOWN if judgement.holds is None else KEPT if judgement.holds else VIOLATED
 
 
 def _of_run(counts: list[int]) -> Counts:

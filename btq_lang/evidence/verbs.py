@@ -70,6 +70,13 @@ def agreed(late: Judgement | None, early: Judgement | None, activation: Activati
     return between(late, late.measure, early.most or early.measure)
 
 
+def in_order(judgement: Judgement | None, late: Judgement | None) -> Judgement | None:
+    """The judgement, if it is unknown at the place of the one for the latest begins: a window keeps the last ones."""
+    if judgement is None or judgement is OUT or judgement.holds is not None or late is None or late is OUT:
+        return judgement
+    return judgement._replace(at=late.at)
+
+
 def between(judgement: Judgement, one: Measure | None, other: Measure | None) -> Judgement:
     """The judgement with a measure between two limits; unchanged without both."""
     if one is None or other is None:

@@ -195,7 +195,7 @@ class _Listener:
         return Run(self._watched.outcomes.total() + 1, self._watched.address, self._begin, self._end)
 
     def _judged(self, clause: JudgedClause, judgement: Judgement, begin: int, end: int, path: str) -> None:
-        if judgement.holds is False and not clause.was_seen(judgement, path, begin):
+        if judgement.holds is False and not _was_seen(clause, judgement, path, begin):
             self._tell(clause, judgement, path)
 
     def _tell(self, clause: JudgedClause, judgement: Judgement, path: str, more: str = "") -> None:
@@ -209,3 +209,17 @@ class _Listener:
 
 def _named(clause: JudgedClause) -> str:
     return f"{clause.requirement.name}  {clause.text}"
+
+
+def _was_seen(clause: JudgedClause, judgement: Judgement, path: str, begin: int) -> bool:
+    """Whether a violation in the open run, which has ended, was seen before.
+
+    A span may begin before the row of its node; each one that was seen is the first violation like it.
+    """
+    for key, (seen, known_path) in clause.broken.items():
+        if isinstance(key, int) and path == known_path:
+            return True
+        if isinstance(key, tuple) and (path, judgement.sentence) == (known_path, seen.sentence) and begin <= key[1]:
+            del clause.broken[key]
+            return True
+    return False
