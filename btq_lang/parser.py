@@ -33,16 +33,18 @@ from btq_lang.grammar.items import (
 )
 from btq_lang.grammar.node_mistakes import found_xml, is_after_dashes, is_doc_string, other_comment
 from btq_lang.grammar.nodes import no_block, parse_verbatim
+from btq_lang.grammar.scenarios import parse_given, parse_scenario
 from btq_lang.lexer import Lexer, State, tokens
 from btq_lang.syntax.scan import Maps, line_end, path_end
 from btq_lang.syntax.tokens import CATEGORIES, DIRECTIONS, NAME, NEWLINE, NODE_CLAUSES, OPEN, STRING, SYMBOL, Token
-from btq_lang.syntax.tree import Entry, Item, Root, SkippedLines, Tree, moved_by, quote, unquote
+from btq_lang.syntax.tree import Entry, Given, Item, Root, SkippedLines, Tree, moved_by, quote, unquote
 from btq_lang.util.garbage import NotCollecting
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span, changed
 
-# The state at the start of an item: that of the lexer, the levels of the open Roots, and whether there was a Root.
-Start: TypeAlias = "tuple[State, tuple[int, ...], bool]"
+# The state at the start of an item: that of the lexer, the levels of the open Roots, and whether there was a Root, and
+# a scenario.
+Start: TypeAlias = "tuple[State, tuple[int, ...], bool, bool]"
 
 
 class Parsed:
@@ -206,6 +208,11 @@ def parse_item(parser: Parser, level: int, in_root: bool) -> None:
         item = parse_qualities(cursor)
     elif word == "hazard":
         item = parse_hazard(cursor, own_level)
+    elif word == "scenario":
+        parser.has_scenario = True
+        item = parse_scenario(cursor, own_level)
+    elif word == "given":
+        item = given(parser, in_root)
     elif word == "xml":
         item = parse_verbatim(cursor)
     else:
@@ -238,6 +245,18 @@ def parse_root(parser: Parser, level: int, in_root: bool) -> None:
 # ---- what productions ask and report ----
 
 
+def given(parser: Parser, in_root: bool) -> Given:
+    """A `given` for all scenarios of the file; report one that is not before the first of them."""
+    cursor = parser.cursor
+    if in_root or parser.has_scenario:
+        where = "in a Root block" if in_root else "after the first scenario of its file"
+        note = "a given for all scenarios goes before the first one, at the top level; any other in a scenario's block"
+        cursor.complain(cursor.here(), f"unexpected given {where}", notes=(note,))
+    item = parse_given(cursor)
+    cursor.end_line()
+    return item
+
+
 def item_word(cursor: Cursor) -> str:
     """The word that begins the item; a misspelt one is reported, and usually read as the word that was meant."""
     if cursor.kind != NAME:
@@ -252,7 +271,8 @@ def item_word(cursor: Cursor) -> str:
             cursor.here(), f"unknown word `{cursor.raw}`; did you mean `{other}`?", other_item(cursor, other)
         )
         return "" if other == "include" or cursor.raw in ("def", "class") else other
-    if not meant or not (following in (NAME, STRING) or (meant in _ALONE and following in (NEWLINE, OPEN))):
+    has_name = following in (NAME, STRING) or (meant == "scenario" and cursor.is_operator(cursor.index + 1, ":"))
+    if not meant or not (has_name or (meant in _ALONE and following in (NEWLINE, OPEN))):
         return ""
     cursor.misspelt(cursor.here(), cursor.raw, meant)
     return read_as(cursor.raw)
@@ -299,6 +319,8 @@ def skipped(cursor: Cursor, level: int) -> SkippedLines:
         notes = ('another file is read with `include "stations.btq"`',)
     elif cursor.kind == NAME and cursor.raw in NODE_CLAUSES:
         notes = ("write it after a node, or indented in the block of a node or BehaviorTree",)
+    elif cursor.at_word("expect") or (cursor.at_word("when") and ":" in cursor.raws):
+        notes = ("a step goes in the block of a scenario, indented",)
     elif cursor.kind == NAME and (cursor.raw in VERB_WORDS or cursor.raw in HEADS or cursor.raw in METADATA_HEADS):
         notes = ("a clause goes in the block of a QualityReq, indented",)
     elif cursor.kind == NAME and cursor.raw in DIRECTIONS:
@@ -362,6 +384,7 @@ class Parser:
         self.begun: list[Start | None] = []
         self.has_met = False
         self.has_root = False
+        self.has_scenario = False
         self.roots: list[int] = []  # the levels of the Roots whose blocks are open; more than one is a mistake
         self.stray_level = -1  # the level of wrongly indented lines, reported once
 
@@ -373,13 +396,13 @@ class Parser:
         if cursor.problems or self.stray_level >= 0 or cursor.inside_out <= len(cursor.text) or cursor.is_in_wake():
             return None
         lexer = cursor.lexer.state()
-        return None if lexer is None else (lexer, tuple(self.roots), self.has_root)
+        return None if lexer is None else (lexer, tuple(self.roots), self.has_root, self.has_scenario)
 
     def begin_at(self, start: int, state: Start | None) -> None:
         """Continue from the start of a line in this state."""
         cursor = self.cursor
         assert state is not None, "a parse begins again only where that can be said"
-        lexer, roots, self.has_root = state
+        lexer, roots, self.has_root, self.has_scenario = state
         self.roots = list(roots)
         cursor.lexer.begin_at(start, lexer)
 
@@ -409,6 +432,7 @@ _OTHER_ITEMS: Final = {  # words of other languages, in lower case
     **dict.fromkeys(("sensor", "variable", "var", "measure", "metric"), "signal"),
     **dict.fromkeys(("mode", "situation"), "context"),
     **dict.fromkeys(("risk", "danger", "threat", "harm"), "hazard"),
+    **dict.fromkeys(("test", "testcase", "case", "example", "feature"), "scenario"),
 }
 _PYTHON_HEAD: Final = re.compile(r"([^\W\d]\w*)[ \t]*(?:\([^()\r\n]*\))?[ \t]*:(?=[ \t]*[\r\n])")
 

@@ -90,6 +90,9 @@ item
     context | context humans_near : distance < 2 m | a named condition | a situation that conditions can name
     hazard | hazard H1 "Collision with a person" | a hazard | \
         what may go wrong, which requirements mitigate
+    scenario | scenario "The station is closed" of Deliver verifies rq1 | a run to test | \
+        a run that `btq test` makes: what nodes do, what changes, and what is expected then
+    given | given MoveTo takes 20 s | for all scenarios | what is given in all scenarios of the file
     apply | apply slow to every MoveBase except ToDock | a requirement for many nodes | \
         attaches a requirement to nodes anywhere in the mission
     quality | quality hygiene : safety "Nothing is carried along" | a custom quality | \
@@ -212,6 +215,48 @@ clause
         an approval, which `btq approve` writes; it counts until the requirement means something else
 clause of a hazard
     severity | severity high | a tag | how severe it is: a word of your own
+part of a scenario
+    of | scenario "Closed" of Deliver | a tree | the tree that runs; without it the main tree
+    verifies | scenario "Closed" verifies rq1, rq2 | requirements | the requirements that the scenario is a test of
+step of a scenario
+    given | given battery = 80 % | what is given | what nodes do, or the value of a signal or an entry at the start
+    when | when 30 s have passed: person_near = true | what changes | something that changes during the run
+    expect | expect mission succeeds within 2 min | what is expected | what must be true of the run
+behavior of a node
+    succeeds | given Dock succeeds | its result | the node returns SUCCESS
+    fails | given Dock fails twice | its result | the node returns FAILURE
+    skips | given Dock skips | its result | the node returns SKIPPED
+    does not end | given Dock does not end | no result | the node runs until it is halted
+    answers | given BatteryLow answers false, true | a condition's results | \
+        the results of a condition, one for each time it is asked; the last one repeats
+    takes | given Dock takes 3 s | its duration | how long the node runs; its result is given elsewhere
+    after | given Dock fails after 3 s | its duration | how long the node runs before this result
+    once | given Dock fails once, then succeeds | in one activation | in one activation, then the next behavior
+    twice | given Dock fails twice, then succeeds | in two activations | in two activations, then the next behavior
+    times | given Dock fails 3 times, then succeeds | in several activations | \
+        in so many activations, then the next behavior
+    then | given Dock fails once, then succeeds | next | what the node does in its next activations
+    and writes | given Pick succeeds and writes tubes = 2 | entries | the entries that the node writes when it ends
+change during the run
+    have passed | when 30 s have passed: battery = 3 % | at a time | so long after the start of the run
+    for the time | when Dock fails for the 2 time: mission halts | the second event | \
+        when that happens for the second time
+    first | when Dock fails for the first time: near = true | the first event | when that happens for the first time
+    second | when Dock fails for the second time: near = true | the second event | \
+        when that happens for the second time
+    third | when Dock fails for the third time: near = true | the third event | when that happens for the third time
+    mission halts | when 30 s have passed: mission halts | the program halts the tree | the program halts the tree
+expectation
+    runs | expect MoveTo runs "A", "B" | values of its port | \
+        the values of a port in all activations, in order, no more and no less
+    finally | expect finally {{done}} == true | at the end | a condition at the end of the run
+    mission does not end | expect mission does not end | no end | the run goes on forever
+    satisfied | expect rq1 satisfied | a verdict | the requirement is satisfied; `expect rq1` means the same
+    violated | expect rq1 violated | a verdict | the requirement is violated
+    unknown | expect rq1 unknown | a verdict | what the requirement needs is not measured
+    undecided | expect rq1 undecided | a verdict | one run does not tell, as of a probability
+    never exercised | expect rq1 never exercised | a verdict | what the requirement is about did not happen
+    not applicable | expect rq1 not applicable | a verdict | an assumption of the requirement did not hold
 action
     fail | on violation fail | stop the node | stops the node and makes it fail; its parent handles the failure
     halt | on violation halt | stop the mission | \

@@ -18,5 +18,6 @@ meaning of names are unknown here.
     conditions.py    the conditions in clauses
     claim_mistakes.py, node_mistakes.py   what people write in place of claims and nodes, and reports of it
     prose.py, clause_slips.py   clauses in the words of other notations
+    scenarios.py                scenarios; scenario_words.py, their words; scenario_slips.py, other words for them
     item_words.py    the words that begin items
 """

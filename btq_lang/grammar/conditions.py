@@ -10,7 +10,7 @@ from typing import Final
 
 from btq_lang.diagnostics.model import replace_fix, write_fix
 from btq_lang.grammar.cursor import Cursor
-from btq_lang.syntax.tokens import CLOSE, ERROR, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING, SYMBOL
+from btq_lang.syntax.tokens import BRACED, CLOSE, ERROR, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING, SYMBOL
 from btq_lang.syntax.tree import (
     Amount,
     Binary,
@@ -125,7 +125,7 @@ def parse_term(cursor: Cursor) -> Condition | None:
 
 
 def parse_factor(cursor: Cursor) -> Condition | None:
-    """[ "-" ] ( QUANTITY | NUMBER ) | NAME | STRING | Func "(" NAME ")" | "(" ( Expr | Bounded ) ")\""""
+    """[ "-" ] ( QUANTITY | NUMBER ) | NAME | STRING | Func "(" NAME ")" | "(" ( Expr | Bounded ) ")" | Entry"""
     start = cursor.start()
     if cursor.at("-"):
         cursor.advance()
@@ -162,8 +162,15 @@ def parse_factor(cursor: Cursor) -> Condition | None:
             inner = choice(cursor, inner)
         close_group(cursor, "`)`")
         return inner
+    if cursor.kind == BRACED and cursor.in_scenario:
+        return parse_entry(cursor)
     cursor.expected("a condition: a signal, a context, a value, …")
     return None
+
+
+def parse_entry(cursor: Cursor) -> Operand:
+    """Entry = BRACED, in scenarios"""
+    return Operand(cursor.take())
 
 
 def parse_cases(cursor: Cursor, value: Amount) -> Table:

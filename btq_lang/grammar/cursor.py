@@ -42,6 +42,7 @@ class Cursor:
         clause_starts: where the last two clauses begin, in the file.
         title_at: where the title of the last requirement goes, in the file; -1 if it has one.
         bare_until: the end of the last line `key = value` without brackets.
+        in_scenario: the line is in the block of a scenario, whose conditions may read entries.
     """
 
     def __init__(self, lexer: Lexer, report_slip: Callable[[Cursor], bool]) -> None:
@@ -72,6 +73,7 @@ class Cursor:
         self.clause_starts = -1, -1
         self.title_at = -1
         self.bare_until = -1
+        self.in_scenario = False
         self._listing = -1, False  # a line with lists in clauses, and whether its commas separate requirements
 
     # ---- lines ----

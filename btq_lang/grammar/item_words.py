@@ -13,7 +13,7 @@ from btq_lang.util.spelling import near
 
 ITEM_WORDS: Final = (
     *("BehaviorTree", "Root", "TreeNodesModel", "QualityReq", "include", "signal", "context", "apply"),
-    *("quality", "qualities", "hazard", "xml"),
+    *("quality", "qualities", "hazard", "given", "scenario", "xml"),
     *sorted(CATEGORIES),
 )
 

@@ -327,7 +327,7 @@ METADATA: Final = frozenset((Source, Refines, Mitigates, Priority, Approval))
 
 
 class Operand(Record):
-    """A quantity, number, name or string in an expression."""
+    """A quantity, number, name or string in an expression; in a scenario an entry too, in braces."""
 
     word: Word
 

@@ -124,6 +124,10 @@ TOP_LINE: Final = re.compile(
           (?: [ \t]+ (?= (?P<name> [^\W\d] (?:\w|-(?=\w))* [?!]? ) ) (?P=name)
             | [ \t]* (?: "(?:[^"\\\r\n]|\\[^\r\n])*" | '(?:[^'\\\r\n]|\\[^\r\n])*' ) )
           (?! [ \t]* = )
+        | scenario [ \t]* (?: "(?:[^"\\\r\n]|\\[^\r\n])*" | '(?:[^'\\\r\n]|\\[^\r\n])*' ) (?! [ \t]* = )
+        | given [ \t]* (?: \{ | [ \t] [^\W\d] (?:\w|-(?=\w))* [?!]? [ \t]* = (?!=)
+          | [ \t] (?: every [ \t]+ )? [^\W\d] (?: [\w/] | -(?=\w) )* [?!]?
+            (?: [ \t]* \( | [ \t]+ (?:succeeds|fails|skips|does|answers|takes|after) \b ) )
     """
 )
 _ALIASES: Final = 16  # columns accepted for one block; more would only cost time

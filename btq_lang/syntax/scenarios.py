@@ -5,7 +5,7 @@ One invariant: as in `tree`, to which these classes belong, offsets count from t
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 from btq_lang.syntax.clauses import Claim, Condition, Event, Path
 from btq_lang.syntax.words import Pair, Word
@@ -78,15 +78,26 @@ class Elapsed(Part):
 
 
 class EventTrigger(Part):
-    """`Dock (station = "A") fails for the 2 time`; number: None: the first time.
+    """`Dock (station = "A") fails for the 2 time`.
 
     Attributes:
         pairs: the values that ports of the node have.
+        number: `2` or `second`; None: the first time.
     """
 
     event: Event
     pairs: tuple[Pair, ...] = ()
     number: Word | None = None
+
+    @property
+    def nth(self) -> int:
+        """The number as one, from 1."""
+        if self.number is None:
+            return 1
+        return _ORDINALS.get(self.number.raw) or int(float(self.number.raw))
+
+
+_ORDINALS: Final = {"first": 1, "second": 2, "third": 3}
 
 
 class HaltMission(Part):

@@ -71,6 +71,8 @@ from btq_lang.syntax.node_clauses import Tags as Tags
 from btq_lang.syntax.nodes import Node as Node
 from btq_lang.syntax.nodes import Verbatim as Verbatim
 from btq_lang.syntax.scan import is_name as is_name
+from btq_lang.syntax.scenarios import Given as Given
+from btq_lang.syntax.scenarios import Scenario as Scenario
 from btq_lang.syntax.tokens import QUANTITY, STRING
 from btq_lang.syntax.words import Pair as Pair
 from btq_lang.syntax.words import TypeWord as TypeWord
@@ -247,6 +249,8 @@ Item: TypeAlias = (
     | Requirement
     | Apply
     | Hazard
+    | Given
+    | Scenario
     | Root
     | Tree
     | Verbatim

@@ -14,6 +14,7 @@ from btq_lang.grammar.clauses import ACTIONS, AVERAGE, EXPERIMENTS, METHODS, TIM
 from btq_lang.grammar.conditions import FUNCTIONS, HEADS, METADATA_HEADS
 from btq_lang.grammar.hazards import HAZARD_HEADS
 from btq_lang.grammar.item_words import ITEM_WORDS
+from btq_lang.grammar.scenario_words import DURATIONS, ORDINALS, RESULTS, STEPS, TIMES, VERDICTS
 from btq_lang.parser import parse
 from btq_lang.syntax.tokens import NODE_CLAUSES
 
@@ -24,7 +25,11 @@ FORMS = {
     "attribute of a node": "BehaviorTree X\n    {}\n",
     "clause of a hazard": "hazard x\n    {}\n",
     "event": "QualityReq x\n    {}\n",
-    **dict.fromkeys(("item", "part of a signal", "selector", "attribute of the file", "classic form"), "{}\n"),
+    **dict.fromkeys(("step of a scenario", "behavior of a node", "change during the run"), 'scenario "x"\n    {}\n'),
+    "expectation": 'scenario "x"\n    {}\n',
+    **dict.fromkeys(
+        ("item", "part of a signal", "part of a scenario", "selector", "attribute of the file", "classic form"), "{}\n"
+    ),
 }
 
 
@@ -40,6 +45,12 @@ def test_no_word_of_the_grammar_is_left_out() -> None:
     assert words_of("method") == set(METHODS)
     assert words_of("item") == set(ITEM_WORDS)
     assert words_of("clause of a node") - {"parameters"} == set(NODE_CLAUSES)
+    assert words_of("step of a scenario") == set(STEPS)
+    assert words_of("behavior of a node") == {
+        *(*RESULTS, *DURATIONS, *TIMES, "not", "end", "times", "then", "and", "writes"),
+    }
+    assert words_of("change during the run") >= set(ORDINALS)
+    assert words_of("expectation") >= {word for verdict in VERDICTS for word in verdict}
     assert words_of() >= HEADS | METADATA_HEADS | FUNCTIONS | EXPERIMENTS | {*HAZARD_HEADS, TIME}
 
 

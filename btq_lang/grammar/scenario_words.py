@@ -1,0 +1,16 @@
+"""The words of scenarios that the parser knows."""
+
+from __future__ import annotations
+
+from typing import Final
+
+STEPS: Final = ("given", "when", "expect")
+RESULTS: Final = ("succeeds", "fails", "skips", "does", "answers")  # `does not end`
+DURATIONS: Final = ("takes", "after")
+ANSWERS: Final = ("true", "false")
+TIMES: Final = ("once", "twice")
+ORDINALS: Final = ("first", "second", "third")
+VERDICTS: Final = (
+    *(("satisfied",), ("violated",), ("unknown",), ("undecided",)),
+    *(("never", "exercised"), ("not", "applicable")),
+)
