@@ -11,6 +11,7 @@ from typing import Final
 
 from btq_lang.parser import Parsed
 from btq_lang.syntax import tree as syntax
+from btq_lang.syntax.scenarios import When
 from btq_lang.syntax.tokens import BLANK, CLOSE, NAME, NEWLINE, NUMBER, OPEN, QUANTITY, STRING
 from btq_lang.util.record import Record
 from btq_lang.util.text import LINE_END, Span
@@ -102,6 +103,11 @@ class Marks:
             case syntax.Parameter():
                 self.elements.add(base + part.name.start)
                 self._mark_atom(part.unit, base)
+            case When() if part.trigger is not None:
+                index = self._index[base + part.start]
+                while self._tokens[index].start < base + part.trigger.end:
+                    index += 1
+                self.tight.add(self._tokens[index].start)
             case syntax.Signal():
                 self._mark_atom(part.unit, base)
             case syntax.Call():

@@ -14,6 +14,7 @@ from btq_lang.grammar.claim_words import HAPPENINGS, VERB_WORDS
 from btq_lang.grammar.clauses import ACTIONS as ON_VIOLATION
 from btq_lang.grammar.clauses import AVERAGE, EXPERIMENTS, METHODS, TIME
 from btq_lang.grammar.conditions import FUNCTIONS, HEADS, METADATA_HEADS
+from btq_lang.grammar.scenario_words import DURATIONS, ORDINALS, RESULTS, STEPS, TIMES, VERDICTS
 from btq_lang.ide.legend import MODIFIERS, TYPES
 from btq_lang.syntax.tokens import (
     BRACED,
@@ -109,7 +110,9 @@ KEYWORDS: Final = frozenset(
     | DIRECTIONS
     | HEADS
     | METADATA_HEADS
-    | {"hazard", "severity"}
+    | {"hazard", "severity", "scenario", "verifies", "writes", "then", "times", "finally", "have", "passed", "the"}
+    | {"end", "and", "does", *STEPS, *RESULTS, *DURATIONS, *TIMES, *ORDINALS}
+    | {word for verdict in VERDICTS for word in verdict}
     | VERB_WORDS
     | HAPPENINGS
     | EXPERIMENTS

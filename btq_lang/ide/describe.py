@@ -26,7 +26,19 @@ from btq_lang.ide.meaning import own_quality as declared_quality
 from btq_lang.ide.outline import clauses_detail
 from btq_lang.ide.ports import builtin_named, cpp_link, ports_of_kind, ports_of_tree, signature
 from btq_lang.syntax.quantities import parse_quantity
-from btq_lang.syntax.tree import Apply, Context, Hazard, Model, QualityDecl, Requirement, Signal, Tree, Word, walk
+from btq_lang.syntax.tree import (
+    Apply,
+    Context,
+    Hazard,
+    Model,
+    QualityDecl,
+    Requirement,
+    Scenario,
+    Signal,
+    Tree,
+    Word,
+    walk,
+)
 from btq_lang.util.text import Edit, Span, counted
 from btq_lang.workspace import inputs
 from btq_lang.workspace.file import Definition
@@ -190,6 +202,8 @@ def place_of(workspace: Workspace, reference: ReferenceAt) -> str:
         item = owner
     name = item.name.text if isinstance(item, Tree | Requirement | Signal | Context) and item.name else ""
     where = f"`{node.called}`" + (f" in `{name}`" if name else "") if node is not None else f"`{name}`" if name else ""
+    if isinstance(item, Scenario) and item.title is not None:
+        where = f"the scenario {item.title.raw}"
     if isinstance(item, Apply) and entry is not None:
         where = f"`{workspace.files[reference.path].on_one_line(entry, item)}`"
     path = workspace.project.shown(reference.path)

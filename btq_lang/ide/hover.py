@@ -8,7 +8,7 @@ from btq_lang.btcpp.side_elements import element_descriptions
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.language import in_line, phrase_at
 from btq_lang.ide import describe, external
-from btq_lang.ide.meaning import ReferenceAt, Subject, at, definition, everywhere, quality_match, subject
+from btq_lang.ide.meaning import ReferenceAt, Subject, at, definition, everywhere, id_meant, quality_match, subject
 from btq_lang.ide.navigation import writes
 from btq_lang.ide.place import item_tokens, place_at
 from btq_lang.ide.ports import cpp_link, port_of, ports_of_kind, ports_of_tree, signature
@@ -133,8 +133,14 @@ def _key(workspace: Workspace, referent: Subject) -> str:
 
 def _port(workspace: Workspace, reference: ReferenceAt) -> str | None:
     node = reference.mention.node
-    port = port_of(workspace, reference.path, node, reference.mention.name) if node is not None else None
-    if node is None or port is None:
+    name = reference.mention.name
+    if node is None:  # in a scenario
+        ports = ports_of_kind(
+            workspace, reference.path, id_meant(workspace, reference.path, str(reference.mention.owner))
+        )
+        return next((describe.port(port) for port in ports if port.name == name), None)
+    port = port_of(workspace, reference.path, node, name)
+    if port is None:
         return None
     link = cpp_link(workspace, reference.path, node.id.text, port.name) if node.id is not None else ""
     return "\n\n".join(filter(None, (describe.port(port), link)))

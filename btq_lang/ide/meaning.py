@@ -107,6 +107,8 @@ def subject(workspace: Workspace, reference: ReferenceAt) -> Subject:
     if mention.what is What.PORT:
         return _port(workspace, reference)
     if mention.what is What.KEY:
+        if isinstance(mention.owner, str) and (tree := workspace.find(path, Kind.TREE, mention.owner)) is not None:
+            return Subject(What.KEY, mention.name, _blackboard(workspace, tree.path, tree.entry, mention.root))
         return Subject(What.KEY, mention.name, _blackboard(workspace, path, entry, mention.root))
     return Subject(mention.what, mention.name, f"{path}:{entry.start}")
 
@@ -289,7 +291,8 @@ def _port(workspace: Workspace, reference: ReferenceAt) -> Subject:
         model = _defined(workspace, reference.path, What.NODE, name.text if name else "")
         return Subject(What.PORT, mention.name, model.home or reference.path)
     node = mention.node
-    assert node is not None, "a port that is not declared is used at a node"
+    if node is None:  # in a scenario
+        return _port_named(workspace, reference, str(mention.owner))
     name = called(node)
     if name is not None:
         tree = workspace.find(reference.path, Kind.TREE, name.text)
@@ -303,6 +306,32 @@ def _port(workspace: Workspace, reference: ReferenceAt) -> Subject:
         return Subject(What.PORT, mention.name, f"{ENGINE} {kind.tag}")
     owner = _defined(workspace, reference.path, What.NODE, node.id.text)
     return Subject(What.PORT, mention.name, owner.home or f"node {node.id.text}")
+
+
+def _port_named(workspace: Workspace, reference: ReferenceAt, name: str) -> Subject:
+    """The port of the node that a scenario names; if it has no such port, an entry."""
+    path, port = reference.path, reference.mention.name
+    kind = builtin_named(workspace, path, name)
+    if kind is not None:
+        return Subject(What.PORT, port, f"{ENGINE} {kind.tag}")
+    node_id = id_meant(workspace, path, name)
+    model = workspace.scope(path).target(Kind.MODEL, node_id)
+    if isinstance(model, Model) and all(each.id is None or each.id.text != port for each in model.ports):
+        return Subject(What.KEY, port, f"{ROOT_BLACKBOARD}{workspace.missions[path]}")
+    return Subject(What.PORT, port, _defined(workspace, path, What.NODE, node_id).home or f"node {node_id}")
+
+
+def id_meant(workspace: Workspace, path: str, name: str) -> str:
+    """The ID of a node that is called so: the name itself, if it is no instance name."""
+    if _place(workspace, path, name).what is not What.INSTANCE:
+        return name
+    ids = {
+        mention.node.id.text
+        for other in workspace.scope(path).paths
+        for _, mention in workspace.files[other].mentioned(name)
+        if mention.what is What.INSTANCE and mention.node is not None and mention.node.id is not None
+    }
+    return min(ids, default=name)
 
 
 def _blackboard(workspace: Workspace, path: str, entry: Entry, root: bool) -> str:

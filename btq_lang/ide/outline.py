@@ -18,7 +18,7 @@ class Outline(Record):
 
     Attributes:
         kind: mission, include, tree, control, decorator, action, condition, subtree, node (of unknown kind), port,
-            model, requirement, hazard, signal, context, quality or apply.
+            model, requirement, hazard, scenario, signal, context, quality or apply.
         detail: a short text beside the name.
         span: all of it, with its block; `name_span`: the word to select.
     """
@@ -74,6 +74,10 @@ def workspace_symbols(workspace: Workspace, query: str, limit: int = 500) -> tup
             if _contains(definition.symbol.name, wanted):
                 kind = definition.symbol.kind.value.removeprefix("node ")
                 matches.append(Match(definition.symbol.name, kind, path, definition.span, path))
+        for scenario in file.of_type(syntax.Scenario):
+            if scenario.title is not None and _contains(scenario.title.text, wanted):
+                span = scenario.title.span.shifted(file.start_of(scenario))
+                matches.append(Match(scenario.title.text, "scenario", path, span, path))
         for tree in file.of_type(syntax.Tree) if wanted else ():
             for node in tree.walk():
                 name = node.name
@@ -113,6 +117,8 @@ def _item(workspace: Workspace, path: str, entry: syntax.Entry) -> Iterator[Outl
         yield _named(item.name, "requirement", requirement_detail(item), item, by)
     elif isinstance(item, syntax.Hazard):
         yield _named(item.name, "hazard", " ".join(item.text.text.split()) if item.text else "", item, by)
+    elif isinstance(item, syntax.Scenario):
+        yield _named(item.title, "scenario", item.tree.text if item.tree else "", item, by)
     elif isinstance(item, syntax.Signal):
         yield _named(item.name, "signal", item.unit.text if item.unit else "", item, by)
     elif isinstance(item, syntax.Context):

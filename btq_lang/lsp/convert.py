@@ -400,6 +400,7 @@ SYMBOL_KINDS = {
     "model": types.SymbolKind.Interface,
     "requirement": types.SymbolKind.Property,
     "hazard": types.SymbolKind.Key,
+    "scenario": types.SymbolKind.Method,
     "signal": types.SymbolKind.Variable,
     "context": types.SymbolKind.Constant,
     "quality": types.SymbolKind.EnumMember,

@@ -23,6 +23,11 @@ class NodePattern(Part):
     path: Path | None
     pairs: tuple[Pair, ...] = ()
 
+    @property
+    def last(self) -> Word | None:
+        """The last name: that of the nodes themselves."""
+        return self.path.names[-1] if self.path is not None else self.every
+
 
 class Aspect(Part):
     """One thing that is given of an activation.

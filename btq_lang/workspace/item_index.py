@@ -13,7 +13,7 @@ from itertools import chain
 from typing import Literal, TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.syntax.tree import Item, Model, Signal, Tree
+from btq_lang.syntax.tree import Item, Model, Scenario, Signal, Tree
 from btq_lang.workspace.references import Mention, kinds, mentions, summarize
 from btq_lang.workspace.symbols import Summary, Symbol, asked_for, claiming
 
@@ -75,7 +75,9 @@ class Facts:
 
     @cached_property
     def runs(self) -> frozenset[str]:
-        """The trees that it refers to, except itself."""
+        """The trees that it refers to, except itself; a scenario runs one as a program does."""
+        if isinstance(self.item, Scenario):
+            return frozenset()
         used = self.used.get(Kind.TREE, frozenset())
         name = self.item.name.text if isinstance(self.item, Tree) and self.item.name is not None else ""
         return used - {name} if used else used

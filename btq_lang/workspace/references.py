@@ -17,6 +17,7 @@ from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import PLACEHOLDERS, lookup
+from btq_lang.syntax import scenarios
 from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.tokens import BRACED, NAME, NUMBER, QUANTITY, STRING
 from btq_lang.util.record import Record
@@ -67,7 +68,8 @@ class Mention(Record):
         defines: whether the name is defined here, and not used.
         node: the node that has it, or that it replaces.
         owner: the requirement of a parameter, or the one that refines or mitigates what is named, the model of a port
-            or of its own name, the tree of a key; else None.
+            or of its own name, the tree of a key; in a scenario the name of the node of a port, or of the tree of a
+            key; else None.
         pair: the attribute with a port or a key.
         writes: whether it is a key that a script assigns.
         root: whether it is a key of the root blackboard: `{@key}`.
@@ -132,6 +134,13 @@ def report(item: syntax.Item, to: ReferenceListener) -> None:
         _quality(item.parent, None, to)
     elif isinstance(item, syntax.Hazard):
         to.word(What.HAZARD, item.name, defines=True)
+    elif isinstance(item, syntax.Scenario):
+        to.word(What.TREE, item.tree)
+        for name in item.verifies:
+            to.word(What.REQUIREMENT, name)
+        _scenario(item.steps, item.tree, to)
+    elif isinstance(item, syntax.Given):
+        _scenario(item, None, to)
     elif isinstance(item, syntax.Qualities):
         to.word(What.EDITION, item.edition)
     elif isinstance(item, syntax.Apply):
@@ -450,6 +459,62 @@ def _values(
             _path(piece, to)
         elif isinstance(piece, syntax.Every):
             to.word(What.PLACE, piece.name)
+
+
+# ---- scenarios ----
+
+
+def _scenario(part: object, tree: syntax.Word | None, to: ReferenceListener) -> None:
+    """The words in the steps of a scenario of a tree, None: the main tree.  Entries are those of the tree that runs."""
+    run = tree.text if tree is not None else None
+    for piece in syntax.walk(part):
+        if isinstance(piece, scenarios.ExpectedVerdict):
+            to.word(What.REQUIREMENT, piece.name)
+        elif to.skips_values:
+            continue
+        elif isinstance(piece, scenarios.NodePattern):
+            to.word(What.PLACE, piece.every)
+            _values_of_ports(piece.pairs, piece.last, run, to)
+        elif isinstance(piece, scenarios.EventTrigger) and piece.event.path is not None:
+            _values_of_ports(piece.pairs, piece.event.path.names[-1], run, to)
+        elif isinstance(piece, syntax.NodeRef):
+            _values_of_ports(piece.pairs, piece.path.names[-1], run, to)
+        elif isinstance(piece, scenarios.NodesDo):
+            for behavior in piece.behaviors:
+                _values_of_ports(behavior.writes, piece.nodes.last, run, to)
+        elif isinstance(piece, scenarios.Assignment):
+            if piece.target.kind == NAME:
+                to.word(What.VALUE, piece.target)
+            _entry(piece.target, run, to)
+            _entry(piece.value, run, to)
+        elif isinstance(piece, scenarios.ExpectedRuns):
+            last = piece.nodes.last
+            to.word(What.PORT, piece.port, owner=last.text if last is not None else None)
+            for word in piece.values:
+                _entry(word, run, to)
+        elif isinstance(piece, syntax.Operand):
+            _entry(piece.word, run, to)
+    _values(part, None, to)
+
+
+def _values_of_ports(
+    pairs: Iterable[syntax.Pair], node: syntax.Word | None, tree: str | None, to: ReferenceListener
+) -> None:
+    """Ports of a node by its name, and the entries that are their values."""
+    for pair in pairs:
+        to.word(What.PORT, pair.key, owner=node.text if node is not None else None)
+        _entry(pair.value, tree, to)
+
+
+def _entry(word: syntax.Word | None, tree: str | None, to: ReferenceListener) -> None:
+    """`{key}` or `{@key}` of the tree that a scenario runs."""
+    if word is None or word.kind != BRACED:
+        return
+    inside = word.raw[1:-1]
+    name = inside.strip().removeprefix("@")
+    start = word.start + 1 + inside.index(name)
+    root = tree is None or inside.strip().startswith("@")
+    to.part(Mention(What.KEY, name, Span(start, start + len(name)), word, owner=tree, root=root))
 
 
 def _quantities(part: object, to: ReferenceListener) -> None:

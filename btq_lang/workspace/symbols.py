@@ -81,6 +81,8 @@ def asked_for(item: syntax.Item) -> frozenset[str]:
         return _asked_by(item)
     if isinstance(item, syntax.Apply):
         return _words_in(tuple(use.arguments for use in item.uses))
+    if isinstance(item, syntax.Given | syntax.Scenario):
+        return _words_in(item)
     if not isinstance(item, syntax.Tree):
         return frozenset()
     attached = [*requirements_at(item.clauses)]

@@ -856,3 +856,32 @@ def test_a_range_takes_the_whole_block_where_other_lines_would_not_fit_to_it() -
     assert formatted == RANGE[: RANGE.index("BehaviorTree B")] + (
         "\nBehaviorTree B\n    ->\n        Foo (a = 1)\n        Bar (a = 1)\n"
     )
+
+
+def test_scenarios() -> None:
+    assert_formats(
+        """
+        given   MoveTo takes 20s
+        scenario "S"   of Deliver  # a
+            # b
+            given Low answers false,true
+            when  Deliver / Dock(a=1) fails for the 2 time :mission halts  # c
+            when battery<3% : {x}=2
+            expect MoveTo( a = 1,b ) runs "A",{x}
+        scenario "T"
+            expect succeeds
+        """,
+        """
+        given MoveTo takes 20 s
+
+        scenario "S" of Deliver  # a
+            # b
+            given Low answers false, true
+            when Deliver/Dock (a = 1) fails for the 2 time: mission halts  # c
+            when battery < 3 %: {x} = 2
+            expect MoveTo (a = 1, b) runs "A", {x}
+
+        scenario "T"
+            expect succeeds
+        """,
+    )

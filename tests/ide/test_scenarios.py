@@ -1,0 +1,128 @@
+"""Scenarios in an editor: what their words name, wherever that is defined."""
+
+from __future__ import annotations
+
+import pytest
+from feature_asserts import (
+    check_folds,
+    check_goto,
+    check_hover,
+    check_outline,
+    check_references,
+    check_rename,
+    check_search,
+    check_tokens,
+)
+
+MISSION = """\
+//- mission.btq
+signal battery : % from {level}
+QualityReq in_time
+    takes at most 2 min
+Action MoveTo
+    input station : string
+BehaviorTree Deliver
+    -> satisfies in_time
+        MoveTo ToDock (station = {goal})
+        SubTree Charge
+BehaviorTree Charge
+    Plug (current = {@amount}, by = {hand})
+"""
+CASES = """\
+//- cases.btq
+include "mission.btq"
+given MoveTo takes 3 s
+scenario "Closed" of Deliver verifies in_time
+    given Deliver/ToDock (station = "A") fails
+    given battery = 80 %
+    given {goal} = {@amount}
+    when battery < 3 %: every MoveTo does not end
+    expect ToDock (station) runs "A"
+    expect finally {goal} == "A"
+    expect in_time violated
+scenario "Charging" of Charge
+    given {hand} = "left"
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "at"),
+    [
+        ("Deliver", "Bring", "scenario \"Closed\" of $0Deliver"),
+        ("in_time", "in-time", "verifies $0in_time"),
+        ("in_time", "on_time", "expect $0in_time violated"),
+        ("ToDock", "ToShelf", "Deliver/$0ToDock"),
+        ("MoveTo", "Drive", "every $0MoveTo"),
+        ("battery", "charge", "when $0battery"),
+        ("goal", "aim", "finally {$0goal}"),
+        ("amount", "much", "{@$0amount}\n    when"),
+        ("hand", "arm", "given {$0hand}"),
+        ("station", "place", "ToDock ($0station)"),
+        ("Charge", "Load", "\"Charging\" of $0Charge"),
+    ],
+)  # fmt: skip
+def test_rename(old: str, new: str, at: str) -> None:
+    plain = at.replace("$0", "")
+    assert plain in CASES
+    # As a whole word: `Charge` is no part of `Charging`.
+    words = (MISSION + CASES).replace("Charging", "\0").replace(old, new).replace("\0", "Charging")
+    check_rename(MISSION + CASES.replace(plain, at), new, words)
+
+
+def test_references() -> None:
+    check_references(
+        "QualityReq <def>$0r</def>\n    takes at most 3 s\nBehaviorTree T\n    A satisfies <ref>r</ref>\n"
+        'scenario "S" of T verifies <ref>r</ref>\n    expect <ref>r</ref>\n'
+    )
+
+
+def test_definition() -> None:
+    check_goto('BehaviorTree <def>T</def>\n    A\nscenario "S" of $0T\n    expect succeeds\n')
+    check_goto('Action A\n    input <def>x</def> : string\nscenario "S"\n    given A ($0x = 3) fails\n')
+
+
+def test_hover() -> None:
+    check_hover(
+        'Action A\n    input x : string "where to"\nBehaviorTree T\n    A First\n'
+        'scenario "S"\n    given First (<hover>$0x</hover> = 3) fails\n',
+        "`input x : string` (required): where to",
+    )
+    check_hover(
+        'scenario "S"\n    expect <hover>$0finally</hover> {done} == true\n',
+        """
+        **finally** (expectation) · `expect finally {done} == true`
+
+        A condition at the end of the run.
+        """,
+    )
+
+
+def test_outline_and_search() -> None:
+    check_outline(
+        'scenario "Closed" of Deliver\n    expect succeeds\nscenario "Open"\n',
+        "scenario Closed | Deliver",
+        "scenario Open",
+    )
+    check_search(
+        'scenario "The station is closed"\n    expect succeeds\n', "closed", "scenario The station is closed (main.btq)"
+    )
+
+
+def test_folds() -> None:
+    check_folds('<block>scenario "Closed"\n    given A fails\n    expect succeeds</block>\nBehaviorTree T\n')
+
+
+def test_tokens() -> None:
+    check_tokens(
+        'scenario "S" of Main\n    given A (x = 1) fails twice\n',
+        "keyword scenario",
+        'string "S"',
+        "keyword of",
+        "class Main",
+        "keyword given",
+        "function A",
+        "property x",
+        "number 1",
+        "keyword fails",
+        "keyword twice",
+    )
