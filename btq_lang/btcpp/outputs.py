@@ -117,8 +117,9 @@ def as_xml(
 
 def sources(workspace: Workspace, requested: Sequence[str]) -> tuple[str, ...]:
     """The requested files and all that they include, without XML."""
-    paths = dict.fromkeys(requested)
-    for path in requested:
+    loaded = loaded_files(workspace, requested)
+    paths = dict.fromkeys(loaded)
+    for path in loaded:
         paths.update(dict.fromkeys(workspace.closure(path)))
     return tuple(path for path in paths if is_mission(workspace, path))
 
@@ -127,15 +128,22 @@ def missions(workspace: Workspace, requested: Sequence[str]) -> tuple[str, ...]:
     """The requested files that no file includes; of a factory with main trees, those that define one; all requested
     files, if there are none."""
     included = workspace.included_files
+    requested = loaded_files(workspace, requested)
     mains = workspace.factory.main if workspace.factory is not None else ()
     not_included = [path for path in requested if path not in included]
     tops = [path for path in not_included if any(workspace.files[path].defines(Kind.TREE, name) for name in mains)]
     return tuple(tops or not_included or requested)
 
 
+def loaded_files(workspace: Workspace, requested: Sequence[str]) -> tuple[str, ...]:
+    """The requested files without those of scenarios, which no program loads."""
+    included = workspace.included_files
+    return tuple(path for path in requested if path in included or not workspace.files[path].has_only_scenarios)
+
+
 def without_tree(workspace: Workspace, requested: Sequence[str]) -> Iterator[str]:
     """The requested files that have no tree and declare nothing that another file could use."""
-    for path in requested:
+    for path in loaded_files(workspace, requested):
         if path in workspace.included_files or not is_mission(workspace, path) or workspace.files[path].defined:
             continue
         entries = (entry for each in workspace.closure(path) for entry in workspace.files[each].parsed.entries)

@@ -23,6 +23,7 @@ the next.  Checks do not know what an edit changed, nor how findings are printed
     chain.py, approvals.py   hazards, and what requirements refine; approvals of an earlier meaning
     demanded.py, demands.py, budgets.py, limits.py, never_counted.py   at their nodes
     signals.py, renewals.py, enforcement.py   likewise, of what the engine is to enforce
+    scenarios.py   what scenarios name, give and expect
     origins.py, placeholders.py   diagnostics shown on XML; classic placeholders
     suppressions.py, silencing.py   silenced rules
 """
@@ -63,6 +64,7 @@ from btq_lang.checks import (
     reactive,
     requirements,
     resets,
+    scenarios,
     scripts,
     stale_models,
     trees,
@@ -236,6 +238,15 @@ CHECKS: dict[type, tuple[Check, ...]] = {
     ),
     syntax.Hazard: (kinds.duplicate_definition, chain.shared_id, names.empty_text),
     syntax.Apply: (requirements.unknown_requirement, clauses.named_twice, requirements.unresolved),
+    syntax.Given: (scenarios.ambiguous_given, scenarios.wrong_step),
+    syntax.Scenario: (
+        trees.unknown_tree,
+        names.empty_text,
+        scenarios.unknown_requirement,
+        scenarios.expects_nothing,
+        scenarios.ambiguous_given,
+        scenarios.wrong_step,
+    ),
     syntax.Qualities: (qualities.quality_name,),
     syntax.QualityDecl: (kinds.duplicate_definition, names.empty_text, qualities.quality_name),
 }

@@ -43,6 +43,8 @@ def candidates(requested: Sequence[str], logs: Sequence[str], problems: list[str
     problems += [str(problem) for problem in unreadable if problem.path not in broken]
     for group in groups:
         for path in group.given if group.project_file not in broken else ():
+            if group.workspace.files[path].has_only_scenarios:
+                continue
             side = side_of(path, sides)
             if path.endswith(".xml") and side is not None and (built := [*_missions_as_built(side)]):
                 missions += built

@@ -165,7 +165,7 @@ def _verdicts_by_logs(
         candidate(group.workspace, path, side_of(path, sides))
         for group in groups
         for path in group.given
-        if path not in group.workspace.included_files
+        if path not in group.workspace.included_files and not group.workspace.files[path].has_only_scenarios
     ]
     declared = signal_sources(missions, log_problems)
     problems += log_problems

@@ -322,7 +322,7 @@ def _port_named(workspace: Workspace, reference: ReferenceAt, name: str) -> Subj
 
 
 def id_meant(workspace: Workspace, path: str, name: str) -> str:
-    """The ID of a node that is called so: the name itself, if it is no instance name."""
+    """The ID of a node with an ID or an instance name."""
     if _place(workspace, path, name).what is not What.INSTANCE:
         return name
     ids = {

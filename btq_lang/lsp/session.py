@@ -111,7 +111,7 @@ class Session:
                 lacking = [_lacking(each, self.open) for each in (workspace, self._workspaces[index])]
                 is_pool_same = is_pool_same and lacking[0] == lacking[1]
         after = self._workspaces[home]
-        if old.included_paths != after.files[path].included_paths or not is_pool_same:
+        if old.inclusion != after.files[path].inclusion or not is_pool_same:
             return (path, *self.reload())
         linked: set[str] = set()  # uses are known in both directions
         for other in self._workspaces:

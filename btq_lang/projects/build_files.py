@@ -120,6 +120,8 @@ def build_files(options: BuildOptions, files: Files) -> BuildResult:
     _add_clauses([output.done for output in planned], groups, options.is_verbose, messages)
     if not options.is_check:
         _add_guesses([output.done.export for output in planned], messages)
+    if not planned:
+        messages.remark("nothing to build: there are only scenarios, which `btq test` runs")
     if STDIN in options.paths:
         for output in planned:
             if output.path == files.stdin:

@@ -10,7 +10,7 @@ from btq_lang.btcpp.recognition import included_in
 from btq_lang.catalog.nav2 import PACKAGED
 from btq_lang.util.record import replace
 from btq_lang.workspace.factories import Factory
-from btq_lang.workspace.file import CPP_SUFFIXES, GROOT_SUFFIX, SUFFIXES
+from btq_lang.workspace.file import CPP_SUFFIXES, GROOT_SUFFIX, SUFFIXES, File
 from btq_lang.workspace.loader import absolute, matching, package_folder, read, without_tests
 
 if TYPE_CHECKING:
@@ -50,7 +50,8 @@ def resolved(
                 continue
             for path in matched(pattern) if not pattern.endswith(CPP_SUFFIXES) else ():
                 if path.endswith(SUFFIXES):
-                    yield path
+                    if not _has_only_scenarios(path):
+                        yield path
                 elif (source := xml.source_of(path)) is not None or xml.is_mission(path):
                     yield source or path
 
@@ -60,6 +61,11 @@ def resolved(
         path for pattern in factory.nodes if pattern.endswith(CPP_SUFFIXES) for path in matched(pattern)
     )
     return replace(factory, files=loaded, node_files=nodes, cpp_files=tuple(cpp), lost=tuple(lost))
+
+
+def _has_only_scenarios(path: str) -> bool:
+    """Whether a mission is a file of scenarios, which no program loads."""
+    return File(path, read(path)[0] or "").has_only_scenarios
 
 
 def in_folder(pattern: str, root: str, find: Callable[[str, str], tuple[str, ...]]) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ identified by its facts.  What they read is in workspace/inputs.py.
 
     nodes.py     which nodes (workspace/resolved.py) a path, a kind or a tag means
     model.py, applied.py   a requirement with its words resolved, and what it applies to
-    paths.py, terms.py, reader.py   reading paths, values and conditions
+    paths.py, terms.py, reader.py, entries.py   reading paths, values and conditions; those of scenarios too
     contexts.py   how deeply contexts are nested
     clauses.py, visits.py   what each verb demands, and which nodes are visited
     metadata.py   the clauses that demand nothing

@@ -15,7 +15,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Diagnostic, Place
 from btq_lang.grammar.item_words import may_include
 from btq_lang.parser import Parsed, parse, reparse
-from btq_lang.syntax.tree import Entry, Include, Item
+from btq_lang.syntax.tree import Entry, Include, Item, Scenario, Tree
 from btq_lang.util.record import Record
 from btq_lang.util.text import LineIndex, Placed, Span, changed
 from btq_lang.workspace.item_index import Facts, Name, NameCounts, Names, NameSort
@@ -361,6 +361,16 @@ class File:
         )
 
     @cached_property
+    def has_only_scenarios(self) -> bool:
+        """Whether it has scenarios and no tree: `btq test` runs it, and no program loads it."""
+        return "scenario" in self.text and bool(self.of_type(Scenario)) and not self.of_type(Tree)
+
+    @property
+    def inclusion(self) -> tuple[object, ...]:
+        """What determines which files it includes as a mission does."""
+        return self.included_paths, self.has_only_scenarios
+
+    @cached_property
     def defined_names(self) -> frozenset[Name]:
         return self.names.all
 
@@ -406,7 +416,7 @@ def _start_of(entry: Entry) -> int:
 _ESCAPED = frozenset("\"'\\\r\n\t")  # a name with one of these may be written with escapes
 _NOT_AS_IT_IS = _ESCAPED | {"."}  # between the names of a quality there may be blanks
 # Kept when the tree is released: what refers to no part of it.
-_KEPT = ("included_paths", "defined_names", "used_names")
+_KEPT = ("included_paths", "has_only_scenarios", "defined_names", "used_names")
 _KEPT_IF_ASKED = ("kinds",)  # seldom
 _DIRECTIVES = ("btq:", "#include", "#import")
 _LINE_ENDS = frozenset("\r\n")

@@ -61,7 +61,7 @@ def advance(before: Workspace, after: Workspace) -> None:
     if (before.project, before.factory, [*before.files]) != (after.project, after.factory, [*after.files]):
         return
     edited = [(file, after.files[path]) for path, file in before.files.items() if after.files[path] is not file]
-    if any(old.included_paths != new.included_paths or not old.is_parsed for old, new in edited):
+    if any(old.inclusion != new.inclusion or not old.is_parsed for old, new in edited):
         before.pass_on(after, [topic for topic in before.store.topics if not isinstance(topic, Facts)])
     else:
         before.pass_on(after, {topic for old, new in edited for topic in _touched(after, old, new)})

@@ -67,7 +67,7 @@ class Workspace:
         before = self.files.get(path)
         file = before.edited(text, origin) if before else File(path, text, origin)
         after = Workspace({**self.files, path: file}, self.project, self.factory)
-        if before is not None and before.included_paths == file.included_paths:
+        if before is not None and before.inclusion == file.inclusion:
             after._take_over(self, path)
         return after
 
@@ -232,8 +232,9 @@ class Workspace:
 
     @cached_property
     def included_files(self) -> frozenset[str]:
-        """The files that another file includes."""
-        return frozenset(target for path in self.files for target in self._targets(path) if target != path)
+        """The files that another file includes; a file of scenarios includes one as a program loads it."""
+        including = [path for path, file in self.files.items() if not file.has_only_scenarios]
+        return frozenset(target for path in including for target in self._targets(path) if target != path)
 
     @cached_property
     def missions(self) -> Mapping[str, str]:

@@ -433,3 +433,21 @@ def test_a_file_with_nothing_in_it_is_told(btq: Btq) -> None:
     Path("empty.xml").unlink()
     assert btq.build("empty.btq") == (1, "", told + "nothing was written\n")
     assert not Path("empty.xml").exists()
+
+
+def test_scenarios_are_not_built(btq: Btq) -> None:
+    scenario = 'include "mission.btq"\nscenario "S"\n    expect mission succeeds\n'
+    btq.write(mission="BehaviorTree Main\n    -> Both\n        Pick\n        Place\n", tests__cases=scenario)
+    nothing = "nothing to build: there are only scenarios, which `btq test` runs\n"
+    assert btq.build("tests/cases.btq") == (0, "", nothing)
+    assert btq.build("tests") == (0, "", nothing)
+    assert btq.build() == (0, "wrote mission.xml\n", GUESSED.format("Pick (Action), Place (Action)"))
+    assert btq.build("--bundle", "-o", "out")[1] == "wrote out/mission.xml\n"
+    assert btq.build("--check") == (0, "", "")
+    assert btq.files == ["mission.btq", "mission.xml", "out/mission.xml", "tests/cases.btq"]
+
+
+def test_a_tree_beside_scenarios_is_built(btq: Btq) -> None:
+    btq.write(mission='BehaviorTree Main\n    Sleep (msec = 3)\nscenario "S"\n    expect mission succeeds\n')
+    assert btq.build() == (0, "wrote mission.xml\n", "")
+    assert "scenario" not in btq.read("mission.xml")

@@ -281,3 +281,12 @@ def test_findings_of_several_factories_are_in_the_order_of_files(tmp_path: Path,
         write(f"{name}.btq", f"BehaviorTree {name.upper()}\n    Sequnce\n        Dock\n        Retry\n            Go\n")
     places = [line.split(": ")[0] for line in check(tmp_path)]
     assert places == ["a.btq:2:5", "a.btq:4:9", "b.btq:2:5", "b.btq:4:9", "c.btq:2:5", "c.btq:4:9"]
+
+
+def test_a_file_of_scenarios_is_not_loaded(tmp_path: Path, write: Write) -> None:
+    write("btq.toml", '[[factory]]\nname = "robot"\nload = ["**/*.btq"]\n')
+    write("main.btq", "Root Main\nBehaviorTree Main\n    Dock satisfies fast\nQualityReq fast\n    takes at most 3 s\n")
+    write("tests/cases.btq", 'include "../main.btq"\nscenario "S"\n    expect fst\n')
+    assert check(tmp_path) == [
+        "tests/cases.btq:3:12: error[unknown-requirement] unknown requirement `fst`; did you mean `fast`?"
+    ]
