@@ -128,6 +128,15 @@ BUILT_IN_LEAVES = (
     *('ScriptCondition (code = "@n > 1")', "SetBlackboard (value = b output_key = note)"),
     *("UnsetBlackboard (key = gone)", 'ScriptAction (name = "Say hello")', 'ScriptCondition (name = "Ready?")'),
 )
+STEPS = (
+    *("given charge = 80 %", "given {@n} = 3", "when 30 s have passed: door = false", "when hurried: charge = 90 %"),
+    *("when {n} > 3 or not door: mission halts", "expect mission succeeds within 2 min", "expect quick violated"),
+    *("expect finally {word} == 'a'", "expect mission does not end", "expect watched never exercised", "expect quick"),
+)
+BEHAVIORS = ("fails", "fails twice, then succeeds after 3 s", "takes 3 s", "does not end", "succeeds and writes n = 2")
+ANSWERS = ("answers true", "answers false, true")
+RUNS = {"Drive": (("to", '"home", {text}'), ("tries", "3")), "Grip": (("force", "12.5, 3"),)}
+TITLES = ('"All goes well"', "'Größe < 3'")
 LABELS = ("", "", "", " Work", ' "Front door"', " Größe", ' "a < b"')
 COMMENTS = ("", "", "", "  # slips -- at times", "  # <!-- no -->")
 
@@ -144,7 +153,32 @@ def missions(draw: st.DrawFn) -> str:
             ports = draw(st.lists(st.sampled_from(sorted(GIVEN)), unique=True, max_size=3))
             lines += [f"    input {port}" for port in ports]
         lines += indented(draw(_node(names[index + 1 :], 0)))
+    if draw(st.integers(0, 2)) == 0:
+        lines += draw(_scenarios([skill for skill in PORTS if any(f" {skill}" in line for line in lines[1:])]))
     return "".join(f"{line}\n" for line in lines)
+
+
+@st.composite
+def _scenarios(draw: st.DrawFn, skills: Sequence[str]) -> list[str]:
+    """The lines of givens and scenarios; skills: those that are in the trees."""
+    others = [*STEPS]
+    for skill in skills:
+        others += [f"when {skill} fails for the {number} time: mission halts" for number in ("2", "second")]
+        others += [f"expect {skill} tries at most 3", f"expect never node {skill}"]
+        others += [f"expect {skill} ({port}) runs {value}" for port, value in RUNS.get(skill, ())]
+    given = [skill for skill in skills if skill not in ("Guarded", "Choose")]
+    lines = ["given {text} = left"] if draw(st.booleans()) else []
+    for title in TITLES[: draw(st.integers(1, 2))]:
+        verifies = draw(st.sampled_from(("", " verifies quick", " verifies quick, watched")))
+        steps = [
+            f"given {skill} {draw(st.sampled_from(ANSWERS if skill in ('Sees', 'Free') else BEHAVIORS))}"
+            for skill in given
+            if draw(st.booleans())
+        ]
+        steps += [*draw(st.lists(st.sampled_from(others), max_size=5)), "expect mission succeeds"]
+        lines += [f"scenario {title} of Main{verifies}"]
+        lines += [f"    {step}{draw(st.sampled_from(COMMENTS))}" for step in steps]
+    return lines
 
 
 @st.composite

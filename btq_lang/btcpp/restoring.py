@@ -23,6 +23,7 @@ from btq_lang.syntax.tree import (
     Apply,
     Context,
     Entry,
+    Given,
     Hazard,
     Include,
     Models,
@@ -33,6 +34,7 @@ from btq_lang.syntax.tree import (
     Requirement,
     Root,
     Satisfies,
+    Scenario,
     Signal,
     Tree,
 )
@@ -217,4 +219,4 @@ def _attaching(parsed: Parsed, entry: Entry, part: Tree | Node | None, text: str
     return Edit(Span(line, line), f"{parsed.text[line:first]}{text}\n")
 
 
-_WITHOUT_ELEMENT = (Qualities, QualityDecl, Signal, Context, Requirement, Apply, Hazard)
+_WITHOUT_ELEMENT = (Qualities, QualityDecl, Signal, Context, Requirement, Apply, Hazard, Given, Scenario)

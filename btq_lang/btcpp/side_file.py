@@ -24,7 +24,18 @@ from btq_lang.requirements.applied import Applied
 from btq_lang.requirements.model import InContext, NodeTarget, ResolvedRequirement, ResolvedSignal
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.requirements.resolve import requirements
-from btq_lang.syntax.tree import Apply, Context, Entry, Hazard, Qualities, QualityDecl, Satisfices, Tree
+from btq_lang.syntax.tree import (
+    Apply,
+    Context,
+    Entry,
+    Given,
+    Hazard,
+    Qualities,
+    QualityDecl,
+    Satisfices,
+    Scenario,
+    Tree,
+)
 from btq_lang.syntax.tree import Requirement as RequirementItem
 from btq_lang.syntax.tree import Signal as SignalItem
 from btq_lang.util.record import Record, fields_of
@@ -134,7 +145,9 @@ def _says_more(entry: Entry) -> bool:
     item = entry.item
     if isinstance(item, Tree):
         return bool(item.clauses) or any(node.clauses for node in item.walk())
-    return isinstance(item, Qualities | QualityDecl | SignalItem | Context | RequirementItem | Apply | Hazard)
+    return isinstance(
+        item, Qualities | QualityDecl | SignalItem | Context | RequirementItem | Apply | Hazard | Given | Scenario
+    )
 
 
 def _text(data: dict[str, Json]) -> str:

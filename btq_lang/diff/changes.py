@@ -23,6 +23,8 @@ TITLES: Final = {
     "context": "Contexts",
     "node model": "Node models",
     "tree": "Trees",
+    "scenario": "Scenarios",
+    "given": "Given for all scenarios",
     "xml": "Verbatim XML",
     "guard": "Guards",
 }

@@ -8,6 +8,7 @@ Comments, layout and the order of attributes, ports and clauses are no part of i
 from __future__ import annotations
 
 import posixpath
+import re
 from collections.abc import Iterable, Iterator
 from typing import Final, TypeAlias
 
@@ -18,7 +19,8 @@ from btq_lang.catalog.units import convert, parse_unit, to_si
 from btq_lang.lexer import tokens
 from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.quantities import parse_quantity
-from btq_lang.syntax.tokens import COMMENT, NUMBER, QUANTITY
+from btq_lang.syntax.scan import number_end
+from btq_lang.syntax.tokens import BLANK, COMMENT, NUMBER, QUANTITY
 from btq_lang.util.record import Record
 from btq_lang.util.text import Placed, Span
 from btq_lang.workspace.file import File
@@ -81,7 +83,8 @@ class Item(Record):
     """Something with a name beside the trees: a requirement, a signal, a model.
 
     Attributes:
-        thing: `requirement`, `signal`, `context`, `quality`, `node model`, `include`, `apply`, `mission` or `xml`.
+        thing: `requirement`, `signal`, `context`, `quality`, `node model`, `include`, `apply`, `scenario`, `given`,
+            `mission` or `xml`.
         name: its ID; without one, its text.
         values: by aspect: `takes`, `on violation`, `port station`.
     """
@@ -245,6 +248,16 @@ class _Reader:
             yield self._item("quality", item.name, values, item)
         elif isinstance(item, syntax.Hazard):
             yield self._hazard(item)
+        elif isinstance(item, syntax.Scenario):
+            yield self._scenario(item)
+        elif isinstance(item, syntax.Given):
+            text = _spaced(self._slice(item.start, item.end))
+            yield Item(
+                "given",
+                text.removeprefix("given "),
+                {"": AspectValue(_meaning(item), text)},
+                self._place(item.start, item.end),
+            )
         elif isinstance(item, syntax.Include):
             values = {pair.key.text: _value(pair.value) for pair in item.attributes}
             path = posixpath.normpath(item.path.text) if item.path is not None else ""  # `./lib.btq` is the same file
@@ -290,6 +303,15 @@ class _Reader:
             aspect = numbered(_ASPECTS[type(clause)], values)
             values[aspect] = AspectValue(_meaning(clause), self._slice(clause.start, clause.end))
         return self._item("hazard", hazard.name, values, hazard)
+
+    def _scenario(self, scenario: syntax.Scenario) -> Item:
+        values = {"of": _value(scenario.tree)} if scenario.tree is not None else {}
+        for name in scenario.verifies:
+            values[f"verifies {name.text}"] = AspectValue(True, "")
+        for step in scenario.steps:
+            text = _spaced(self._slice(step.start, step.end))
+            values[numbered(text, values)] = AspectValue(_meaning(step), text)
+        return self._item("scenario", scenario.title, values, scenario)
 
     def _model(self, model: syntax.Model) -> Item:
         values = {"category": _value(model.category), **self._ports(model.ports)}
@@ -395,6 +417,19 @@ def _default(port: syntax.Port) -> str:
     return _saying(port.default)
 
 
+def _spaced(text: str) -> str:
+    """A step with the same blanks, however it is written."""
+    words = [token for token in tokens(text) if token.kind < BLANK]
+    written = " ".join(_of_quantity(token.text) if token.kind == QUANTITY else token.text for token in words)
+    return _NO_BLANK.sub(lambda match: match[0].strip(), written).strip()
+
+
+def _of_quantity(raw: str) -> str:
+    end = number_end(raw, 0)
+    return f"{raw[:end]} {raw[end:].strip()}"
+
+
+_NO_BLANK: Final = re.compile(r"\( | (?=[,:)])| / ")
 _MISSION_WORDS: Final = {"main_tree_to_execute": MAIN}
 _ASPECTS: Final[dict[type, str]] = {
     syntax.ScopeClause: "scope",

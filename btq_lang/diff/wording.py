@@ -51,7 +51,7 @@ def _lines(change: Change, detail: Detail) -> Iterator[tuple[str, str]]:
         for sign, text in sides:
             yield sign, f"{_CLAUSES[kind]} {name}{f'({text})' if text not in ('', 'attached') else ''}"
     elif kind == "port" or (
-        change.thing in ("requirement", "hazard") and detail.aspect not in _IN_WORDS
+        change.thing in ("requirement", "hazard", "scenario") and detail.aspect not in _IN_WORDS
     ):  # they are whole lines
         yield from ((sign, text or detail.aspect) for sign, text in sides)
     elif detail.aspect in _IN_WORDS or (detail.old is not None and detail.new is not None):

@@ -17,6 +17,7 @@ from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.grammar.hazards import HAZARD_HEADS
+from btq_lang.grammar.scenario_words import STEPS
 from btq_lang.ide import node_proposals as of_nodes
 from btq_lang.ide import proposals as offer
 from btq_lang.ide.clause_words import Expected, expected, is_count, is_window
@@ -25,6 +26,8 @@ from btq_lang.ide.meaning import entry_at
 from btq_lang.ide.measures import MeasuredValue, measured_at
 from btq_lang.ide.place import CursorPlace, LineNode, item_tokens, open_brace, place_at, word_text
 from btq_lang.ide.proposals import Proposal
+from btq_lang.ide.scenario_proposals import of_step
+from btq_lang.ide.scenario_words import expected_in_scenario
 from btq_lang.ide.snippets import snippets_for
 from btq_lang.ide.xml_completion import complete_in_xml
 from btq_lang.syntax.scan import line_start
@@ -178,7 +181,8 @@ def _in_string(workspace: Workspace, path: str, place: CursorPlace, text: str, o
         typed, proposals = of_nodes.in_script(workspace, path, entry, place.text)
         return Completion(Span(offset - typed, offset), proposals)
     whole = Span(offset - len(place.text) - 1, offset)
-    if key in ("ID", "Quality", "main_tree_to_execute") or place.last in ("satisfies", "satisfices", ","):
+    in_list = place.last in ("satisfies", "satisfices", ",") or place.block == "scenario"
+    if key in ("ID", "Quality", "main_tree_to_execute") or in_list:
         proposals = _unique(_in_code(workspace, path, place, offset))
         end = re.match(r"[^\"'\r\n]*[\"']?", text[offset:])
         quoted = (
@@ -256,6 +260,8 @@ def _in_code(workspace: Workspace, path: str, place: CursorPlace, offset: int) -
         yield from _in_item(workspace, path, place, first)
     elif place.block == "ports":
         yield from offer.port_words(place)
+    elif place.block == "scenario":
+        yield from _in_scenario(workspace, path, place)
     elif place.block == "hazard":
         yield from offer.words(('""',) if place.last in ("source", "because") else (), "keyword")
     elif place.block == "clauses" or any(each.kind == NAME and each.text == "QualityReq" for each in place.group):
@@ -276,6 +282,8 @@ def _line_heads(workspace: Workspace, path: str, place: CursorPlace) -> Iterator
         yield from offer.port_heads()
     elif place.block == "hazard":
         yield from (offer.keyword(word) for word in HAZARD_HEADS)
+    elif place.block == "scenario":
+        yield from (offer.keyword(word) for word in STEPS)
     elif place.block == "clauses":
         yield from _clause_words(workspace, path, Expected(clause=True), place)
     elif place.block in ("tree", "node"):
@@ -305,6 +313,8 @@ def _in_item(workspace: Workspace, path: str, place: CursorPlace, first: str) ->
         yield from of_nodes.trees(workspace, path)
     elif first == "QualityReq":
         yield from _in_requirement(workspace, path, place)
+    elif first in ("scenario", "given"):
+        yield from _in_scenario(workspace, path, place)
     elif first == "apply":
         yield from _in_apply(workspace, path, place)
     elif first in CATEGORIES and len(place.words) == 1:
@@ -371,6 +381,20 @@ def _in_requirement(workspace: Workspace, path: str, place: CursorPlace) -> Iter
             yield from offer.words(('description = ""',), "keyword")
             return
     yield from _clause_words(workspace, path, expected(words), place)
+
+
+def _in_scenario(workspace: Workspace, path: str, place: CursorPlace) -> Iterator[Proposal]:
+    """What may follow on the first line of a scenario, and on those of its steps."""
+    wanted = expected_in_scenario(place.words)
+    yield from of_step(workspace, path, place, wanted)
+    if wanted.condition is not None:
+        words = (Token(NAME, 0, "when"), *wanted.condition)
+    elif wanted.clause:
+        words = wanted.clause
+    else:
+        yield from offer.words(_CLAIMS, "keyword") if wanted.clause is not None else ()
+        return
+    yield from _clause_words(workspace, path, replace(expected(words), clause=False), place)
 
 
 def _visited(place: CursorPlace) -> LineNode | None:
@@ -472,6 +496,7 @@ def _in_list(workspace: Workspace, path: str, place: CursorPlace, word: str) -> 
         yield from offer.tags(workspace, path)
 
 
+_CLAIMS = tuple(verb.word for verb in VERBS.values() if " " not in verb.word)
 _FUNCTIONS = ("max()", "min()", "mean()", "p95()", "age()")
 _DECLARED = {
     "BehaviorTree": (Kind.TREE, What.TREE),

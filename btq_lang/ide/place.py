@@ -81,8 +81,8 @@ class CursorPlace(Record):
     Attributes:
         inside: code, comment or string; `text`: the part of the comment or string before the cursor.
         span: the word that is being typed, which a completion replaces; `prefix`: the part before the cursor.
-        block: items (of a file or a Root), models (of a TreeNodesModel), ports (of a model), hazard, tree, node or
-            clauses (of a requirement).
+        block: items (of a file or a Root), models (of a TreeNodesModel), ports (of a model), hazard, scenario, tree,
+            node or clauses (of a requirement).
         parent: the words of the line that opened the block; none at the top level.
         words: the words of the logical line before the one that is being typed.
         group: those in the innermost open brackets; brackets of a condition are ordinary words of it.
@@ -271,8 +271,8 @@ def _block(parents: list[tuple[Token, ...]]) -> tuple[str, tuple[Token, ...]]:
     nearest, outermost = parents[0], parents[-1][0].text
     if any(word.kind == NAME and word.text == "QualityReq" for word in _innermost(nearest)[0]):
         return "clauses", nearest
-    if outermost == "hazard":
-        return "hazard", nearest
+    if outermost in ("hazard", "scenario"):
+        return outermost, nearest
     if outermost == "BehaviorTree":
         return ("tree" if len(parents) == 1 else "node"), nearest
     if outermost == "TreeNodesModel":

@@ -435,6 +435,8 @@ _ITEMS = (
     ("context", "context ${1:name} : $0"),
     ("apply", "apply ${1:requirement} to $0"),
     ("hazard", 'hazard ${1:H1} "$0"'),
+    ("scenario", 'scenario "${1:What happens}" of ${2:Main}\n    given $3\n    expect ${0:mission succeeds}'),
+    ("given", "given $0"),
     ("quality", 'quality ${1:name} : ${2:parent} "$0"'),
     ("qualities", "qualities ${0:iso25010-2023}"),
     ("Action", "Action ${1:Name}\n    $0"),

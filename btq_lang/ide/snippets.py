@@ -64,6 +64,13 @@ _ITEMS = (
         "    in at least ${4:98 %} of ${5|activations,runs|}\n"
         "    over last ${6:200} $5$0",
     ),
+    (
+        "scenario",
+        "a run to test: what nodes do, and what is expected then",
+        'scenario "${1:The station cannot be reached}" of ${2:Mission}\n'
+        "    given ${3:MoveBase} ${4|fails,succeeds,takes 20 s,does not end,answers false|}\n"
+        "    expect ${5:mission succeeds}$0",
+    ),
     *_MODELS,
 )
 _NODES = (

@@ -210,6 +210,30 @@ old.btq -> new.btq
     )
 
 
+def test_scenarios() -> None:
+    old = 'given Dock takes 3 s\nscenario "S" of T verifies r\n    given Dock fails\n    given x = 80 %\n    expect r\n'
+    new = (
+        'given Dock takes 4 s\nscenario "S" of T\n    given x=80%\n    given Dock succeeds\n    expect r\n'
+        'scenario "N"\n    expect r\n'
+    )
+    assert (
+        in_words(old, new)
+        == """\
+old.btq -> new.btq
+~ scenario S changed  new.btq:2
+    - verifies r
+    - given Dock fails
+    + given Dock succeeds
++ scenario N added  new.btq:6
+    + expect r
++ given Dock takes 4 s added  new.btq:1
+- given Dock takes 3 s removed  old.btq:1
+
+1 scenario changed, 1 scenario added, 1 given added, 1 given removed
+"""
+    )
+
+
 def test_their_order_is_no_change() -> None:
     reordered = SAFETY.replace('    source "S"\n    priority high\n', '    priority high\n    source "S"\n')
     assert in_words(SAFETY, reordered.replace("safety and comfort", "comfort and safety")) == ""

@@ -40,6 +40,8 @@ WORDS = (
     *("for", "assuming", "visits", "order", "time", "average"),
     *("over", "last", "activations", "on", "violation", "fail", "goal", "because", "verified", "by", "review", "node"),
     *("source", "refines", "mitigates", "priority", "approved", "hazard", "severity"),
+    *("scenario", "given", "expect", "verifies", "answers", "skips", "does", "end", "twice", "times", "then", "writes"),
+    *("have", "passed", "halts", "finally", "violated", "satisfied", "applicable", "exercised", "{x}", "2", "first"),
     *(
         "except",
         "under",

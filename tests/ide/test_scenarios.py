@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import pytest
 from feature_asserts import (
+    check_accept,
     check_folds,
     check_goto,
     check_hover,
+    check_offers,
     check_outline,
     check_references,
     check_rename,
@@ -125,4 +127,87 @@ def test_tokens() -> None:
         "number 1",
         "keyword fails",
         "keyword twice",
+    )
+
+
+MODELS = """\
+signal battery : % from {level}
+signal door : bool from {door}
+QualityReq in_time
+    Deliver takes at most 2 min
+Action MoveTo
+    input station : string
+Condition BatteryLow
+BehaviorTree Deliver
+    ->
+        BatteryLow
+        MoveTo ToDock (station = "A")
+        MoveTo (station = {goal})
+"""
+
+
+@pytest.mark.parametrize(
+    ("line", "offered", "absent"),
+    [
+        ("$0", ("given", "when", "expect"), ("succeeds", "MoveTo")),
+        ("given $0", ("every", "battery", "Deliver", "MoveTo", "ToDock"), ("mission halts", "succeeds")),
+        ("given every $0", ("MoveTo", "BatteryLow"), ("every",)),
+        ("given Deliver/$0", ("MoveTo", "ToDock"), ("every",)),
+        ("given MoveTo $0", ("succeeds", "fails", "does not end", "takes", "after", "skips"), ("answers", "MoveTo")),
+        ("given BatteryLow $0", ("answers",), ("succeeds", "fails")),
+        ("given BatteryLow answers $0", ("true", "false"), ("then",)),
+        ("given BatteryLow answers false, $0", ("true", "false", "then"), ()),
+        ("given MoveTo fails $0", ("after", "once", "twice", "and writes"), ("succeeds", "takes")),
+        ("given MoveTo fails twice, $0", ("succeeds", "then"), ("true",)),
+        ("given MoveTo fails twice, then $0", ("succeeds", "does not end"), ("then",)),
+        ("given MoveTo does $0", ("not end",), ("fails",)),
+        ("given MoveTo ($0) fails", ("station",), ("MoveTo",)),
+        ("given ToDock ($0) fails", ("station",), ()),
+        ("given MoveTo (station = $0) fails", ("A", "{goal}"), ("station",)),
+        ('given MoveTo (station = "$0") fails', ("A",), ("station",)),
+        ('given MoveTo (station = "A") $0', ("succeeds", "takes"), ("answers",)),
+        ("given door = $0", ("true", "false"), ()),
+        ("given {$0}", ("goal", "level"), ("MoveTo",)),
+        ("when $0", ("mission", "MoveTo", "battery", "not"), ("in_time",)),
+        ("when 30 s $0", ("have passed",), ("MoveTo",)),
+        ("when MoveTo $0", ("fails", "halts", "starts"), ("true",)),
+        ("when MoveTo fails $0", ("for the second time",), ("succeeds",)),
+        ("when MoveTo fails for the second $0", ("time",), ()),
+        ("when MoveTo fails: $0", ("every", "mission halts", "battery", "MoveTo"), ("in_time",)),
+        ("when MoveTo fails: MoveTo $0", ("succeeds", "takes"), ("answers",)),
+        (
+            "expect $0",
+            ("mission", "never node", "every", "finally", "in_time", "MoveTo", "succeeds"),
+            ("while", "goal"),
+        ),
+        ("expect in_time $0", ("violated", "never exercised"), ()),
+        ("expect MoveTo $0", ("runs", "succeeds", "takes", "tries"), ()),
+        ("expect MoveTo runs $0", ("A", "{goal}", "every"), ()),
+        ('expect MoveTo runs "A", $0', ("A", "{goal}"), ("every",)),
+        ("expect MoveTo ($0) runs", ("station",), ()),
+        ("expect finally $0", ("battery", "not", "node"), ("MoveTo fails",)),
+        ("expect never $0", ("battery", "node"), ("while",)),
+        ("expect mission does $0", ("not end",), ()),
+    ],
+)
+def test_completion(line: str, offered: tuple[str, ...], absent: tuple[str, ...]) -> None:
+    check_offers(f'{MODELS}scenario "S" of Deliver\n    {line}\n', *offered, absent=absent)
+
+
+def test_completion_of_first_lines() -> None:
+    check_offers(f"{MODELS}$0", "given", "scenario")
+    check_offers(f'{MODELS}scenario "S" $0\n', "of", "verifies", absent=("given",))
+    check_offers(f'{MODELS}scenario "S" of $0\n', "Deliver", absent=("in_time", "MoveTo"))
+    check_offers(f'{MODELS}scenario "S" of Deliver verifies $0\n', "in_time", absent=("Deliver",))
+    check_offers(f"{MODELS}given MoveTo $0\n", "succeeds", "takes", absent=("answers",))
+
+
+def test_accepted_proposals() -> None:
+    check_accept(
+        f'{MODELS}scenario "S"\n    given MoveTo (station = $0) fails\n',
+        "A",
+        f'{MODELS}scenario "S"\n    given MoveTo (station = "A") fails\n',
+    )
+    check_accept(
+        f'{MODELS}scenario "S"\n    given batt$0\n', "battery …", f'{MODELS}scenario "S"\n    given battery = \n'
     )
