@@ -15,6 +15,7 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 
 from drawn_requirements import clause_line, condition, hazard, node_clause, quality, reference, requirement
+from drawn_scenarios import scenarios
 from drawn_words import AFTERWARDS, BREAK, CONDITIONS, KEYS, MEASURED, PROSE, SCRIPTS, TYPES, Hand, Line
 
 SYMBOLS = {
@@ -131,6 +132,7 @@ def _items(hand: Hand, nodes: int) -> list[Line]:
         [_tree(hand, name, size) for name, size in zip(trees, sizes, strict=True)],
         [_application(hand) for _ in hand.some(4, 0.4)],
         [_verbatim(hand)] if hand.maybe(0.03) else [],
+        scenarios(hand) if not hand.classic else [],
     ]
     if hand.maybe(0.3):
         hand.chance.shuffle(groups)

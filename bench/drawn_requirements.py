@@ -72,7 +72,7 @@ def clauses(hand: Hand, lists: bool = True) -> list[str]:
 
     On a line with `satisfies`, and in brackets, a comma belongs to the list of requirements: no lists in clauses there.
     """
-    claims = [_claim(hand, lists)] if hand.maybe(0.92) else []
+    claims = [claim(hand, lists)] if hand.maybe(0.92) else []
     most = 3 if lists else 1
     others: dict[float, Callable[[], str]] = {
         0.20: lambda: f"{hand.pick(('while', 'when'))} {condition(hand)}",
@@ -133,7 +133,8 @@ def hazard(hand: Hand) -> Line:
     return line
 
 
-def _claim(hand: Hand, lists: bool = True) -> str:
+def claim(hand: Hand, lists: bool = True) -> str:
+    """A demand, perhaps with a subject; lists: with commas, too."""
     verbs = {
         "takes": 10,
         "succeeds": 4,
@@ -341,7 +342,7 @@ def _use(hand: Hand) -> str:
         return _classic(hand, hand.new("requirement"))
     if hand.maybe(0.05):
         head = _head(hand, hand.new("requirement"))
-        return hand.words(head, _claim(hand, lists=False), *clauses(hand, lists=False)[1:2])
+        return hand.words(head, claim(hand, lists=False), *clauses(hand, lists=False)[1:2])
     return reference(hand)
 
 
