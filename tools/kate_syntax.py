@@ -18,7 +18,7 @@ _LISTS = (
     ("leaves", "dsBuiltIn", words.LEAVES),
     ("categories", "dsDataType", (*words.CATEGORY_WORDS, *words.PORT_WORDS)),
     ("clauses", "dsAttribute", words.CLAUSE_WORDS),
-    ("requirement", "dsKeyword", words.REQUIREMENT_WORDS),
+    ("requirement", "dsKeyword", (*words.REQUIREMENT_WORDS, *words.STEP_WORDS, *words.SCENARIO_WORDS)),
     ("outcomes", "dsConstant", (*words.OUTCOME_WORDS, *words.TRUTH)),
     ("functions", "dsFunction", words.FUNCTION_WORDS),
 )

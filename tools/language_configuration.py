@@ -17,6 +17,7 @@ def openers() -> tuple[str, ...]:
         "BehaviorTree",
         "Root",
         "QualityReq",
+        "scenario",
         words.MODELS,
         "Control",
         "Decorator",

@@ -28,7 +28,20 @@ def grammar() -> str:
             "patterns": [
                 _include("comment"),
                 *map(
-                    _include, ("file", "quality", "hazard", "models", "port", "signal", "context", "apply", "verbatim")
+                    _include,
+                    (
+                        "file",
+                        "quality",
+                        "hazard",
+                        "scenario",
+                        "step",
+                        "models",
+                        "port",
+                        "signal",
+                        "context",
+                        "apply",
+                        "verbatim",
+                    ),
                 ),
                 *map(_include, ("requirement", "tree", "node-clause", "clause-line", "node", "group")),
             ],
@@ -145,6 +158,19 @@ _REPOSITORY: dict[str, Rule] = {
         "string",
     ),
     "hazard": _region(rf"^\s*(hazard)(?=\s+[\w\"'])\s*({_NAME})?", _LINE, (_ITEM, _REQUIREMENT), "comment", "string"),
+    "scenario": _region(
+        r"^\s*(scenario)\b(?=\s*[\"'])", _LINE, (_ITEM,), "comment", "string", "step-words", "tree-name", "punctuation"
+    ),
+    # A step's line, or a given for all scenarios: its word, and what can only follow that.
+    "step": _region(
+        rf"^\s*(given(?=\s+(?:every\s|\{{|{_NAME}\s*=|{_NAME_OR_STRING}(?:/{_NAME_OR_STRING})*(?:\s*\([^()]*\))?\s+"
+        rf"(?:then|{_any(words.BEHAVIOR_WORDS)})\b))|when(?=\s[^#]*:\s)|expect(?=\s+[\w\"'{{]))",
+        _LINE,
+        (_KEYWORD,),
+        *("step-words", "pair", "group", *_CONDITION, "punctuation"),
+    ),
+    "step-words": _match(_word(words.STEP_CLAUSE_WORDS), _KEYWORD),
+    "tree-name": _match(_NAME, _TREE),
     "models": _match(rf"^\s*({words.MODELS})(?=\s*(?:[(#/]|$))", _ITEM),
     "port": _region(
         rf"^\s*({_any(words.PORT_WORDS)})(?!\s*[=(\w-]*=|[\w-])\s*({_NAME})?(?:\s*(:)\s*((?:{_NAME}|::)+))?",

@@ -72,6 +72,8 @@ syntax match btqClauseLine /^\\s*\\zs\\%(\\k\\|[\\/"' ]\\)\\+\\s\\%({_any(words.
 syntax match btqClauseLine /^\\s*\\zseach\\s.*\\sis\\s\\+followed\\s.*$/ contains=@btqClause
 syntax region btqRequirementLine matchgroup=btqItem start=/\\%(\\k\\)\\@<!QualityReq\\>\\%(\\s*=\\)\\@!/ end=/$/ end=/)\\@=/ keepend contains=@btqClause,btqQualityType,btqKey,btqParameters,btqRequirementName
 syntax match btqRequirementName /\\%(QualityReq\\s\\+\\%(ID\\s*=\\s*\\)\\?\\)\\@<=\\%(ID\\s*=\\)\\@!{name}/ contained
+syntax match btqStepLine /^\\s*\\zs\\%({_any(words.STEP_WORDS)}\\)\\s\\+\\%({name}\\|["'{{]\\).*$/ contains=@btqClause,btqStepWord,btqKey,btqGroup
+syntax keyword btqStepWord contained {" ".join(sorted({*words.STEP_WORDS, *words.SCENARIO_WORDS}))}
 syntax region btqSignalLine matchgroup=btqItem start=/^\\s*\\zs\\%(signal\\|context\\|apply\\)\\>\\%(\\s*=\\)\\@!/ end=/$/ keepend contains=@btqClause,btqUnitType
 syntax region btqParameters start=/(/ end=/)/ contained contains=@btqClause,btqUnitType
 syntax match btqUnitType /:\\s*\\zs{unit}\\%([*\\/]{unit}\\)*\\%(\\k\\)\\@!/ contained
@@ -116,6 +118,7 @@ highlight default link btqUnit Number
 highlight default link btqUnitType Type
 highlight default link btqBoolean Boolean
 highlight default link btqClauseWord Statement
+highlight default link btqStepWord Statement
 highlight default link btqLogic Operator
 highlight default link btqFunction Function
 highlight default link btqOutcome Constant

@@ -20,6 +20,7 @@ from btq_lang.grammar.claim_words import VERB_WORDS as VERBS_OF_SUBJECTS
 from btq_lang.grammar.clauses import ACTIONS, AVERAGE, EXPERIMENTS, METHODS, TIME
 from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS, HEADS, METADATA_HEADS
 from btq_lang.grammar.hazards import HAZARD_HEADS
+from btq_lang.grammar.scenario_words import DURATIONS, ORDINALS, RESULTS, STEPS, TIMES, VERDICTS
 from btq_lang.syntax.tokens import DIRECTIONS, NODE_CLAUSES, SYMBOLS
 
 # Words that open an item of a file; what stands behind them differs, so each grammar treats them one by one.
@@ -34,7 +35,10 @@ ITEMS = (
     "qualities",
     "QualityReq",
     "hazard",
+    "scenario",
 )
+STEP_WORDS = STEPS  # `given` is an item too, so grammars know it by its line
+BEHAVIOR_WORDS = (*RESULTS, *DURATIONS)
 MODELS = "TreeNodesModel"
 
 # The words inside clauses that no table of the parser lists, because a function of it reads each where it stands.
@@ -44,6 +48,26 @@ PARTICLES = (
     "assuming", "order", "else", "for", "sum", "under", "except", "node", "tagged", "from", "until", "each", "is",
     "occurrences",
 )  # fmt: skip
+SCENARIO_WORDS = (
+    *(
+        "of",
+        "verifies",
+        "every",
+        "and",
+        "writes",
+        "then",
+        "times",
+        "not",
+        "end",
+        "have",
+        "passed",
+        "for",
+        "the",
+        "time",
+    ),
+    *("mission", "finally", "node", *RESULTS, *DURATIONS, *TIMES, *ORDINALS),
+    *(word for verdict in VERDICTS for word in verdict),
+)
 SIGNAL_WORDS = ("from", "level", "counter", "gauge", "fresh", "within", "initially")
 LOGIC = ("and", "or", "not")
 TRUTH = ("true", "false")
@@ -80,6 +104,7 @@ REQUIREMENT_WORDS = longest_first(
     (*VERB_WORDS, *ANSWERS, *HEAD_WORDS, *HAPPENINGS, *EXPERIMENTS, TIME, AVERAGE, *PARTICLES)
 )
 OUTCOME_WORDS = longest_first((*ACTIONS, *METHODS))
+STEP_CLAUSE_WORDS = longest_first((*SCENARIO_WORDS, *REQUIREMENT_WORDS))
 FUNCTION_WORDS = longest_first(FUNCTIONS)
 COMPARISON_SIGNS = longest_first(COMPARISONS)
 UNIT_SYMBOLS = longest_first(UNITS)
