@@ -33,11 +33,10 @@ from btq_lang.grammar.items import (
 )
 from btq_lang.grammar.node_mistakes import found_xml, is_after_dashes, is_doc_string, other_comment
 from btq_lang.grammar.nodes import no_block, parse_verbatim
-from btq_lang.grammar.scenarios import parse_given, parse_scenario
 from btq_lang.lexer import Lexer, State, tokens
 from btq_lang.syntax.scan import Maps, line_end, path_end
 from btq_lang.syntax.tokens import CATEGORIES, DIRECTIONS, NAME, NEWLINE, NODE_CLAUSES, OPEN, STRING, SYMBOL, Token
-from btq_lang.syntax.tree import Entry, Given, Item, Root, SkippedLines, Tree, moved_by, quote, unquote
+from btq_lang.syntax.tree import Entry, Given, Item, Root, Scenario, SkippedLines, Tree, moved_by, quote, unquote
 from btq_lang.util.garbage import NotCollecting
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span, changed
@@ -208,11 +207,8 @@ def parse_item(parser: Parser, level: int, in_root: bool) -> None:
         item = parse_qualities(cursor)
     elif word == "hazard":
         item = parse_hazard(cursor, own_level)
-    elif word == "scenario":
-        parser.has_scenario = True
-        item = parse_scenario(cursor, own_level)
-    elif word == "given":
-        item = given(parser, in_root)
+    elif word == "scenario" or word == "given":
+        item = scenario_or_given(parser, word, own_level, in_root)
     elif word == "xml":
         item = parse_verbatim(cursor)
     else:
@@ -245,9 +241,14 @@ def parse_root(parser: Parser, level: int, in_root: bool) -> None:
 # ---- what productions ask and report ----
 
 
-def given(parser: Parser, in_root: bool) -> Given:
-    """A `given` for all scenarios of the file; report one that is not before the first of them."""
+def scenario_or_given(parser: Parser, word: str, level: int, in_root: bool) -> Scenario | Given:
+    """A scenario, or a `given` for all scenarios of the file; report one that is not before the first of them."""
+    from btq_lang.grammar.scenarios import parse_given, parse_scenario  # few files have any
+
     cursor = parser.cursor
+    if word == "scenario":
+        parser.has_scenario = True
+        return parse_scenario(cursor, level)
     if in_root or parser.has_scenario:
         where = "in a Root block" if in_root else "after the first scenario of its file"
         note = "a given for all scenarios goes before the first one, at the top level; any other in a scenario's block"

@@ -10,7 +10,7 @@ from typing import Final
 from btq_lang.diagnostics.model import replace_fix, write_fix
 from btq_lang.grammar.conditions import bound_ahead
 from btq_lang.grammar.cursor import Cursor
-from btq_lang.grammar.scenario_words import ANSWERS, DURATIONS, RESULTS, STEPS, TIMES, VERDICTS
+from btq_lang.grammar.scenario_words import ANSWERS, BEHAVIOR_WORDS, DURATIONS, STEPS, TIMES, VERDICTS
 from btq_lang.syntax.tokens import NAME, NEWLINE, QUANTITY
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
@@ -51,14 +51,14 @@ def no_behavior(cursor: Cursor) -> None:
         cursor.expected("what a node does", (_A_NODE_FIRST,))
     elif cursor.kind == QUANTITY:
         cursor.expected("what the node does", ("a duration goes after `takes`",), (cursor.put_before("takes"),))
-    elif cursor.kind == NAME and cursor.raw in (*RESULTS, *DURATIONS):
+    elif cursor.kind == NAME and cursor.raw in BEHAVIOR_WORDS:
         note = "how often, and what the node writes, goes last: `succeeds after 3 s twice`"
         cursor.expected("the end of the line", (note,))
-    elif cursor.kind == NAME and (likely := near(cursor.raw, (*RESULTS, *DURATIONS, *TIMES, "then"), limit=1)):
+    elif cursor.kind == NAME and (likely := near(cursor.raw, _OF_BEHAVIORS, limit=1)):
         cursor.misspelt(cursor.here(), cursor.raw, likely[0])
         cursor.recover()
     else:
-        is_first = cursor.index < 2 or cursor.raws[cursor.index - 1] not in (*RESULTS, *TIMES, "end")
+        is_first = cursor.index < 2 or cursor.raws[cursor.index - 1] not in _OF_BEHAVIORS
         what = "what the node does: succeeds, fails, answers true, takes 3 s, …" if is_first else "the end of the line"
         cursor.expected(what)
 
@@ -147,6 +147,7 @@ def _number(words: tuple[str, ...]) -> str:
     return words[0] if len(words) == 2 and words[1] in ("times", "time") and words[0].isdecimal() else ""
 
 
+_OF_BEHAVIORS: Final = (*BEHAVIOR_WORDS, *TIMES, "then", "end")
 _STEPS_MEANT: Final = {  # of Gherkin and other notations, folded
     **dict.fromkeys(("given", "suppose", "assume", "assuming", "background", "stub", "mock"), "given"),
     **dict.fromkeys(("when", "whenever", "if", "once"), "when"),

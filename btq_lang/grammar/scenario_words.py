@@ -7,6 +7,7 @@ from typing import Final
 STEPS: Final = ("given", "when", "expect")
 RESULTS: Final = ("succeeds", "fails", "skips", "does", "answers")  # `does not end`
 DURATIONS: Final = ("takes", "after")
+BEHAVIOR_WORDS: Final = (*RESULTS, *DURATIONS)
 ANSWERS: Final = ("true", "false")
 TIMES: Final = ("once", "twice")
 ORDINALS: Final = ("first", "second", "third")

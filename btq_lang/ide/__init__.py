@@ -7,7 +7,8 @@ Features that the server calls are imported at their first call: an editor waits
 all features and the checks that they use takes a third of that time.
 
     place.py, meaning.py   where the cursor is, and what the word there means: the features below use these two
-    completion.py          with completion_list, proposals, node_proposals, clause_words, measures, snippets and ports
+    completion.py          with completion_list, proposals, node_proposals, clause_words, measures, snippets and ports;
+                           scenario_words and scenario_proposals in scenarios
     xml_completion.py      the same in XML, of the same proposals
     hover.py               with describe and clause_enforcement; the ports of a node while it is typed
     external.py            the requirements of other tools, for completion, hover and links
