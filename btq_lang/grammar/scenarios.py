@@ -9,7 +9,9 @@ from typing import Final
 
 from btq_lang.diagnostics.model import Fix, FixEdit, Place, replace_fix, write_fix
 from btq_lang.grammar.attributes import parse_value
-from btq_lang.grammar.claims import HAPPENINGS, VERB_WORDS, bound_follows, every_meant, parse_claim, port_value
+from btq_lang.grammar.claim_mistakes import every_meant
+from btq_lang.grammar.claim_words import HAPPENINGS, VERB_WORDS, bound_follows
+from btq_lang.grammar.claims import parse_claim, port_value
 from btq_lang.grammar.conditions import close_group, parse_cond, parse_path
 from btq_lang.grammar.cursor import Cursor
 from btq_lang.grammar.metadata import list_goes_on, parse_requirement_id, parse_text

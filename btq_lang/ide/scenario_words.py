@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from btq_lang.grammar.claims import HAPPENINGS, VERB_WORDS
+from btq_lang.grammar.claim_words import HAPPENINGS, VERB_WORDS
 from btq_lang.grammar.scenario_words import ANSWERS, DURATIONS, RESULTS, TIMES, VERDICTS
 from btq_lang.syntax.tokens import CLOSE, NAME, NUMBER, OPEN, QUANTITY, STRING, Token
 from btq_lang.util.record import Record
