@@ -449,5 +449,5 @@ def test_scenarios_are_not_built(btq: Btq) -> None:
 
 def test_a_tree_beside_scenarios_is_built(btq: Btq) -> None:
     btq.write(mission='BehaviorTree Main\n    Sleep (msec = 3)\nscenario "S"\n    expect mission succeeds\n')
-    assert btq.build() == (0, "wrote mission.xml\n", "")
+    assert btq.build() == (0, "wrote mission.xml\nwrote mission.qreq.json\n", "")
     assert "scenario" not in btq.read("mission.xml")
