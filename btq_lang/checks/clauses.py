@@ -8,11 +8,13 @@ from collections.abc import Iterator
 
 from btq_lang.catalog.verbs import POOLED
 from btq_lang.checks import lookups
+from btq_lang.checks.qualifiers import SPLIT, is_beside_one
 from btq_lang.checks.view import View, quality_named
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.tokens import QUANTITY
 from btq_lang.util.text import Span
+from btq_lang.workspace.symbols import Symbol
 
 _ONCE: dict[type, str] = {
     syntax.FromUntil: "from when until when it must hold",
@@ -35,9 +37,7 @@ def duplicate_clause(view: View) -> Iterator[Diagnostic]:
             if isinstance(clause, syntax.Odds) and not _is_share(clause):
                 continue  # `succeeds in 45 s`, which the parser reports
             if type(clause) in _ONCE and (counts := first.setdefault(_kind(clause), clause)) is not clause:
-                # If one of several equal definitions lacked it, it would contradict the others.
-                is_alone = not view.ask(lookups.is_repeated, symbol.kind, symbol.name)
-                yield _duplicate(view, counts, clause, is_alone)
+                yield _duplicate(view, symbol, requirement, counts, clause)
 
 
 def _is_share(odds: syntax.Odds) -> bool:
@@ -105,19 +105,26 @@ def _kind(clause: syntax.Clause) -> object:
     return type(clause), isinstance(clause, syntax.Odds) and clause.is_of_time
 
 
-def _duplicate(view: View, counts: syntax.Clause, clause: syntax.Clause, is_alone: bool) -> Diagnostic:
+def _duplicate(
+    view: View, symbol: Symbol, requirement: syntax.Requirement, counts: syntax.Clause, clause: syntax.Clause
+) -> Diagnostic:
     text = view.text
     stated, restated = (" ".join(text[repeated.start : repeated.end].split()) for repeated in (counts, clause))
     removals = [(restated, clause)] if stated == restated else [(restated, clause), (stated, counts)]
     is_of_time = isinstance(clause, syntax.Odds) and clause.is_of_time
     what = "a share of time" if is_of_time else _ONCE[type(clause)]
     message = f"the requirement already states {what}: `{stated}`"
+    # If one of several equal definitions lacked it, it would contradict the others.
+    is_alone = not view.ask(lookups.is_repeated, symbol.kind, symbol.name)
+    is_of_one = stated != restated and any(is_beside_one(text, requirement, each) for each in (counts, clause))
+    notes = (f"each holds for all claims of this requirement; {SPLIT}",) if is_of_one else ()
     fixes = tuple(
         replace_fix(f"Remove `{words}`", with_blanks(text, removed), "", safe=is_alone and stated == restated)
         for words, removed in removals
     )
     related = (Related(Place(Span(counts.start, counts.end)), "this one takes effect"),)
-    return Diagnostic("duplicate-clause", Span(clause.start, clause.end), message, related=related, fixes=fixes)
+    span = Span(clause.start, clause.end)
+    return Diagnostic("duplicate-clause", span, message, related=related, notes=notes, fixes=fixes)
 
 
 def with_blanks(text: str, clause: syntax.Clause | syntax.NodeClause | syntax.Port) -> Span:

@@ -163,6 +163,7 @@ _TABLE: tuple[str | Rule, ...] = (  # a string is the subject of the rules below
     Rule("unused-parameter", _W, "a parameter that no clause of its requirement names"),
     Rule("requirement-without-text", _W, "a requirement that demands nothing, or nothing that can be violated"),
     Rule("duplicate-clause", _E, "a second clause of a kind that a requirement may contain only once"),
+    Rule("qualifier-of-all", _W, "a clause about all claims of its requirement, on the line of one of them"),
     Rule("clause-without-odds", _W, "a confidence or a window in a requirement without a required probability"),
     Rule("unknown-quality", _W, "a quality name that no edition of ISO/IEC 25010 defines"),
     Rule("old-quality-name", _H, "an alias or a name of another edition"),
