@@ -20,7 +20,8 @@ The columns, which later versions add to but do not change:
     hazard, severity    the hazard that the requirement mitigates; how is then how it is covered, verdict its worst
     external        the ID in another tool of what the requirement refines or mitigates, likewise
     refines, mitigates, origin, priority, verified_by, approval     of the requirement; origin: its sources,
-                    approval: open | approved | suspect
+                    approval: open | approved | approved without fingerprint | suspect
+    approved_by     who has approved the requirement, each with the date: `Kim 2026-11-29; Lee 2026-12-01`
 
 A text that a spreadsheet would take for a formula (`-> Work`, `=1+1`) gets an apostrophe prefix, as OWASP advises ("CSV
 Injection"); programs that need the exact texts read the JSON.
@@ -113,6 +114,7 @@ def _requirement(requirement: RequirementRow, characteristic: str) -> dict[str, 
         "priority": requirement.priority,
         "verified_by": ", ".join(f"{way.method} {way.id}".rstrip() for way in requirement.verification),
         "approval": requirement.state,
+        "approved_by": "; ".join(f"{each.by} {each.on}" for each in requirement.approvals),
         "defined": requirement.at.path,
         "defined_line": requirement.at.line,
     }
@@ -131,4 +133,5 @@ COLUMNS: Final = (
     *("attached_by", "source", "line", "defined", "defined_line", "verdict", "result", "build"),
     *("hazard", "severity", "external", "refines", "mitigates", "origin", "priority", "verified_by", "approval"),
     "suspect",
+    "approved_by",
 )

@@ -6,7 +6,17 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from btq_lang.render.gfm import code, escaped, table
 from btq_lang.trace.overview import ExternalRow, HazardRow, Overview, RequirementRow
-from btq_lang.trace.wording import GAPS, NO_LABEL, chain_rows, evidence_lines, remarks, shown_quality, state_of, summary
+from btq_lang.trace.wording import (
+    GAPS,
+    NO_LABEL,
+    approval_lines,
+    chain_rows,
+    evidence_lines,
+    remarks,
+    shown_quality,
+    state_of,
+    summary,
+)
 
 
 def render(overview: Overview) -> str:
@@ -66,7 +76,7 @@ def _requirement(requirement: RequirementRow, has_evidence: bool, names: Mapping
     cell += [code(clause) for clause in requirement.clauses]
     refining = ", ".join(escaped(names[key]) for key in requirement.refined_by)
     cell += [f"refined by {refining}"] if refining else []
-    cell += ["approval outdated"] if requirement.state == "suspect" else []
+    cell += map(escaped, approval_lines(requirement))
     subjects = [
         ", ".join((_node(use.subject + use.arguments, use.at), *remarks(requirement, use))) for use in requirement.uses
     ]

@@ -20,6 +20,8 @@ from btq_lang.trace.verdicts import verdicts
 from btq_lang.trace.wording import (
     GAPS,
     NO_LABEL,
+    OUTDATED,
+    approval_lines,
     chain_rows,
     evidence_lines,
     incomplete,
@@ -114,7 +116,7 @@ def _requirement(row: RequirementRow, characteristics: Sequence[str]) -> PageDat
         "ways": [*dict.fromkeys(ways), *loose] if ways else [],
         "evidence": list(evidence_lines(row)),
         "further_qualities": list(zip(row.further_quality_keys, row.further_qualities, strict=True)),
-        "is_suspect": row.state == "suspect",
+        "approvals": [(line, line == OUTDATED) for line in approval_lines(row)],
     }
 
 

@@ -95,4 +95,5 @@ NO_VERDICT: Final = "without verdict"
 NOT_APPROVED: Final = "not approved"
 # How a requirement is covered, its verdict, and its approval; `open` is the verdict on what people verify.
 # What has changed since it was judged is suspect, too.
-STATES: Final = (*WAYS, "not attached", *WORST_FIRST, NO_VERDICT, "approved", "suspect", NOT_APPROVED)
+_APPROVALS: Final = ("approved", "approved without fingerprint", "suspect", NOT_APPROVED)
+STATES: Final = (*WAYS, "not attached", *WORST_FIRST, NO_VERDICT, *_APPROVALS)

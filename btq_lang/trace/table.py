@@ -14,7 +14,17 @@ from btq_lang.evidence.table import VERDICT_STYLES
 from btq_lang.render.cells import broken, cells_of, cut, narrowed, printable
 from btq_lang.render.colour import Paint, painter
 from btq_lang.trace.overview import At, ExternalRow, HazardRow, Overview, RequirementRow
-from btq_lang.trace.wording import GAPS, NO_LABEL, chain_rows, evidence_lines, remarks, shown_quality, state_of, summary
+from btq_lang.trace.wording import (
+    GAPS,
+    NO_LABEL,
+    approval_lines,
+    chain_rows,
+    evidence_lines,
+    remarks,
+    shown_quality,
+    state_of,
+    summary,
+)
 
 
 def render(overview: Overview, colour: bool = False, width: int = 120) -> str:
@@ -116,7 +126,7 @@ def _requirement(requirement: RequirementRow, folder: str, names: Mapping[str, s
     lines += [f"for {qualities}"] if qualities else []
     refining = ", ".join(names[key] for key in requirement.refined_by)
     lines += [f"refined by {refining}"] if refining else []
-    lines += ["approval outdated"] if requirement.state == "suspect" else []
+    lines += approval_lines(requirement)
     lines[1:] = [f"  {line}" for line in lines[1:]]
     return lines, subjects or ("nothing",), (*requirement.way.split(", "), *requirement.whys)
 

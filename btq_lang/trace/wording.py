@@ -96,6 +96,14 @@ def chain_rows(overview: Overview) -> Iterator[tuple[HazardRow | ExternalRow, li
         yield external, remarks, [rows[key] for key in external.requirements]
 
 
+def approval_lines(requirement: RequirementRow) -> Iterator[str]:
+    """Who has approved a requirement and when, and whether that is outdated."""
+    for approval in requirement.approvals:
+        yield f"approved by {approval.by} on {approval.on}{'' if approval.of else ', without a fingerprint'}"
+    if requirement.state == "suspect":
+        yield OUTDATED
+
+
 def state_of(requirement: RequirementRow) -> str:
     """How a requirement is covered, the tests, reports and reviews that it names, its verdict, and whether its approval
     is outdated.
@@ -103,7 +111,7 @@ def state_of(requirement: RequirementRow) -> str:
     named = ", ".join(f'{way.method} "{way.id}"' for way in requirement.verification if way.id)
     is_old = any(clause.is_suspect for clause in requirement.evidence)
     verdict = f"{requirement.verdict} (suspect)" if is_old else requirement.verdict
-    parts = (requirement.way, named, verdict, "approval outdated" if requirement.state == "suspect" else "")
+    parts = (requirement.way, named, verdict, OUTDATED if requirement.state == "suspect" else "")
     return "; ".join(part for part in parts if part)
 
 
@@ -119,4 +127,5 @@ GAPS: Final = {
     "bare_nodes": "Custom leaf nodes without any quality",
 }
 NO_LABEL: Final = "(none)"
+OUTDATED: Final = "approval outdated"
 _ATTACHED: Final = {"apply": "by apply", "link": "a link only"}

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 
 from btq_lang.trace import write
 from btq_lang.trace.collect import collect
 from btq_lang.trace.overview import Overview
+from btq_lang.trace.selection import Selection, selected
 from btq_lang.workspace.workspace import Workspace
 
 MISSION = """\
@@ -74,6 +77,23 @@ def test_requirements_and_hazards_in_json() -> None:
     }
     assert (top["state"], top["priority"], top["verified_by"]) == ("open", None, [])
     assert slow["further_qualities"] == [{"name": "reliability.availability", "key": "q2"}]
+
+
+def test_who_has_approved_a_requirement_and_when() -> None:
+    one, two = "approved by Kim on 2026-11-29", "approved by Lee on 2026-11-30, without a fingerprint"
+    in_cells = [line.partition("   ")[0].strip() for line in write(overview(), "table").splitlines()]
+    assert in_cells[in_cells.index(one) :][:3] == [one, two, "approval outdated"]
+    assert f"<br>{one}<br>{two}<br>approval outdated |" in write(overview(), "markdown")
+    assert f'<p>{one}</p><p>{two}</p><p class="missing">approval outdated</p>' in write(overview(), "html")
+    rows = [row for row in csv.DictReader(io.StringIO(write(overview(), "csv"))) if row["requirement"] == "slow"]
+    assert {(row["approval"], row["approved_by"]) for row in rows} == {("suspect", "Kim 2026-11-29; Lee 2026-11-30")}
+
+
+def test_an_approval_without_a_fingerprint_is_a_state_of_its_own() -> None:
+    text = MISSION.replace('    approved by "Kim" on "2026-11-29" of "1:0123456789ab"\n', "")
+    assert overview(text).requirements[1].state == "approved without fingerprint"
+    part = selected(overview(text), Selection(states=["approved without fingerprint"]))
+    assert [row.name for row in part.requirements] == ["slow"]
 
 
 def test_clauses_as_typed() -> None:

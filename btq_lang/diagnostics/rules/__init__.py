@@ -156,7 +156,9 @@ _TABLE: tuple[str | Rule, ...] = (  # a string is the subject of the rules below
     Rule("unknown-hazard", _E, "a reference to a hazard that is not declared"),
     Rule("cyclic-refinement", _E, "a requirement that refines itself"),
     Rule("approval-outdated", _W, "an approval of a requirement that means something else now"),
-    Rule("approval-missing", _W, "a requirement that nobody has approved, in a project that requires it"),
+    Rule(
+        "approval-missing", _W, "a requirement without an approval that changes outdate, in a project that requires it"
+    ),
     Rule("unused-requirement", _W, "a requirement without any reference"),
     Rule("named-twice", _H, "a requirement, a quality or a tag that one node has twice"),
     Rule("empty-text", _W, "an empty name"),
