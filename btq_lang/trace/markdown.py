@@ -58,7 +58,7 @@ def _lines(overview: Overview) -> Iterator[str]:
     yield from _gaps(overview)
     yield from ("", f"### Totals, ISO/IEC 25010:{overview.edition}", "")
     totals = [(escaped(each.name), *map(str, each.numbers)) for each in overview.totals]
-    yield from table(("Characteristic", "Concerns", "Requirements", "Enforced", "Monitored", "Reviewed"), totals, 1)
+    yield from table(("Characteristic", "Concerns", "Requirements", "Enforced", "Monitored", "By people"), totals, 1)
 
 
 def _end(row: HazardRow | ExternalRow, remarks: Sequence[str]) -> str:
@@ -80,7 +80,7 @@ def _requirement(requirement: RequirementRow, has_evidence: bool, names: Mapping
     subjects = [
         ", ".join((_node(use.subject + use.arguments, use.at), *remarks(requirement, use))) for use in requirement.uses
     ]
-    how = "<br>".join((requirement.way, *requirement.whys))
+    how = "<br>".join((*map(escaped, [", ".join(requirement.ways_in_words)]), *requirement.whys))
     evidence = "<br>".join(f"**{verdict}** {escaped(text)}" for verdict, text in evidence_lines(requirement)) or "none"
     return (
         "<br>".join(cell),

@@ -107,7 +107,8 @@ def _chain_row(
 
 
 def _requirement(row: RequirementRow, characteristics: Sequence[str]) -> PageData:
-    ways = [(clause.way, clause.way, clause.why) for use in row.uses for clause in use.clauses]
+    clauses = [clause for use in row.uses for clause in use.clauses]
+    ways = [(each.way, row.in_words(each.way), "" if each.is_by_people else each.why) for each in clauses]
     loose = [("none", "not attached", f"`{clause}` applies to no node") for clause in row.loose]
     return {
         "row": row,

@@ -69,7 +69,7 @@ def _is_asked_for(row: RequirementRow, selection: Selection, names: dict[str, Se
     own = {name for key in (row.quality_key, *row.further_quality_keys) if key is not None for name in names[key]}
     if selection.qualities and own.isdisjoint(selection.qualities):
         return False
-    states = {*row.way.split(", "), row.verdict, "" if row.is_judged else NO_VERDICT}
+    states = {*row.ways, row.verdict, "" if row.is_judged else NO_VERDICT}
     states |= {row.state if row.state != "open" else NOT_APPROVED, "suspect" if row.is_suspect else ""}
     return not selection.states or not states.isdisjoint(selection.states)
 

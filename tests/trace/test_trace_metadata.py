@@ -6,6 +6,8 @@ import csv
 import io
 import json
 
+import pytest
+
 from btq_lang.trace import write
 from btq_lang.trace.collect import collect
 from btq_lang.trace.overview import Overview
@@ -118,6 +120,20 @@ def test_a_requirement_counts_for_each_of_its_qualities_and_once_in_all() -> Non
     assert "2 requirements (1 clause: 1 monitored)" in write(document, "table")
 
 
+@pytest.mark.parametrize(
+    ("written", "words"),
+    [('test "TC-12"', "by test TC-12"), ("analysis", "by analysis"), ("review", "by review"), ("test", "by test")],
+)
+def test_nothing_is_called_reviewed_that_a_test_shows(written: str, words: str) -> None:
+    table = overview(MISSION.replace('test "TC-12", monitor', written))
+    assert f"mission, main.btq:8  {words}\n" in write(table, "table")
+    assert f" | {words} | main.btq:7 |" in write(table, "markdown")
+    assert f'<span class="way reviewed">{words}</span></li>' in write(table, "html")
+    rows = csv.DictReader(io.StringIO(write(table, "csv")))
+    assert [row["how"] for row in rows if row["kind"] == "requirement"] == [words]
+    assert "2 requirements (1 clause: 1 by people)" in write(table, "table")
+
+
 def test_one_way_by_a_tool_is_enough_to_monitor() -> None:
     ways = {
         'test "TC-12", monitor': "monitored",
@@ -129,4 +145,5 @@ def test_one_way_by_a_tool_is_enough_to_monitor() -> None:
         row = overview(MISSION.replace('test "TC-12", monitor', written)).requirements[1]
         assert (written, row.way) == (written, way)
     row = overview(MISSION.replace(", monitor", ', review "R-3"')).requirements[1]
+    assert row.ways_in_words == ("by test TC-12 and review R-3",)
     assert row.uses[0].clauses[0].why == 'verified by test "TC-12", review "R-3"'
