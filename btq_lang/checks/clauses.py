@@ -8,6 +8,7 @@ from collections.abc import Iterator
 
 from btq_lang.catalog.verbs import POOLED
 from btq_lang.checks import lookups
+from btq_lang.checks.bounds import is_rate_meant
 from btq_lang.checks.qualifiers import SPLIT, is_beside_one
 from btq_lang.checks.view import View, quality_named
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, Tag, replace_fix
@@ -49,7 +50,7 @@ def clause_without_odds(view: View) -> Iterator[Diagnostic]:
     for _, requirement in view.requirements:
         if any(isinstance(clause, syntax.Odds) and not clause.is_of_time for clause in requirement.clauses):
             continue
-        if any(map(_is_of_all_runs, requirement.clauses)):
+        if any(_is_of_all_runs(view, clause) for clause in requirement.clauses):
             continue  # a confidence counts there, too
         if view.is_torn(requirement.start, requirement.end):
             continue  # the odds may be on a line that could not be read
@@ -95,9 +96,11 @@ def unused_parameter(view: View) -> Iterator[Diagnostic]:
                 yield Diagnostic("unused-parameter", parameter.name.span, message, tags=(Tag.UNNECESSARY,))
 
 
-def _is_of_all_runs(clause: syntax.Clause) -> bool:
+def _is_of_all_runs(view: View, clause: syntax.Clause) -> bool:
     """Whether all runs are judged together because of a clause."""
-    return isinstance(clause, syntax.Average) or (isinstance(clause, syntax.Claim) and clause.row in POOLED)
+    if isinstance(clause, syntax.Claim):
+        return clause.row in POOLED or is_rate_meant(view, clause)
+    return isinstance(clause, syntax.Average)
 
 
 def _kind(clause: syntax.Clause) -> object:
