@@ -1,7 +1,7 @@
 """Whether a requirement is approved as it is now.
 
-One invariant: of each person the last approval counts, and one without a fingerprint, which nothing outdates, is told
-apart.
+One invariant: of each person the last approval counts; one without a fingerprint, which nothing outdates, is a state of
+its own.
 """
 
 from __future__ import annotations

@@ -211,7 +211,7 @@ def _per(reader: Reader, claim: syntax.Claim) -> model.NodeTarget | model.Quanti
     written = claim.per
     if isinstance(written, syntax.Path):
         if (unit := rate_unit(claim)) and not reader.find((unit,)):
-            message = f"`{unit}` is no node, and a failure rate is per a time: `per 1 {unit}`"
+            message = f"there is no node `{unit}`; a failure rate is per a time: `per 1 {unit}`"
             fix = replace_fix(f"Write `per 1 {unit}`", written.span, f"1 {unit}", safe=True)
             reader.complain("unmatched-path", written.span, message, fixes=(fix,))
             return None
