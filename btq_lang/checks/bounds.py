@@ -106,6 +106,9 @@ def _count(
     what, is_rate = _NAMES.get(claim.row, "starts"), claim.row == "runs"
     has_scope = any(isinstance(clause, syntax.ScopeClause) for clause in requirement.clauses)
     notes: tuple[str, ...] = ()
+    if claim.row == "starts per" and number == 0 and not is_lower and not has_scope:
+        yield _never_starts(claim, amount)
+        return
     if number < 0 or number != int(number):
         message = f"expected a whole number of {what}, found `{_shown(amount)}`"
         if is_rate and number > 0:
@@ -123,6 +126,17 @@ def _count(
     if amount.word.kind == NUMBER and not amount.negative and not is_rate and not is_looser:
         fixes = (write_fix(str(whole), amount.word.span),)
     yield Diagnostic("impossible-bound", amount.word.span, message, notes=notes, fixes=fixes)
+
+
+def _never_starts(claim: syntax.Claim, amount: syntax.Amount) -> Diagnostic:
+    """The finding for `X starts at most 0 per run`, which only runs without X keep."""
+    subject = claim.subject
+    name = _path_text(subject) if isinstance(subject, syntax.Path) else "X"
+    of_run = isinstance(claim.per, syntax.Word) and isinstance(subject, syntax.Path)
+    instead = f"mission never node {name}"
+    fixes = (write_fix(instead, Span(claim.start, claim.end)),) if of_run else ()
+    message = f"no start at all is demanded, which is written `{instead}`"
+    return Diagnostic("impossible-bound", amount.word.span, message, fixes=fixes)
 
 
 def is_rate_meant(view: View, claim: syntax.Claim) -> bool:

@@ -157,6 +157,8 @@ def situation(cursor: Cursor, first: Word | None) -> bool:
     """Report `unless humans_near`, with the condition that is written there."""
     if first is None or first.kind != NAME or first.raw not in ("unless", "if") or cursor.kind == NEWLINE:
         return False
+    if "then" in cursor.raws and report_slip(cursor):
+        return True
     end = next_head(cursor)
     if end == cursor.index:
         return False
