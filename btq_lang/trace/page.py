@@ -114,6 +114,7 @@ def _requirement(row: RequirementRow, characteristics: Sequence[str]) -> PageDat
         "row": row,
         "characteristics": " ".join(characteristics),
         "uses": [(use, next(iter(use.nodes), ""), ", ".join(remarks(row, use))) for use in row.uses],
+        "how": ", ".join(row.ways_in_words),
         "ways": [*dict.fromkeys(ways), *loose] if ways else [],
         "evidence": list(evidence_lines(row)),
         "further_qualities": list(zip(row.further_quality_keys, row.further_qualities, strict=True)),
