@@ -15,6 +15,7 @@ from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix, shifted
 from btq_lang.grammar.attributes import parse_pairs
 from btq_lang.grammar.claim_mistakes import report_slip
 from btq_lang.grammar.claim_words import VERB_WORDS
+from btq_lang.grammar.clause_slips import OF_MISSION
 from btq_lang.grammar.conditions import HEADS, METADATA_HEADS
 from btq_lang.grammar.cursor import Cursor
 from btq_lang.grammar.hazards import parse_hazard
@@ -267,7 +268,7 @@ def item_word(cursor: Cursor) -> str:
     meant = item_word_meant(cursor.raw)
     following = cursor.kinds[cursor.index + 1]
     other = _OTHER_ITEMS.get(cursor.raw.lower())
-    if other is not None and following in (NAME, STRING) and cursor.raws[cursor.index + 1] not in VERB_WORDS:
+    if other is not None and following in (NAME, STRING) and cursor.raws[cursor.index + 1] not in _NO_NAMES:
         cursor.complain(
             cursor.here(), f"unknown word `{cursor.raw}`; did you mean `{other}`?", other_item(cursor, other)
         )
@@ -318,6 +319,10 @@ def skipped(cursor: Cursor, level: int) -> SkippedLines:
         fixes = (replace_fix("Remove it", span, ""),)
     elif cursor.at_word("from") and "import" in cursor.raws[cursor.index + 2 : cursor.index + 3]:
         notes = ('another file is read with `include "stations.btq"`',)
+    elif cursor.kind == NAME and cursor.raw.lower() in _ASSUMPTIONS:
+        notes = ("what is taken for granted is a clause of the requirement: `assuming visibility >= 1 m`",)
+    elif cursor.at_word("mission") and cursor.raws[cursor.index + 1] in NODE_CLAUSES:
+        notes = (OF_MISSION,)
     elif cursor.kind == NAME and cursor.raw in NODE_CLAUSES:
         notes = ("write it after a node, or indented in the block of a node or BehaviorTree",)
     elif cursor.at_word("expect") or (cursor.at_word("when") and ":" in cursor.raws):
@@ -435,6 +440,8 @@ _OTHER_ITEMS: Final = {  # words of other languages, in lower case
     **dict.fromkeys(("risk", "danger", "threat", "harm"), "hazard"),
     **dict.fromkeys(("test", "testcase", "case", "example", "feature"), "scenario"),
 }
+_NO_NAMES: Final = frozenset((*VERB_WORDS, *NODE_CLAUSES))
+_ASSUMPTIONS: Final = ("assumption", "assumptions", "assume", "assumes", "assuming")
 _PYTHON_HEAD: Final = re.compile(r"([^\W\d]\w*)[ \t]*(?:\([^()\r\n]*\))?[ \t]*:(?=[ \t]*[\r\n])")
 
 

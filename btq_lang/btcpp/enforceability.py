@@ -31,6 +31,7 @@ from btq_lang.workspace.workspace import Workspace
 
 # How a clause is covered: by the tree that `btq build` makes, by tools that read logs, or by people.
 Way: TypeAlias = Literal["enforced", "monitored", "reviewed"]
+WAYS_COUNTED: Final[dict[Way, str]] = {"enforced": "enforced", "monitored": "monitored", "reviewed": "by people"}
 
 
 def way_instead(requirement: ResolvedRequirement) -> tuple[Way, str] | None:

@@ -47,6 +47,7 @@ class ClauseEnforcement(Record):
         why: the reason why the engine does not enforce it, or a note on how it does; mostly empty.
         asked: whether the requirement wants it enforced.
         subject: how the claim names the node: as itself, as its tree, or as the mission.
+        by_people: if it is people who verify it, how: `by test TC-12`.
     """
 
     requirement: str
@@ -57,6 +58,14 @@ class ClauseEnforcement(Record):
     why: str = ""
     asked: bool = False
     subject: str = ""
+    by_people: str = ""
+
+    @property
+    def in_words(self) -> tuple[str, str]:
+        """The way, and the reason if that says more."""
+        if self.way == "reviewed":
+            return self.by_people, ""
+        return "not enforced, monitored" if self.asked and self.way == "monitored" else self.way, self.why
 
 
 class Enforcement(Record):
@@ -188,6 +197,7 @@ class _Plan:
             *(unenforced or ("monitored", "")),
             asked=unenforced is None,
             subject=applied.shown,
+            by_people=requirement.by_people,
         )
         if unenforced is not None:
             return monitored

@@ -182,7 +182,7 @@ event
     or | follows Pick fails or Place fails | any of several | any of several events; a condition comes last
 clause
     while | while humans_near | only while a condition holds | \
-        counts only the time (or the activations) in which the condition holds
+        `keeps`, `never`, `runs`: counts only the time in which it holds; others: activations in which it always holds
     when | when fragile | only when a condition holds | counts only activations at whose start the condition holds
     assuming | assuming visibility >= 1 m | not applicable otherwise | \
         runs, or activations of a node, in which the condition does not hold all along are counted apart

@@ -19,7 +19,7 @@ the next.  Checks do not know what an edit changed, nor how findings are printed
     moving.py, target_changes.py   what another version of the engine or distribution of Nav2 changes
     statuses.py, results.py, unreachable.py, reactive.py, preconditions.py, resets.py   what nodes return, and traps
     nav2_nodes.py, nav2_literals.py, unread.py   nodes of Nav2: what they need and share, poses, goals, error codes
-    requirements.py, clauses.py, bounds.py, qualities.py, prose.py, wording.py   requirements by themselves
+    requirements.py, clauses.py, qualifiers.py, bounds.py, qualities.py, prose.py, wording.py   requirements alone
     chain.py, approvals.py   hazards, and what requirements refine; approvals of an earlier meaning
     demanded.py, demands.py, budgets.py, limits.py, never_counted.py   at their nodes
     signals.py, renewals.py, enforcement.py   likewise, of what the engine is to enforce
@@ -60,6 +60,7 @@ from btq_lang.checks import (
     ports,
     preconditions,
     prose,
+    qualifiers,
     qualities,
     reactive,
     requirements,
@@ -112,6 +113,7 @@ _OF_CLAUSES: tuple[Check, ...] = (
     clauses.duplicate_clause,
     clauses.clause_without_odds,
     clauses.odds_of_what,
+    qualifiers.qualifier_of_all,
     clauses.unused_parameter,
     chain.unknown_hazard,
     chain.cyclic_refinement,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -50,7 +51,7 @@ def _what_changed(view: View, symbol: Symbol) -> str:
 
 
 def approval_missing(view: View) -> Iterator[Diagnostic]:
-    """A requirement without an approval in a project that requires one."""
+    """A requirement without an approval, or with one that nothing outdates, in a project that requires approvals."""
     settings = view.project.requirements
     if settings is None or not settings.requires_approval:
         return
@@ -59,3 +60,15 @@ def approval_missing(view: View) -> Iterator[Diagnostic]:
             message = f"`{symbol.name}` is not approved"
             notes = (f"`btq approve {written(symbol.name)} --by NAME` approves it",)
             yield Diagnostic("approval-missing", symbol.span, message, notes=notes)
+        elif view.defines_here(Kind.REQUIREMENT, symbol.name):
+            yield from _unmarked(view, symbol)
+
+
+def _unmarked(view: View, symbol: Symbol) -> Iterator[Diagnostic]:
+    from btq_lang.requirements.approval import approval_state  # as above
+
+    for approval in view.ask(approval_state, symbol.name).unmarked:
+        message = f"the approval of `{symbol.name}` by {approval.by} has no fingerprint, so no change is noticed"
+        arguments = f"--by {shlex.quote(approval.by)} --date {shlex.quote(approval.on)}"
+        notes = (f"if it is of what is written now, `btq approve {written(symbol.name)} {arguments}` adds it",)
+        yield Diagnostic("approval-missing", approval.place.span, message, notes=notes)

@@ -39,7 +39,7 @@ def impossible_bound(view: View) -> Iterator[Diagnostic]:
                     continue
                 number, what = _value(amount)
                 is_lower = bound.relation in (">=", ">") or (bound.relation == "between" and amount is bound.value)
-                if what == "count" and is_count and not claim.every:
+                if what == "count" and is_count and not claim.every and not is_rate_meant(view, claim):
                     yield from _count(requirement, claim, amount, number, is_lower)
                     continue
                 is_never = what == "time" and operand in _TIMED and (number < 0 or (number == 0 and not is_lower))
@@ -106,10 +106,15 @@ def _count(
     what, is_rate = _NAMES.get(claim.row, "starts"), claim.row == "runs"
     has_scope = any(isinstance(clause, syntax.ScopeClause) for clause in requirement.clauses)
     notes: tuple[str, ...] = ()
+    if claim.row == "starts per" and number == 0 and not is_lower and not has_scope:
+        yield _never_starts(claim, amount)
+        return
     if number < 0 or number != int(number):
         message = f"expected a whole number of {what}, found `{_shown(amount)}`"
         if is_rate and number > 0:
             notes = ("write a whole number and a longer time: `runs at least 1 per 2 s`",)
+        elif claim.row == "fails per" and 0 < number < 1 and not is_lower:
+            notes = ("a failure rate is per a time: `fails at most 1 per 200 h`",)
     elif what == "attempts" and not is_lower and number < 1 and not has_scope:
         message = "a node that starts makes at least one attempt, so only a node that never starts keeps this bound"
         notes = ("the first start counts as well: write `tries at most 1` to allow no second one",)
@@ -117,9 +122,32 @@ def _count(
         return
     fixes: tuple[Fix, ...] = ()
     whole = max(1, ceil(number) if is_lower else floor(number))
-    if amount.word.kind == NUMBER and not amount.negative and not is_rate:
+    is_looser = not is_lower and 0 < number < 1
+    if amount.word.kind == NUMBER and not amount.negative and not is_rate and not is_looser:
         fixes = (write_fix(str(whole), amount.word.span),)
     yield Diagnostic("impossible-bound", amount.word.span, message, notes=notes, fixes=fixes)
+
+
+def _never_starts(claim: syntax.Claim, amount: syntax.Amount) -> Diagnostic:
+    """The finding for `X starts at most 0 per run`, which only runs without X keep."""
+    subject = claim.subject
+    name = _path_text(subject) if isinstance(subject, syntax.Path) else "X"
+    of_run = isinstance(claim.per, syntax.Word) and isinstance(subject, syntax.Path)
+    instead = f"mission never node {name}"
+    fixes = (write_fix(instead, Span(claim.start, claim.end)),) if of_run else ()
+    message = f"no start at all is demanded, which is written `{instead}`"
+    return Diagnostic("impossible-bound", amount.word.span, message, fixes=fixes)
+
+
+def is_rate_meant(view: View, claim: syntax.Claim) -> bool:
+    """Whether a claim is meant as a failure rate, and reported for how it is written: `fails at most 1e-6 per h`."""
+    if not claim.form:
+        return False
+    from btq_lang.requirements.clauses import rate_unit  # few clauses count anything
+    from btq_lang.requirements.nodes import find
+
+    unit = rate_unit(claim)
+    return claim.per is None or (bool(unit) and not view.ask(find, (unit,)))
 
 
 def _shown(amount: syntax.Amount) -> str:

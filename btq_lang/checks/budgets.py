@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import ceil, inf, log
 
+from btq_lang.catalog.units import from_si
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.demanded import Demanded, PlacedDiagnostic, diagnostic_at, seconds, summed
 from btq_lang.diagnostics.model import Related
@@ -13,7 +14,7 @@ from btq_lang.requirements.applied import Applied
 from btq_lang.requirements.budget_parts import Budget, port_seconds
 from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.durations import DurationTerm, Range, together
-from btq_lang.requirements.model import MissionRun, ResolvedClaim, ResolvedRequirement
+from btq_lang.requirements.model import MissionRun, Quantity, ResolvedClaim, ResolvedRequirement
 from btq_lang.workspace.resolved import ResolvedNode
 
 
@@ -83,6 +84,35 @@ def odds_beyond_children(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
         related = tuple(Related(part.place, f"fails in up to {_percent(share)}") for part, share in parts if share)
         notes = ("the failures of several steps add up (the union bound)",) if len(related) > 1 else ()
         yield diagnostic_at(place, "odds-beyond-children", message, related=related, notes=notes)
+
+
+def window_without_hours(requirement: ResolvedRequirement) -> Iterator[PlacedDiagnostic]:
+    """A window of time that is too short to show a failure rate, even without any failure.
+
+    Without a failure in the time t, the mean number in it is at most -ln(1 - c) with confidence c (Garwood, "Fiducial
+    limits for the Poisson distribution", Biometrika 28, 1936; one-sided).
+    """
+    window, confidence = requirement.window, requirement.confidence
+    if window is None or window.seconds is None or confidence is None:
+        return
+    for claim in requirement.claims:
+        most, per = claim.highest, claim.per
+        if claim.verb != "fails per time" or most is None or most[0] <= 0 or not isinstance(per, Quantity):
+            continue
+        needed = -log(1.0 - confidence) / most[0] * per.si
+        if needed <= window.seconds:
+            continue
+        message = (
+            f"`{window.text}` cannot show at most {most[1]} per {per.text} with a confidence of "
+            f"{_percent(confidence)}: this requires {_rounded_up(from_si(needed, per.unit))} {per.unit.symbol} "
+            "without a failure"
+        )
+        related = (Related(claim.place, "failure rate"),)
+        yield diagnostic_at(window.place, "window-too-small", message, related=related)
+
+
+def _rounded_up(number: float) -> str:
+    return str(ceil(number)) if number >= 10 else f"{ceil(number * 100) / 100:g}"
 
 
 def window_too_small(requirement: ResolvedRequirement) -> Iterator[PlacedDiagnostic]:

@@ -8,11 +8,14 @@ from collections.abc import Iterator
 
 from btq_lang.catalog.verbs import POOLED
 from btq_lang.checks import lookups
+from btq_lang.checks.bounds import is_rate_meant
+from btq_lang.checks.qualifiers import SPLIT, is_beside_one
 from btq_lang.checks.view import View, quality_named
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.tokens import QUANTITY
 from btq_lang.util.text import Span
+from btq_lang.workspace.symbols import Symbol
 
 _ONCE: dict[type, str] = {
     syntax.FromUntil: "from when until when it must hold",
@@ -35,9 +38,7 @@ def duplicate_clause(view: View) -> Iterator[Diagnostic]:
             if isinstance(clause, syntax.Odds) and not _is_share(clause):
                 continue  # `succeeds in 45 s`, which the parser reports
             if type(clause) in _ONCE and (counts := first.setdefault(_kind(clause), clause)) is not clause:
-                # If one of several equal definitions lacked it, it would contradict the others.
-                is_alone = not view.ask(lookups.is_repeated, symbol.kind, symbol.name)
-                yield _duplicate(view, counts, clause, is_alone)
+                yield _duplicate(view, symbol, requirement, counts, clause)
 
 
 def _is_share(odds: syntax.Odds) -> bool:
@@ -49,7 +50,7 @@ def clause_without_odds(view: View) -> Iterator[Diagnostic]:
     for _, requirement in view.requirements:
         if any(isinstance(clause, syntax.Odds) and not clause.is_of_time for clause in requirement.clauses):
             continue
-        if any(map(_is_of_all_runs, requirement.clauses)):
+        if any(_is_of_all_runs(view, clause) for clause in requirement.clauses):
             continue  # a confidence counts there, too
         if view.is_torn(requirement.start, requirement.end):
             continue  # the odds may be on a line that could not be read
@@ -95,9 +96,11 @@ def unused_parameter(view: View) -> Iterator[Diagnostic]:
                 yield Diagnostic("unused-parameter", parameter.name.span, message, tags=(Tag.UNNECESSARY,))
 
 
-def _is_of_all_runs(clause: syntax.Clause) -> bool:
+def _is_of_all_runs(view: View, clause: syntax.Clause) -> bool:
     """Whether all runs are judged together because of a clause."""
-    return isinstance(clause, syntax.Average) or (isinstance(clause, syntax.Claim) and clause.row in POOLED)
+    if isinstance(clause, syntax.Claim):
+        return clause.row in POOLED or is_rate_meant(view, clause)
+    return isinstance(clause, syntax.Average)
 
 
 def _kind(clause: syntax.Clause) -> object:
@@ -105,19 +108,26 @@ def _kind(clause: syntax.Clause) -> object:
     return type(clause), isinstance(clause, syntax.Odds) and clause.is_of_time
 
 
-def _duplicate(view: View, counts: syntax.Clause, clause: syntax.Clause, is_alone: bool) -> Diagnostic:
+def _duplicate(
+    view: View, symbol: Symbol, requirement: syntax.Requirement, counts: syntax.Clause, clause: syntax.Clause
+) -> Diagnostic:
     text = view.text
     stated, restated = (" ".join(text[repeated.start : repeated.end].split()) for repeated in (counts, clause))
     removals = [(restated, clause)] if stated == restated else [(restated, clause), (stated, counts)]
     is_of_time = isinstance(clause, syntax.Odds) and clause.is_of_time
     what = "a share of time" if is_of_time else _ONCE[type(clause)]
     message = f"the requirement already states {what}: `{stated}`"
+    # If one of several equal definitions lacked it, it would contradict the others.
+    is_alone = not view.ask(lookups.is_repeated, symbol.kind, symbol.name)
+    is_of_one = stated != restated and any(is_beside_one(text, requirement, each) for each in (counts, clause))
+    notes = (f"each holds for all claims of this requirement; {SPLIT}",) if is_of_one else ()
     fixes = tuple(
         replace_fix(f"Remove `{words}`", with_blanks(text, removed), "", safe=is_alone and stated == restated)
         for words, removed in removals
     )
     related = (Related(Place(Span(counts.start, counts.end)), "this one takes effect"),)
-    return Diagnostic("duplicate-clause", Span(clause.start, clause.end), message, related=related, fixes=fixes)
+    span = Span(clause.start, clause.end)
+    return Diagnostic("duplicate-clause", span, message, related=related, notes=notes, fixes=fixes)
 
 
 def with_blanks(text: str, clause: syntax.Clause | syntax.NodeClause | syntax.Port) -> Span:

@@ -73,6 +73,9 @@ def _diagnostic(
         "nothing stops the robot, and `btq verify` can only check it in the logs afterwards; "
         "remove `on violation`, or write `on violation warn`"
     )
+    if requirement.is_verified_by_people:
+        with_monitor = f"`{requirement.verification.replace('by ', 'by monitor, ', 1)}`"
+        note = f"neither the engine nor `btq verify` checks it; to have both check it, too, write {with_monitor}"
     message = f"the engine cannot enforce {demand}: {why}"
     notes = () if is_bundled or requirement.classic else (note,)
     severity = Severity.HINT if is_bundled else None

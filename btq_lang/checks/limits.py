@@ -10,6 +10,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import Dimension
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.demanded import Demanded, PlacedDiagnostic, diagnostic_at, seconds
+from btq_lang.checks.qualifiers import SPLIT
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Place, Related
 from btq_lang.diagnostics.rules import Severity
@@ -78,15 +79,18 @@ def dead_bound(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
 def outbid_bound(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
     """A bound without effect: the same requirement has a tighter one of the same kind for the same node."""
     kinds: dict[tuple[object, ...], list[tuple[ResolvedClaim, _Limit, Place]]] = {}
+    notes: dict[object, tuple[str, ...]] = {}  # of a requirement
     for applied, claim, node, place in demanded.claims:
         if claim.limit is not None and ResolvedTable in (type(claim.limit.value), type(claim.limit.upper)):
             continue  # each of its values is for another situation
+        if qualifier := _qualifier(applied.requirement):
+            notes[applied.requirement.name] = (f"`{qualifier}` holds for all its claims; {SPLIT}",)
         is_counted = VERBS[claim.verb].operand == "count"
         for limit in [((claim.per,), claim.lowest, claim.highest)] if is_counted else _limits(claim):
             kinds.setdefault((id(node), applied.requirement.name, claim.verb, limit[0]), []).append(
                 (claim, limit, place)
             )
-    for group in kinds.values():
+    for (_, requirement, *_), group in kinds.items():
         lows = [(low[0], low[1], claim, place) for claim, (_, low, _), place in group if low is not None]
         highs = [(high[0], high[1], claim, place) for claim, (_, _, high), place in group if high is not None]
         for word, bounds in (("least", lows), ("most", highs)):
@@ -103,7 +107,13 @@ def outbid_bound(demanded: Demanded) -> Iterator[PlacedDiagnostic]:
                 if tighter.path == bound[3].path and tighter.anchor is bound[3].anchor:
                     tighter = Place(tighter.span)  # without its item, which would be hashed for each of many claims
                 related = (Related(tighter, "tighter bound"),) if tight[3].span != bound[3].span else ()
-                yield diagnostic_at(bound[3], "dead-bound", message, related=related)
+                yield diagnostic_at(bound[3], "dead-bound", message, related, notes.get(requirement, ()))
+
+
+def _qualifier(requirement: ResolvedRequirement) -> str:
+    """A clause that limits or weighs all claims, as typed; empty without one."""
+    qualifiers = (*requirement.scopes, *requirement.assumptions, requirement.span, requirement.odds)
+    return next((qualifier.text for qualifier in qualifiers if qualifier is not None), "")
 
 
 def goal_beyond_bound(view: View, requirement: ResolvedRequirement) -> Iterator[PlacedDiagnostic]:

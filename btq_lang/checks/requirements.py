@@ -25,6 +25,7 @@ from btq_lang.checks.view import (
     quality_named,
 )
 from btq_lang.diagnostics.model import Diagnostic, Related, Tag, replace_fix
+from btq_lang.grammar.clause_slips import OF_MISSION
 from btq_lang.syntax.tree import Claim, Context, OnViolation, Requirement, Signal, Tree, written
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.workspace import inputs
@@ -106,7 +107,9 @@ def unused_requirement(view: View) -> Iterator[Diagnostic]:
     if not view.is_read or view.ask(lookups.names_unknown_requirements):
         return  # its user may be on a line that could not be read, or misspell it
     message = f"unused requirement `{name}`: no `satisfies` or `apply` attaches it to a node"
-    notes = (f"attach it to a node with `satisfies {written(name)}` or `apply`",)
+    is_prose = not any(isinstance(clause, Claim) for clause in requirement.clauses)
+    attach = f"attach it to a node with `satisfies {written(name)}` or `apply`"
+    notes = (attach, OF_MISSION) if is_prose else (attach,)
     yield Diagnostic("unused-requirement", requirement.name.span, message, notes=notes, tags=(Tag.UNNECESSARY,))
 
 

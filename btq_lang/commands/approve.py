@@ -49,14 +49,16 @@ def run(options: ApproveOptions, messages: CommandOutput) -> int:
             path = definition.path
             before, now = texts.get(path, (workspace.files[path].text,) * 2)
             edited, current = _current(workspace.with_file(path, now), path, name)
-            after = with_approval(edited, current, options.by, on)
-            if after is None:
+            result = with_approval(edited, current, options.by, on, keeps_date=options.date is None)
+            if result is None:
                 refused.append(f"{shown(path)}: `{name}` cannot be approved where it is; write its clauses in a block")
                 continue
+            after, replaced = result
             texts[path] = before, after
             fingerprint = edited.store.ask(approval_state, path, name).fingerprint
             state = "was approved already" if after == now else "approved"
-            approved.append(f"{shown(path)}: `{name}` {state} by {options.by}, {fingerprint}")
+            state += f" by {options.by}" + (f" (replaces the approval of {replaced})" if replaced else "")
+            approved.append(f"{shown(path)}: `{name}` {state}, {fingerprint}")
     messages.problems(problems)
     for reason in refused:
         messages.result(reason)

@@ -157,6 +157,8 @@ def situation(cursor: Cursor, first: Word | None) -> bool:
     """Report `unless humans_near`, with the condition that is written there."""
     if first is None or first.kind != NAME or first.raw not in ("unless", "if") or cursor.kind == NEWLINE:
         return False
+    if "then" in cursor.raws and report_slip(cursor):
+        return True
     end = next_head(cursor)
     if end == cursor.index:
         return False
@@ -285,9 +287,26 @@ def text_between(cursor: Cursor, begin: int, end: int) -> str:
     return cursor.text[cursor.starts[begin] : cursor.starts[end - 1] + len(cursor.raws[end - 1])] if begin < end else ""
 
 
+def per_unit(cursor: Cursor) -> None:
+    """Report a rate per a unit of time, `/ h` or the rest of `per h`, and skip what follows."""
+    has_sign = cursor.at("/")
+    start, last = cursor.here().start, cursor.index + has_sign
+    unit = cursor.raws[last]
+    end = cursor.starts[last] + len(unit)
+    blank = cursor.base + cursor.last_end() if has_sign else start
+    time = f" per 1 {unit}" if has_sign else f"1 {unit}"
+    fix = replace_fix(f"Write `per 1 {unit}`", Span(blank, end), time, safe=True)
+    cursor.complain(Span(start, end), f"a failure rate is per a time: `per 1 {unit}`", fix)
+    cursor.recover()
+
+
 def is_time(raw: str) -> bool:
     """Whether a quantity is a time: `30 s`."""
-    unit = parse_unit(raw[number_end(raw, 0) :].strip())
+    return is_unit_of_time(raw[number_end(raw, 0) :].strip())
+
+
+def is_unit_of_time(text: str) -> bool:
+    unit = parse_unit(text)
     return unit is not None and dimension_name(unit) == "time"
 
 

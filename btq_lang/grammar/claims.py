@@ -15,9 +15,11 @@ from btq_lang.grammar.claim_mistakes import (
     choice_in_other_words,
     every_meant,
     is_time,
+    is_unit_of_time,
     no_relation,
     no_verb,
     no_within,
+    per_unit,
     report_slip,
     signal_last,
     verb_in_other_words,
@@ -177,8 +179,13 @@ def parse_period(cursor: Cursor, verb: str, is_optional: bool) -> Path | Word | 
     if cursor.accept_word("per"):
         if cursor.kind == QUANTITY and verb == "fails":
             return cursor.take()
+        if verb == "fails" and cursor.is_word(cursor.index + 1, "of") and is_unit_of_time(cursor.raw):
+            per_unit(cursor)
+            return None
         return cursor.take() if cursor.at_word("run") else parse_path(cursor, "`run`, or a node")
-    if not is_optional and report_slip(cursor):
+    if verb == "fails" and cursor.at("/") and is_unit_of_time(cursor.raws[cursor.index + 1]):
+        per_unit(cursor)
+    elif not is_optional and report_slip(cursor):
         cursor.recover()
     elif not is_optional:
         note = "the number is that of each run, or of each activation of a node"

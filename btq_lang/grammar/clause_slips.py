@@ -59,6 +59,9 @@ def _any(*words: str) -> str:
     return f"(?:{'|'.join(words)})"
 
 
+OF_MISSION: Final = (
+    "what is about the whole mission is satisfied by the root node of its main tree: `-> satisfies calm`"
+)
 _GOES: Final = ("starts?", "runs?", "begins?", "comes?", "happens?", "goes", "executes?")
 _PATH: Final = r"[^\W\d][\w-]*(?:/[^\W\d][\w-]*)*"
 _SEVERAL: Final = r"mission|every +[^\W\d]\w*"
@@ -85,9 +88,7 @@ _TIMES: Final = _any(
 _RATE: Final = _any("runs?", "ticks?", "repeats?", "executes", "is executed", "updates?", "is called")
 _PER: Final = "(?:times )?(?:per|a|each|every) (?:1 ?)?(?P<unit>s|min|h)(?:ec|ecs|econd|econds|ute|utes|our|ours)?"
 _IN_WORDS: Final = _any("during", "for as long as", "as long as", "so long as", "whilst")
-_IF: Final = _any(
-    "whenever", "only when", "only if", "only while", "provided(?: that)?", "given(?: that)?", "where", "for"
-)
+_IF: Final = _any("whenever", "only when", "only if", "only while", "provided(?: that)?", "given(?: that)?", "for")
 _WHENEVER: Final = _any("whenever", "after", "once", "if", "each time", "every time", "when")
 _HAPPENS: Final = ("starts", "succeeds", "fails", "finishes", "halts")
 _NOT: Final = _any("except(?: (?:when|while|if|during))?", "until", "but not (?:when|while|if)")
@@ -96,9 +97,20 @@ _ENDS: Final = "(?:be |is )?(?:finish(?:es|ed)?|ends?|ended|over|terminate[sd]?|
 _STARTS: Final = "(?: (?:starts|runs|begins))?"
 _USES: Final = "SUBJECT(?:uses?|consumes?|drains?|spends?)"
 _SITUATION: Final = "`while` counts the time in which it holds, `when` the activations at whose start it holds"
+_OVER_FOR: Final = (
+    "an event is a moment: let a signal count the time since then, and write `until when clear_time >= 5 s`"
+)
+_FEATURE: Final = (
+    "what only some robots have is not judged without it; a requirement of its own, which `apply` attaches where the "
+    "feature is included, needs no condition"
+)
+_IF_THEN: Final = r"(?:[Ww]hen|[Ii]f) (?P<condition>[^,]+?),? then"
+_COMPARISON: Final = r"[^,]+?(?:[<>]=?|[=!]=)[^,]+?"
+_ANSWER: Final = rf"{_COMPARISON}|{_PATH} {_any('starts', 'succeeds', 'fails', 'finishes', 'halts')}"
 _FAILURE: Final = "`succeeds within` is violated by a failure too, `takes at most` is not"
 _SIGNAL: Final = "a name alone is a signal or context: `signal latency : s from {latency}`"
 _USED: Final = "a signal whose use is limited is a `counter` or a `level`: `signal energy : Wh from {energy} counter`"
+_BEFORE: Final = "what happens before an event is the time from one event to another"
 _AT_THE_OTHER: Final = "`follows` goes to the node that runs second, with the event that it waits for"
 # Patterns, in which a word in capitals is a piece of above; what is written instead; a note.
 _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
@@ -175,6 +187,12 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
         ("{subject}succeeds in at least {share} of activations", "{subject}succeeds in at least {share} of runs"),
         "",
     ),
+    (
+        "SUBJECT(?:is )?available (?:in )?(?:>=|at least) SHARE(?: of (?:the )?time)?",
+        ("{subject}keeps <signal> in at least {share} of time",),
+        "the signal is true while it is available, and the share is that of each run",
+    ),
+    ("SUBJECTsatisfies OTHER", (), f"`satisfies` goes after a node in its tree; {OF_MISSION}"),
     # of which activations
     (
         f"(?:(?:sliding |moving )?window|over|for|in|within|across|during|history)(?: size)?(?: *[:=])?{_LATEST} COUNT",
@@ -197,9 +215,33 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
         )
         for within, deadline in ((" (?:within|in) TIME", " within {time}"), ("", ""))
     ),
+    # what holds, or happens, in a situation
+    (
+        rf"[Ww]hen(?:ever)? (?P<condition>[^,]+?),? (?:then )?(?:the )?[^\W\d]\w* {_MODAL} [^,]+? (?:within|in) TIME",
+        ("each when {condition} is followed by <answer> within {time}",),
+        "after `by` an event, as `Stop succeeds`, or a condition, as `speed <= 0.01 m/s`, then `within` and the time",
+    ),
+    (
+        f"{_IF_THEN} (?P<answer>{_ANSWER}) within TIME",
+        ("each when {condition} is followed by {answer} within {time}",),
+        "",
+    ),
+    (
+        rf"{_IF_THEN} (?P<answer>{_COMPARISON})",
+        ("keeps {answer} while {condition}", "each when {condition} is followed by {answer}"),
+        "the first holds all the while, the second at some moment after each time",
+    ),
+    (f"{_IF_THEN} (?P<answer>{_ANSWER})", ("each when {condition} is followed by {answer}",), ""),
+    (
+        rf"{_IF_THEN} (?P<answer>{_any(*VERBS)}\b.+?)",
+        ("{answer} while {condition}", "{answer} when {condition}"),
+        _SITUATION,
+    ),
     # in which situation
+    ("from .+? until when .+? for TIME", (), _OVER_FOR),
     ("for (?:BOUND)?TIME", (), "only `never` says how long a condition may hold: `never low for more than 30 s`"),
     (f"{_IN_WORDS} CONDITION", ("while {condition}",), ""),
+    ("where CONDITION", ("assuming {condition}", "while {condition}"), _FEATURE),
     (f"{_IF} CONDITION", ("while {condition}", "when {condition}"), _SITUATION),
     ("until OTHER EVENT", ("from mission starts until {other} {event}",), "`from` begins with an event, too"),
     (rf"{_NOT} (?!\d)CONDITION", ("while not {condition}",), ""),
@@ -209,6 +251,21 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
         "",
     ),
     # in which order
+    (
+        f"SUBJECT(?:{_any(*_GOES)} )?not (?:{_any(*_GOES)} )?before OTHER EVENT",
+        ("{subject}follows {other} {event}",),
+        "",
+    ),
+    (
+        "SUBJECTstarts within TIME before OTHER EVENT",
+        ("from {node} starts to {other} {event} takes at most {time}",),
+        _BEFORE,
+    ),
+    (
+        "SUBJECTends within TIME before OTHER EVENT",
+        ("from {node} finishes to {other} {event} takes at most {time}",),
+        _BEFORE,
+    ),
     (
         f"SUBJECT(?P<event>starts|succeeds|fails) (?:only )?before OTHER{_STARTS}",
         ("{other} follows {node} {event}",),

@@ -455,11 +455,14 @@ _NOT_IN_BTQ: Final = {
     ),
     **dict.fromkeys(("reference", "ref", "standard", "origin", "url", "link"), _SOURCE),
     **dict.fromkeys(("criticality", "importance", "prio"), "`priority` with a word"),
+    **dict.fromkeys(
+        ("integrity", "sil", "asil", "dal"), "`priority` with a word, or `source` with the clause that asks for it"
+    ),
     **dict.fromkeys(("risk", "risks", "hazards", "prevents", "avoids"), "`mitigates` with the ID of a hazard"),
     **dict.fromkeys(("parent", "parents", "derives", "derived"), "`refines` with the ID of a requirement"),
     **dict.fromkeys(("approval", "approver", "signed"), "`approved by`, which `btq approve` writes"),
     **dict.fromkeys(("wish", "desire", "target", "ideal", "optional"), "`goal`, a better bound than the required one"),
     **dict.fromkeys(("verification", "verify", "validation"), "`verified by` with a method"),
     **dict.fromkeys(("precondition", "context"), "`while` or `when` with a condition"),
-    **dict.fromkeys(("assumption", "assume", "assumes"), "`assuming` with a condition"),
+    **dict.fromkeys(("assumption", "assumptions", "assume", "assumes"), "`assuming` with a condition"),
 }

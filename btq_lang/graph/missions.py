@@ -160,7 +160,8 @@ def requirement_note(key: str, applied: Applied, measured: tuple[MeasuredClause,
     name, clauses = f"{requirement.name}{applied.argument_list}", clauses_in_words(applied)
     title = " ".join((requirement.title or "").split())
     lines = (title, *clauses) if measured and title and title not in clauses else clauses
-    text = "; ".join((name, *lines, *(each.text for each in measured), *([state] if state else [])))
+    in_words = applied.requirement.by_people if state == "reviewed" else state
+    text = "; ".join((name, *lines, *(each.text for each in measured), *([in_words] if state else [])))
     return Note("requirement", key, name, lines, text, state, measured=measured)
 
 

@@ -19,15 +19,16 @@ _MOST_NODES = 4
 
 
 def enforcement_lines(workspace: Workspace, path: str, definition: Definition, *, is_attached: bool) -> str:
-    """A line for each clause: enforced, monitored or reviewed, with the node if that differs between nodes, and why;
+    """A line for each clause: enforced, monitored or by people, with the node if that differs between nodes, and why;
     empty if the requirement applies to nothing.  If the file `path` is a part of missions, some of those are planned.
     """
     item = definition.symbol.target
     assert isinstance(item, Requirement), "a requirement's symbol defines one"
     ways: dict[str, dict[tuple[str, str], dict[str, None]]] = {}
     resolved, _ = workspace.store.ask(requirement, definition.path, definition.symbol.name)
-    outcome = way_instead(resolved) if resolved is not None and not resolved.classic else None
-    if outcome is not None:  # and for a large mission that takes long
+    way = way_instead(resolved) if resolved is not None and not resolved.classic else None
+    if resolved is not None and way is not None:  # and for a large mission a plan takes long
+        outcome = (resolved.by_people, "") if way[0] == "reviewed" else way
         file = workspace.files[definition.path]
         for claim in item.clauses:
             if isinstance(claim, Claim) and (is_attached or claim.subject is not None):
@@ -36,7 +37,7 @@ def enforcement_lines(workspace: Workspace, path: str, definition: Definition, *
     for mission in _missions(workspace, path, definition):
         for enforcement in workspace.store.ask(_plan, mission):
             if (enforcement.requirement, enforcement.place.path) == (definition.symbol.name, definition.path):
-                nodes = ways.setdefault(enforcement.clause, {}).setdefault((_way(enforcement), enforcement.why), {})
+                nodes = ways.setdefault(enforcement.clause, {}).setdefault(enforcement.in_words, {})
                 if enforcement.subject:
                     nodes[enforcement.subject] = None
     return _lines(ways)
@@ -60,10 +61,6 @@ def missions_of(workspace: Workspace, path: str) -> tuple[str, ...]:
 def _plan(store: Store[Workspace], mission: str) -> tuple[ClauseEnforcement, ...]:
     workspace = store.ask(everything, mission)
     return tuple([each for clauses in clause_enforcements(workspace, mission) for each in clauses])
-
-
-def _way(clause: ClauseEnforcement) -> str:
-    return "not enforced, monitored" if clause.asked and clause.way == "monitored" else clause.way
 
 
 def _lines(ways: dict[str, dict[tuple[str, str], dict[str, None]]]) -> str:

@@ -10,6 +10,7 @@ import os
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import Final
 
+from btq_lang.btcpp.enforceability import WAYS_COUNTED
 from btq_lang.btcpp.enforcement import ClauseEnforcement, Enforcement
 from btq_lang.btcpp.export import Export, is_mission
 from btq_lang.btcpp.marks import is_generated
@@ -230,9 +231,9 @@ def _add_clauses(
         if not is_verbose and (not clause.asked or (clause.way == "enforced" and not clause.why)):
             continue
         where = f" at {clause.subject}" if clause.subject else ""
-        way = "not enforced, monitored" if clause.asked and clause.way == "monitored" else clause.way
-        why = f": {clause.why}" if clause.why else ""
-        remark = Remark(*_absolute(clause.place, groups), f"{clause.requirement}, `{clause.clause}`{where}{why}")
+        way, why = clause.in_words
+        because = f": {why}" if why else ""
+        remark = Remark(*_absolute(clause.place, groups), f"{clause.requirement}, `{clause.clause}`{where}{because}")
         _add_remarks((remark,), way, groups, messages)
     with_nodes = {
         (clause.requirement, clause.clause, clause.place.path, clause.place.span) for clause in clauses.values()
@@ -246,7 +247,7 @@ def _add_clauses(
     _add_remarks(loose.values(), "not checked", groups, messages)
     if clauses:
         ways = [clause.way for clause in clauses.values()]
-        counted = [f"{ways.count(way)} {way}" for way in ("enforced", "monitored", "reviewed") if way in ways]
+        counted = [f"{ways.count(way)} {words}" for way, words in WAYS_COUNTED.items() if way in ways]
         counted += [f"{len(loose)} without a node"] if loose else []
         messages.remark(f"clauses of requirements: {', '.join(counted)}")
 

@@ -1,7 +1,7 @@
 """Whether a requirement is approved as it is now.
 
-One invariant: of each person the last approval counts, and one without a fingerprint is for whatever the requirement
-means.
+One invariant: of each person the last approval counts; one without a fingerprint, which nothing outdates, is a state of
+its own.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from btq_lang.workspace.queries import Store, on_circle
 from btq_lang.workspace.workspace import Workspace
 
 # open: not approved; suspect: what it means, or what it refines, has changed since.
-State: TypeAlias = Literal["open", "approved", "suspect"]
+State: TypeAlias = Literal["open", "approved", "approved without fingerprint", "suspect"]
 
 
 class ApprovalState(Record):
@@ -26,7 +26,7 @@ class ApprovalState(Record):
 
     Attributes:
         fingerprint: of what it means now.
-        outdated: the approvals of something else.
+        outdated: the approvals of something else; unmarked: those without a fingerprint, of which that is not known.
         changed: the requirements that it refines and that are suspect.
     """
 
@@ -34,6 +34,7 @@ class ApprovalState(Record):
     fingerprint: str = ""
     outdated: tuple[ResolvedApproval, ...] = ()
     changed: tuple[str, ...] = ()
+    unmarked: tuple[ResolvedApproval, ...] = ()
 
 
 def approval_state(store: Store[Workspace], viewpoint: str, name: str) -> ApprovalState:
@@ -44,7 +45,9 @@ def approval_state(store: Store[Workspace], viewpoint: str, name: str) -> Approv
         return ApprovalState("open", current)
     outdated = _outdated(resolved, current)
     changed = tuple(other for other in resolved.refines if store.ask(is_suspect, viewpoint, other))
-    return ApprovalState("suspect" if outdated or changed else "approved", current, outdated, changed)
+    unmarked = tuple(each for each in _last(resolved) if each.fingerprint is None)
+    state: State = "approved without fingerprint" if unmarked else "approved"
+    return ApprovalState("suspect" if outdated or changed else state, current, outdated, changed, unmarked)
 
 
 @on_circle(False)
@@ -63,8 +66,12 @@ def _fingerprint(store: Store[Workspace], viewpoint: str, resolved: ResolvedRequ
 
 
 def _outdated(resolved: ResolvedRequirement, current: str) -> tuple[ResolvedApproval, ...]:
-    last = {approval.by: approval for approval in resolved.approvals}
-    return tuple(each for each in last.values() if each.fingerprint not in (None, current))
+    return tuple(each for each in _last(resolved) if each.fingerprint not in (None, current))
+
+
+def _last(resolved: ResolvedRequirement) -> list[ResolvedApproval]:
+    """The approvals that count: the last one of each person."""
+    return [*{approval.by: approval for approval in resolved.approvals}.values()]
 
 
 def added_since_approval(store: Store[Workspace], viewpoint: str, name: str) -> str:

@@ -17,14 +17,18 @@ from btq_lang.workspace.file import Definition
 from btq_lang.workspace.workspace import Workspace
 
 
-def with_approval(workspace: Workspace, definition: Definition, by: str, on: str) -> str | None:
-    """The text of a file after one of its requirements was approved as it is; None if it cannot be written.
+def with_approval(
+    workspace: Workspace, definition: Definition, by: str, on: str, *, keeps_date: bool = False
+) -> tuple[str, str] | None:
+    """The text of a file after one of its requirements was approved as it is, and the date of the approval that this
+    replaces, empty without one; None if it cannot be written.
 
-    An earlier approval by the same person is replaced; if that is current, the text stays.
+    The last approval by the same person is replaced; if it is of the same meaning and the same date, the text stays.
 
     Args:
         definition: of the requirement.
         on: the date, as ISO 8601 has it.
+        keeps_date: whether the text stays also with another date.
     """
     path, name = definition.path, definition.symbol.name
     written, text = definition.symbol.target, workspace.files[path].text
@@ -33,17 +37,19 @@ def with_approval(workspace: Workspace, definition: Definition, by: str, on: str
     earlier = [
         clause for clause in written.clauses if isinstance(clause, Approval) and clause.by and clause.by.text == by
     ]
-    if earlier and earlier[-1].of is not None and earlier[-1].of.text == fingerprint:
-        return text
+    last = earlier[-1] if earlier else None
+    replaced = last.on.text if last is not None and last.on is not None else ""
+    if last is not None and last.of is not None and last.of.text == fingerprint and (keeps_date or replaced == on):
+        return text, ""
     clause = f"approved by {quote(by)} on {quote(on)} of {quote(fingerprint)}"
-    if earlier:
-        edits = [Edit(Span(earlier[-1].start, earlier[-1].end).shifted(definition.entry.start), clause)]
+    if last is not None:
+        edits = [Edit(Span(last.start, last.end).shifted(definition.entry.start), clause)]
     else:
         edits = [_in_block(text, definition, written, clause), _in_line(definition, written, clause)]
     for edit in edits:
         changed = apply_edits(text, [edit])
         if _is_approved(workspace.with_file(path, changed), path, name, by, fingerprint):
-            return changed
+            return changed, replaced
     return None
 
 

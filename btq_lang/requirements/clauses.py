@@ -10,9 +10,9 @@ from __future__ import annotations
 from math import inf
 from typing import Final
 
-from btq_lang.catalog.units import Dimension, a_dimension
+from btq_lang.catalog.units import Dimension, a_dimension, parse_unit
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.diagnostics.model import Place
+from btq_lang.diagnostics.model import Place, replace_fix
 from btq_lang.requirements import model, nodes
 from btq_lang.requirements.metadata import metadata_of
 from btq_lang.requirements.pooled import judged_together, on_average
@@ -21,6 +21,7 @@ from btq_lang.requirements.shares import of_time
 from btq_lang.requirements.terms import COUNT, DURATION, PERCENT, SORTS, TIME, Wanted, sort_of
 from btq_lang.requirements.visits import visits_of
 from btq_lang.syntax import tree as syntax
+from btq_lang.syntax.tokens import NAME
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span
 
@@ -160,7 +161,7 @@ def _verb(reader: Reader, written: syntax.Claim) -> model.ResolvedClaim | None:
         if of is None:
             return None
         claim = replace(claim, of=of)
-    per = _per(reader, written.per)
+    per = _per(reader, written)
     if per is None and (written.per is not None or written.form or (operand == "rate" and not written.every)):
         return None
     return claim if per is None else replace(claim, per=per)
@@ -206,11 +207,24 @@ def _limit(reader: Reader, written: syntax.Bound | None, wanted: Wanted) -> mode
     return model.Limit(written.relation, value, upper)  # type: ignore[arg-type]  # the parser's relations
 
 
-def _per(reader: Reader, written: syntax.Path | syntax.Word | None) -> model.NodeTarget | model.Quantity | None:
+def _per(reader: Reader, claim: syntax.Claim) -> model.NodeTarget | model.Quantity | None:
+    written = claim.per
     if isinstance(written, syntax.Path):
+        if (unit := rate_unit(claim)) and not reader.find((unit,)):
+            message = f"there is no node `{unit}`; a failure rate is per a time: `per 1 {unit}`"
+            fix = replace_fix(f"Write `per 1 {unit}`", written.span, f"1 {unit}", safe=True)
+            reader.complain("unmatched-path", written.span, message, fixes=(fix,))
+            return None
         is_run = written.names[-1].text.lower() in _RUN
         return reader.target(written, ("write `per run`",) if is_run else ())
     return reader.quantity(written, DURATION) if written is not None else None
+
+
+def rate_unit(claim: syntax.Claim) -> str:
+    """The unit of time in `fails at most 1 per h`, unless it is the name of a node; else empty."""
+    names = claim.per.names if isinstance(claim.per, syntax.Path) and claim.verb.raw == "fails" else ()
+    unit = parse_unit(names[0].text) if len(names) == 1 and names[0].kind == NAME else None
+    return names[0].text if unit is not None and unit.dimension == TIME else ""
 
 
 _RUN = frozenset(("mission", "run", "execution", "trial", "tree"))

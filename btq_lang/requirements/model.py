@@ -6,7 +6,7 @@ something was written is not known here: places lead back to that.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from operator import itemgetter
 from typing import Final, Literal, TypeAlias
 
@@ -430,6 +430,16 @@ class ResolvedWay(Record):
         return self.method if self.id is None else f'{self.method} "{self.id}"'
 
 
+def by_people(ways: Iterable[tuple[str, str | None]]) -> str:
+    """Ways to verify a requirement in words, without `monitor`: `by test TC-12 and review`; by review if none is named.
+
+    Args:
+        ways: methods, each with the ID of the test case or the report.
+    """
+    words = [f"{method} {id_ or ''}".rstrip() for method, id_ in ways if method != "monitor"]
+    return f"by {' and '.join(words) or 'review'}"
+
+
 class ResolvedApproval(Record):
     """An approval.
 
@@ -495,6 +505,11 @@ class ResolvedRequirement(Record):
         """The way that counts: `monitor` if it is one of several; None if none is given."""
         methods = [way.method for way in self.ways]
         return "monitor" if "monitor" in methods else next(iter(methods), None)
+
+    @property
+    def by_people(self) -> str:
+        """How people verify it, in words: `by test TC-12 and review`."""
+        return by_people((way.method, way.id) for way in self.ways)
 
     @property
     def verification(self) -> str:

@@ -13,6 +13,7 @@ from typing import Final
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix, write_fix
 from btq_lang.diagnostics.rules import Severity
+from btq_lang.grammar.clause_slips import OF_MISSION
 from btq_lang.grammar.items import SELECTORS
 from btq_lang.requirements import nodes
 from btq_lang.requirements.model import NodeTarget, ResolvedParameter
@@ -150,6 +151,7 @@ class PathReader:
             )
             message = f"{self._missing(names, shown)}{did_you_mean(name for _, name in likely)}"
             notes = (_ONE_VERB,) if path.names[0].raw == "and" else notes
+            notes = notes or ((OF_MISSION,) if shown == "mission" else ())
             notes = (SELECTORS,) if shown in ("all", "everything", "everywhere") else notes
             self.complain("unmatched-path", path.span, message, notes=notes, fixes=fixes)
         return None

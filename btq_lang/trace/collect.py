@@ -463,7 +463,7 @@ def _totals(
     totals: list[TotalRow] = []
     for id_ in (*characteristics, None):
         own = [row for row, its_own in zip(rows, by_requirement, strict=True) if id_ in its_own]
-        clauses = [clause for row in own for use in row.uses for clause in use.clauses]
+        clauses = [clause for row in own for use in row.uses for clause in use.clauses if clause.is_measurable]
         concerns = {key for each in quality_rows if each.characteristic == id_ for key in each.concerns}
         if id_ is None and not own and not concerns:
             continue

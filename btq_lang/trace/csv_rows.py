@@ -10,7 +10,7 @@ The columns, which later versions add to but do not change:
     requirement, title, quality, characteristic
     holds_for       the subject, or the node that has the concern, or the node or tree of a gap
     tree the tree of its first node
-    clause, how, why    how: enforced | monitored | reviewed
+    clause, how, why    how: enforced | monitored | by people, as `by test TC-12`
     attached_by     subject | satisfies | apply | link
     source, line    of what attached it, or of the node or tree
     defined, defined_line   where the requirement or the quality is defined or first named
@@ -20,7 +20,8 @@ The columns, which later versions add to but do not change:
     hazard, severity    the hazard that the requirement mitigates; how is then how it is covered, verdict its worst
     external        the ID in another tool of what the requirement refines or mitigates, likewise
     refines, mitigates, origin, priority, verified_by, approval     of the requirement; origin: its sources,
-                    approval: open | approved | suspect
+                    approval: open | approved | approved without fingerprint | suspect
+    approved_by     who has approved the requirement, each with the date: `Kim 2026-11-29; Lee 2026-12-01`
 
 A text that a spreadsheet would take for a formula (`-> Work`, `=1+1`) gets an apostrophe prefix, as OWASP advises ("CSV
 Injection"); programs that need the exact texts read the JSON.
@@ -53,7 +54,7 @@ def _rows(overview: Overview) -> Iterator[dict[str, str | int]]:
             tree = trees[use.nodes[0]] if use.nodes else ""
             applied = {**row, "holds_for": use.subject + use.arguments, "tree": tree, "attached_by": use.how}
             for clause in use.clauses or (None,):
-                yield {"kind": "requirement", **applied, **_clause(clause), **_source(use.at)}
+                yield {"kind": "requirement", **applied, **_clause(requirement, clause), **_source(use.at)}
         for loose in requirement.loose:
             yield {"kind": "clause without node", **row, "clause": loose}
         for evidence in requirement.evidence:
@@ -91,7 +92,7 @@ def _chain(overview: Overview, characteristics: Mapping[str, str]) -> Iterator[d
         own |= {"severity": end.severity} if isinstance(end, HazardRow) else {}
         for requirement in mitigating:
             row = _requirement(requirement, characteristics.get(requirement.quality_key or "", ""))
-            state = {"how": requirement.way, "verdict": requirement.verdict or ""}
+            state = {"how": ", ".join(requirement.ways_in_words), "verdict": requirement.verdict or ""}
             yield {"kind": "hazard" if is_hazard else "external", **row, **own, **state, **_source(end.at)}
         if not mitigating:
             yield {"kind": "hazard without requirement", "title": end.title, **own, **_source(end.at)}
@@ -113,13 +114,16 @@ def _requirement(requirement: RequirementRow, characteristic: str) -> dict[str, 
         "priority": requirement.priority,
         "verified_by": ", ".join(f"{way.method} {way.id}".rstrip() for way in requirement.verification),
         "approval": requirement.state,
+        "approved_by": "; ".join(f"{each.by} {each.on}" for each in requirement.approvals),
         "defined": requirement.at.path,
         "defined_line": requirement.at.line,
     }
 
 
-def _clause(clause: Clause | None) -> dict[str, str | int]:
-    return {"clause": clause.text, "how": clause.way, "why": clause.why} if clause is not None else {}
+def _clause(requirement: RequirementRow, clause: Clause | None) -> dict[str, str | int]:
+    if clause is None:
+        return {}
+    return {"clause": clause.text, "how": requirement.in_words(clause.way), "why": clause.why}
 
 
 def _source(place: At) -> dict[str, str | int]:
@@ -131,4 +135,5 @@ COLUMNS: Final = (
     *("attached_by", "source", "line", "defined", "defined_line", "verdict", "result", "build"),
     *("hazard", "severity", "external", "refines", "mitigates", "origin", "priority", "verified_by", "approval"),
     "suspect",
+    "approved_by",
 )

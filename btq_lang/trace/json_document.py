@@ -10,7 +10,8 @@ The document, format 1; a later btq adds keys but changes none without a new num
                        "priority": NAME | null,
                        "verified_by": [{"method": "monitor" | "analysis" | "test" | "review", "id": TEXT | null}],
                        "approvals": [{"by": TEXT, "on": TEXT, "of": FINGERPRINT | null}],
-                       "state": "open" | "approved" | "suspect", "fingerprint": FINGERPRINT,
+                       "state": "open" | "approved" | "approved without fingerprint" | "suspect",
+                       "fingerprint": FINGERPRINT,
                        "clauses_without_nodes": [TEXT],
                        "evidence": [{"mission": PATH, "clause": TEXT, "path": PATH IN THE ENGINE,
                                      "verdict": "violated" | "unknown" | "undecided" | "satisfied" | "never exercised"

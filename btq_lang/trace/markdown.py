@@ -6,7 +6,17 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from btq_lang.render.gfm import code, escaped, table
 from btq_lang.trace.overview import ExternalRow, HazardRow, Overview, RequirementRow
-from btq_lang.trace.wording import GAPS, NO_LABEL, chain_rows, evidence_lines, remarks, shown_quality, state_of, summary
+from btq_lang.trace.wording import (
+    GAPS,
+    NO_LABEL,
+    approval_lines,
+    chain_rows,
+    evidence_lines,
+    remarks,
+    shown_quality,
+    state_of,
+    summary,
+)
 
 
 def render(overview: Overview) -> str:
@@ -48,7 +58,7 @@ def _lines(overview: Overview) -> Iterator[str]:
     yield from _gaps(overview)
     yield from ("", f"### Totals, ISO/IEC 25010:{overview.edition}", "")
     totals = [(escaped(each.name), *map(str, each.numbers)) for each in overview.totals]
-    yield from table(("Characteristic", "Concerns", "Requirements", "Enforced", "Monitored", "Reviewed"), totals, 1)
+    yield from table(("Characteristic", "Concerns", "Requirements", "Enforced", "Monitored", "By people"), totals, 1)
 
 
 def _end(row: HazardRow | ExternalRow, remarks: Sequence[str]) -> str:
@@ -66,11 +76,11 @@ def _requirement(requirement: RequirementRow, has_evidence: bool, names: Mapping
     cell += [code(clause) for clause in requirement.clauses]
     refining = ", ".join(escaped(names[key]) for key in requirement.refined_by)
     cell += [f"refined by {refining}"] if refining else []
-    cell += ["approval outdated"] if requirement.state == "suspect" else []
+    cell += map(escaped, approval_lines(requirement))
     subjects = [
         ", ".join((_node(use.subject + use.arguments, use.at), *remarks(requirement, use))) for use in requirement.uses
     ]
-    how = "<br>".join((requirement.way, *requirement.whys))
+    how = "<br>".join((*map(escaped, [", ".join(requirement.ways_in_words)]), *requirement.whys))
     evidence = "<br>".join(f"**{verdict}** {escaped(text)}" for verdict, text in evidence_lines(requirement)) or "none"
     return (
         "<br>".join(cell),

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from btq_lang.evidence.verdicts import NEVER, OPEN
 from btq_lang.graph.figure import Figure
+from btq_lang.requirements.model import by_people
 from btq_lang.util.reach import reached
 from btq_lang.util.record import Record
 
@@ -48,12 +49,19 @@ class Clause(Record):
     Attributes:
         why: why it is not covered better; empty if there is nothing to explain.
         is_demanded: the mission demands that the engine enforces it.
+        is_measurable: whether it is one, and not the title of a requirement without any.
     """
 
     text: str
     way: Way
     why: str = ""
     is_demanded: bool = False
+    is_measurable: bool = True
+
+    @property
+    def is_by_people(self) -> bool:
+        """Whether people verify it although it could be measured."""
+        return self.way == "reviewed" and self.is_measurable
 
 
 class AppliedRequirement(Record):
@@ -172,13 +180,25 @@ class RequirementRow(Record):
         return self.verdict not in (None, NEVER, OPEN) or any(way.id for way in self.verification)
 
     @property
-    def way(self) -> str:
-        """How it is covered: one way, or `enforced, monitored` or `enforced, not attached` if clauses differ, or `not
-        attached`.
-        """
+    def ways(self) -> tuple[str, ...]:
+        """How it is covered: one way, or `enforced` and `monitored` or `not attached` if clauses differ, or that."""
         covered = {clause.way for use in self.uses for clause in use.clauses}
         ways: list[str] = [way for way in WAYS if way in covered] or (["linked"] if self.uses else [])
-        return ", ".join(ways if ways and not self.loose else [*ways, "not attached"])
+        return (*ways, *(["not attached"] if self.loose or not ways else []))
+
+    @property
+    def way(self) -> str:
+        """The same in one text, joined by commas."""
+        return ", ".join(self.ways)
+
+    @property
+    def ways_in_words(self) -> tuple[str, ...]:
+        """The same, with how people verify it."""
+        return tuple(map(self.in_words, self.ways))
+
+    def in_words(self, way: str) -> str:
+        """A way in words: what people verify is `by test TC-12`."""
+        return by_people((each.method, each.id) for each in self.verification) if way == "reviewed" else way
 
     @property
     def whys(self) -> tuple[str, ...]:
@@ -277,7 +297,7 @@ class CharacteristicTotals(Record):
 
     Attributes:
         concerns: nodes that satisfice it.
-        enforced, monitored, reviewed: clauses, counted for every subject.
+        enforced, monitored, reviewed: measurable clauses, counted for every subject; reviewed: by people.
     """
 
     id: str

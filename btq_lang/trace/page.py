@@ -20,6 +20,8 @@ from btq_lang.trace.verdicts import verdicts
 from btq_lang.trace.wording import (
     GAPS,
     NO_LABEL,
+    OUTDATED,
+    approval_lines,
     chain_rows,
     evidence_lines,
     incomplete,
@@ -105,16 +107,18 @@ def _chain_row(
 
 
 def _requirement(row: RequirementRow, characteristics: Sequence[str]) -> PageData:
-    ways = [(clause.way, clause.way, clause.why) for use in row.uses for clause in use.clauses]
+    clauses = [clause for use in row.uses for clause in use.clauses]
+    ways = [(each.way, row.in_words(each.way), "" if each.is_by_people else each.why) for each in clauses]
     loose = [("none", "not attached", f"`{clause}` applies to no node") for clause in row.loose]
     return {
         "row": row,
         "characteristics": " ".join(characteristics),
         "uses": [(use, next(iter(use.nodes), ""), ", ".join(remarks(row, use))) for use in row.uses],
+        "how": ", ".join(row.ways_in_words),
         "ways": [*dict.fromkeys(ways), *loose] if ways else [],
         "evidence": list(evidence_lines(row)),
         "further_qualities": list(zip(row.further_quality_keys, row.further_qualities, strict=True)),
-        "is_suspect": row.state == "suspect",
+        "approvals": [(line, line == OUTDATED) for line in approval_lines(row)],
     }
 
 

@@ -69,7 +69,7 @@ def _is_asked_for(row: RequirementRow, selection: Selection, names: dict[str, Se
     own = {name for key in (row.quality_key, *row.further_quality_keys) if key is not None for name in names[key]}
     if selection.qualities and own.isdisjoint(selection.qualities):
         return False
-    states = {*row.way.split(", "), row.verdict, "" if row.is_judged else NO_VERDICT}
+    states = {*row.ways, row.verdict, "" if row.is_judged else NO_VERDICT}
     states |= {row.state if row.state != "open" else NOT_APPROVED, "suspect" if row.is_suspect else ""}
     return not selection.states or not states.isdisjoint(selection.states)
 
@@ -95,4 +95,5 @@ NO_VERDICT: Final = "without verdict"
 NOT_APPROVED: Final = "not approved"
 # How a requirement is covered, its verdict, and its approval; `open` is the verdict on what people verify.
 # What has changed since it was judged is suspect, too.
-STATES: Final = (*WAYS, "not attached", *WORST_FIRST, NO_VERDICT, "approved", "suspect", NOT_APPROVED)
+_APPROVALS: Final = ("approved", "approved without fingerprint", "suspect", NOT_APPROVED)
+STATES: Final = (*WAYS, "not attached", *WORST_FIRST, NO_VERDICT, *_APPROVALS)

@@ -14,7 +14,17 @@ from btq_lang.evidence.table import VERDICT_STYLES
 from btq_lang.render.cells import broken, cells_of, cut, narrowed, printable
 from btq_lang.render.colour import Paint, painter
 from btq_lang.trace.overview import At, ExternalRow, HazardRow, Overview, RequirementRow
-from btq_lang.trace.wording import GAPS, NO_LABEL, chain_rows, evidence_lines, remarks, shown_quality, state_of, summary
+from btq_lang.trace.wording import (
+    GAPS,
+    NO_LABEL,
+    approval_lines,
+    chain_rows,
+    evidence_lines,
+    remarks,
+    shown_quality,
+    state_of,
+    summary,
+)
 
 
 def render(overview: Overview, colour: bool = False, width: int = 120) -> str:
@@ -72,7 +82,7 @@ def _lines(overview: Overview, paint: Paint, width: int) -> Iterator[str]:
             yield paint("warning", GAPS[gap])
             yield from (f"  {cut(printable(line), 0, width - 3)}" for line in lines)
             yield ""
-    heading = [f"ISO/IEC 25010:{overview.edition}", "Concerns", "Requirements", "Enforced", "Monitored", "Reviewed"]
+    heading = [f"ISO/IEC 25010:{overview.edition}", "Concerns", "Requirements", "Enforced", "Monitored", "By people"]
     totals = [((each.name,), *((str(number or "-"),) for number in each.numbers)) for each in overview.totals]
     yield from _table(heading, totals, paint, width, numbers_from=1)
     yield ""
@@ -116,9 +126,9 @@ def _requirement(requirement: RequirementRow, folder: str, names: Mapping[str, s
     lines += [f"for {qualities}"] if qualities else []
     refining = ", ".join(names[key] for key in requirement.refined_by)
     lines += [f"refined by {refining}"] if refining else []
-    lines += ["approval outdated"] if requirement.state == "suspect" else []
+    lines += approval_lines(requirement)
     lines[1:] = [f"  {line}" for line in lines[1:]]
-    return lines, subjects or ("nothing",), (*requirement.way.split(", "), *requirement.whys)
+    return lines, subjects or ("nothing",), (*requirement.ways_in_words, *requirement.whys)
 
 
 def _evidence(requirement: RequirementRow) -> Sequence[str]:
@@ -155,7 +165,9 @@ def _row(cells: Sequence[str], widths: Sequence[int], numbers_from: int, paint: 
     parts = []
     for index, (cell, room) in enumerate(zip(cells, widths, strict=True)):
         blanks = " " * (room - cells_of(cell))
-        shown = paint(_WAYS.get(cell, "message"), cell) if cell in _WAYS or (style and index == 0) else cell
+        by_people = _WAYS["reviewed"] if cell.startswith("by ") else ""
+        own = _WAYS.get(cell, by_people)
+        shown = paint(own or "message", cell) if own or (style and index == 0) else cell
         parts.append(blanks + shown if index >= numbers_from else shown + blanks)
     return (" " * _BETWEEN).join(parts).rstrip()
 

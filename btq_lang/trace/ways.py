@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 def declared_ways(
     workspace: Workspace, path: str, resolved: Requirements, because: str = ""
 ) -> Sequence[Sequence[Clause]]:
-    """Every claim as monitored, or as reviewed if people verify the requirement.
+    """Every claim as monitored, or as reviewed if people verify the requirement, and without claims its title.
 
     Args:
         because: the reason to give for claims that the engine must enforce.
@@ -34,7 +34,8 @@ def declared_ways(
 def _clauses(applied: Applied, because: str) -> tuple[Clause, ...]:
     requirement = applied.requirement
     if not requirement.claims:
-        return tuple(Clause(text, "reviewed", "it is not measurable") for text in clauses_in_words(applied)[:1])
+        titles = clauses_in_words(applied)[:1]
+        return tuple(Clause(text, "reviewed", "it is not measurable", is_measurable=False) for text in titles)
     is_demanded = way_instead(requirement) is None
     not_enforced = because or f"nothing enforces `on violation {requirement.action}`"
     way, why = way_instead(requirement) or ("monitored", not_enforced)

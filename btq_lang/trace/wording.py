@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.btcpp.enforceability import WAYS_COUNTED
 from btq_lang.evidence.meanings import SUSPECT
 from btq_lang.trace.overview import (
-    WAYS,
     AppliedRequirement,
     ExternalRow,
     HazardRow,
@@ -29,8 +29,9 @@ def incomplete(overview: Overview) -> str:
 
 def summary(overview: Overview) -> str:
     """All counts, in a sentence."""
-    clauses = [clause.way for row in overview.requirements for use in row.uses for clause in use.clauses]
-    ways: dict[str, int] = {way: clauses.count(way) for way in WAYS}
+    of_rows = (use.clauses for row in overview.requirements for use in row.uses)
+    clauses = [clause.way for clauses in of_rows for clause in clauses if clause.is_measurable]
+    ways: dict[str, int] = {words: clauses.count(way) for way, words in WAYS_COUNTED.items()}
     ways["without a node"] = len(overview.loose)
     covered = ", ".join(f"{number} {way}" for way, number in ways.items() if number)
     sentence = f"{counted(len(overview.requirements), 'requirement')}"
@@ -77,8 +78,8 @@ def remarks(requirement: RequirementRow, use: AppliedRequirement) -> Iterator[st
     """
     if use.how in _ATTACHED:
         yield _ATTACHED[use.how]
-    if "," in requirement.way:
-        yield from dict.fromkeys(clause.way for clause in use.clauses)
+    if len(requirement.ways) > 1:
+        yield from dict.fromkeys(requirement.in_words(clause.way) for clause in use.clauses)
 
 
 def chain_rows(overview: Overview) -> Iterator[tuple[HazardRow | ExternalRow, list[str], list[RequirementRow]]]:
@@ -96,14 +97,24 @@ def chain_rows(overview: Overview) -> Iterator[tuple[HazardRow | ExternalRow, li
         yield external, remarks, [rows[key] for key in external.requirements]
 
 
+def approval_lines(requirement: RequirementRow) -> Iterator[str]:
+    """Who has approved a requirement and when, and whether that is outdated."""
+    for approval in requirement.approvals:
+        yield f"approved by {approval.by} on {approval.on}{'' if approval.of else ', without a fingerprint'}"
+    if requirement.state == "suspect":
+        yield OUTDATED
+
+
 def state_of(requirement: RequirementRow) -> str:
     """How a requirement is covered, the tests, reports and reviews that it names, its verdict, and whether its approval
     is outdated.
     """
-    named = ", ".join(f'{way.method} "{way.id}"' for way in requirement.verification if way.id)
+    by_tools = requirement.verification if "reviewed" not in requirement.ways else ()  # else its way names them
+    named = ", ".join(f'{way.method} "{way.id}"' for way in by_tools if way.id)
     is_old = any(clause.is_suspect for clause in requirement.evidence)
     verdict = f"{requirement.verdict} (suspect)" if is_old else requirement.verdict
-    parts = (requirement.way, named, verdict, "approval outdated" if requirement.state == "suspect" else "")
+    outdated = OUTDATED if requirement.state == "suspect" else ""
+    parts = (", ".join(requirement.ways_in_words), named, verdict, outdated)
     return "; ".join(part for part in parts if part)
 
 
@@ -119,4 +130,5 @@ GAPS: Final = {
     "bare_nodes": "Custom leaf nodes without any quality",
 }
 NO_LABEL: Final = "(none)"
+OUTDATED: Final = "approval outdated"
 _ATTACHED: Final = {"apply": "by apply", "link": "a link only"}

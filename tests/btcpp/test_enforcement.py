@@ -26,6 +26,7 @@ from btq_lang.projects.opening import open_workspace
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.script.check import check_script
 from btq_lang.syntax.script.parser import parse_script
+from btq_lang.trace.missions import trace_table
 from btq_lang.workspace.workspace import Workspace
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -450,3 +451,16 @@ def test_the_side_file_counts_what_was_added(btq: Btq) -> None:
         ([3], [{"clause": "Move takes at most 5 s", "held": "enforced"}]),
         ([4], [{"clause": "Rest takes at most 2 s", "held": "monitored"}]),
     ]
+
+
+def test_a_build_tells_what_people_verify_and_counts_as_the_overview_does(btq: Btq) -> None:
+    shown = f'{QUICK}QualityReq seen "Prose"\n'.replace("2 s\n", '2 s\n    verified by test "TC-1", review\n')
+    btq.write(mission=shown.replace("Rest\n", "Rest satisfies seen\n"))
+    counts = "1 enforced, 1 by people"
+    assert btq.build("mission.btq", "--verbose")[2] == (
+        "mission.btq:2:5: enforced: quick, `Move takes at most 5 s` at `Move`\n"
+        "mission.btq:5:5: by test TC-1 and review: calm, `Rest takes at most 2 s` at `Rest`\n"
+        f"clauses of requirements: {counts}\n{SEEN}"
+    )
+    overview = trace_table(Workspace.of({"mission.btq": btq.read("mission.btq")}), "mission.btq")
+    assert f"3 requirements (2 clauses: {counts})" in overview.write()

@@ -209,3 +209,34 @@ def test_a_gauge_becomes_a_counter_or_a_level() -> None:
     assert_fix(text, "Declare it as a counter", text.replace("gauge", "counter"))
     text = text.replace(" gauge", "")
     assert_fix(text, "Declare it as a level", text.replace("{b}", "{b} level"))
+
+
+@pytest.mark.parametrize(
+    ("rate", "fixed"),
+    [
+        ("1e-6 per h", "1e-6 per 1 h"),
+        ("2 per day", "2 per 1 day"),
+        ("1e-6 per h of X", "1e-6 per 1 h of X"),
+        ("1e-6/h", "1e-6 per 1 h"),
+        ("0.001 / h", "0.001 per 1 h"),
+    ],
+)
+def test_a_rate_per_a_unit_of_time_keeps_its_value(rate: str, fixed: str) -> None:
+    text = f"QualityReq r\n    X fails at most {rate}\n    confidence 95 %\nBehaviorTree Main\n    Action X\n"
+    (found,) = findings(text, "syntax-error", "unmatched-path", "impossible-bound", "clause-without-odds")
+    unit = fixed.partition(" per 1 ")[2].partition(" ")[0]
+    assert found.endswith(f"a failure rate is per a time: `per 1 {unit}`")
+    assert_fix(text, f"Write `per 1 {unit}`", text.replace(rate, fixed), safe=True)
+    assert_clean(text.replace(rate, fixed))
+
+
+def test_a_node_may_be_called_as_a_unit() -> None:
+    text = "QualityReq r\n    X fails at most 2 per h\nBehaviorTree Main\n    Sequence h\n        Action X\n"
+    assert_clean(text)
+
+
+def test_a_part_of_a_failure_is_not_rounded_up() -> None:
+    text = "QualityReq r\n    X fails at most 0.5 per run\nBehaviorTree Main\n    Action X\n"
+    (found,) = problems(text, "impossible-bound")
+    assert found.fixes == ()
+    assert found.notes == ("a failure rate is per a time: `fails at most 1 per 200 h`",)

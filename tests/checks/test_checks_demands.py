@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from math import ceil
+
 import pytest
 from check_asserts import assert_clean, assert_problems, findings, problems
+
+from btq_lang.evidence.poisson import upper_number
 
 
 def mission(tree: str, *requirements: str) -> str:
@@ -302,6 +306,21 @@ def test_windows() -> None:
     assert found("99 %", "7 d") == []
     assert found("100 %", "9000 activations") == [
         "9000 activations cannot show 100 % with a confidence of 95 %: no window is large enough"
+    ]
+
+
+@pytest.mark.parametrize(("confidence", "number"), [("95 %", 1.0), ("99 %", 1.0), ("80 %", 2.5)])
+def test_a_window_that_is_too_short_for_a_failure_rate(confidence: str, number: float) -> None:
+    needed = ceil(upper_number(0, float(confidence[:-2]) / 100) / number * 100)
+
+    def found(window: str) -> list[str]:
+        text = mission("Action A", f"q A fails at most {number:g} per 100 h|confidence {confidence}|over last {window}")
+        return [each.message for each in problems(text, "window-too-small")]
+
+    assert found(f"{needed} h") == []
+    assert found(f"{needed - 1} h") == [
+        f"`over last {needed - 1} h` cannot show at most {number:g} per 100 h with a confidence of {confidence}: "
+        f"this requires {needed} h without a failure"
     ]
 
 

@@ -186,3 +186,13 @@ def assert_same(workspace: Workspace, path: str) -> None:
     unsaid = {each for each in missing - reasons if "the main tree is unknown" not in each}
     assert not unsaid or any(each.rule in OTHERWISE for each in found)
     assert reasons <= missing | {"verified by review", "verified by test", "verified by analysis"}
+
+
+def test_what_people_verify_leads_to_monitor() -> None:
+    text = "QualityReq q\n    A takes at most 5 s on violation fail verified by {}\nBehaviorTree Main\n    Action A\n"
+    (found,) = problems(text.format('test "TC-2", review'), RULE)
+    instead = 'verified by monitor, test "TC-2", review'
+    assert found.notes == (
+        f"neither the engine nor `btq verify` checks it; to have both check it, too, write `{instead}`",
+    )
+    assert problems(text.format(instead.removeprefix("verified by ")), RULE) == []

@@ -54,6 +54,10 @@ def approve(*arguments: str) -> tuple[int, str, str]:
     return btq("approve", *arguments, "--date", "2026-11-29")
 
 
+def approve_as(name: str, on: str, by: str = "Kim") -> tuple[int, str, str]:
+    return btq("approve", name, "--by", by, "--date", on)
+
+
 def test_a_requirement_is_approved_wherever_it_is(robot: Path) -> None:
     code, out, error = approve(*NAMES, "--by", "Kim")
     assert (code, error) == (0, "8 requirements, 2 files written\n")
@@ -117,6 +121,34 @@ def test_a_project_can_require_approvals(robot: Path) -> None:
     assert missing() == len(NAMES) - 1  # that of the library is approved, though outdated
     approve("q1", "q2", "--by", "Kim")
     assert missing() == len(NAMES) - 3
+
+
+def test_an_approval_without_a_fingerprint_is_told_where_approvals_are_required(robot: Path) -> None:
+    (robot / "hand.btq").write_text('QualityReq r "R"\n    approved by "Kim L." on "2026-05-04"\n')
+    check = ("check", "--select", "approval-missing", "hand.btq")
+    assert btq(*check)[0] == 0
+    (robot / "btq.toml").write_text('[requirements]\napproval = "required"\n')
+    code, out, _ = btq(*check)
+    assert (code, out.count("warning[")) == (1, 1)
+    assert "warning[approval-missing]: the approval of `r` by Kim L. has no fingerprint, so no change is noticed" in out
+    again = "`btq approve r --by 'Kim L.' --date 2026-05-04` adds it"
+    assert f"note: if it is of what is written now, {again}" in out
+    assert approve_as("r", "2026-05-04", "Kim L.")[1].startswith(
+        "hand.btq: `r` approved by Kim L. (replaces the approval of 2026-05-04), 1:"
+    )
+    assert btq(*check)[0] == 0
+
+
+def test_what_is_replaced_is_said(robot: Path) -> None:
+    assert approve_as("top", "2026-05-04")[1].startswith("mission.btq: `top` approved by Kim, 1:")
+    first = (robot / "mission.btq").read_text()
+    assert approve_as("top", "2026-05-04")[1].startswith("mission.btq: `top` was approved already by Kim, 1:")
+    assert btq("approve", "top", "--by", "Kim")[1].startswith("mission.btq: `top` was approved already by Kim, 1:")
+    assert (robot / "mission.btq").read_text() == first
+    assert approve_as("top", "2026-06-01")[1].startswith(
+        "mission.btq: `top` approved by Kim (replaces the approval of 2026-05-04), 1:"
+    )
+    assert (robot / "mission.btq").read_text() == first.replace("2026-05-04", "2026-06-01")
 
 
 def test_today_is_the_default(robot: Path) -> None:

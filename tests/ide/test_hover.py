@@ -203,7 +203,7 @@ def test_a_requirement_that_people_judge() -> None:
         ```
 
         Enforcement by `btq build`:
-        - `takes at most 3 s`: **reviewed**: verified by review
+        - `takes at most 3 s`: **by review**
 
         Attached to:
         - `Pick` in `Main` (main.btq)

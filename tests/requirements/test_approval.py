@@ -141,7 +141,7 @@ def test_of_each_person_the_last_approval_counts() -> None:
     )
     lee = '    approved by "Lee" on "2026-11-30"\n'
     assert [state(text + lines, "r").state for lines in ("", old, old + new, new + old, lee, lee + old)] == [
-        *("open", "suspect", "approved", "suspect", "approved", "suspect"),
+        *("open", "suspect", "approved", "suspect", "approved without fingerprint", "suspect"),
     ]
     assert [each.by for each in state(text + lee + old, "r").outdated] == ["Kim"]
 
@@ -179,7 +179,7 @@ QualityReq b "B"
     approved by "K" on "2026-11-29"
 """
     assert [state(text, name).state for name in "ab"] == ["suspect", "suspect"]
-    assert [state(text.replace(' of "1:0"', ""), name).state for name in "ab"] == ["approved", "approved"]
+    assert [state(text.replace(' of "1:0"', ""), name).state for name in "ab"] == ["approved without fingerprint"] * 2
 
 
 @pytest.mark.parametrize(

@@ -268,7 +268,7 @@ def test_csv() -> None:
         "result": "",
         "build": "",
         **dict.fromkeys(("hazard", "severity", "external", "refines", "mitigates"), ""),
-        **{"origin": "", "priority": "", "verified_by": "", "approval": "open", "suspect": ""},
+        **{"origin": "", "priority": "", "verified_by": "", "approval": "open", "suspect": "", "approved_by": ""},
     }
 
 
@@ -709,7 +709,7 @@ BehaviorTree Main
                 "requirement,r5,Heat safely,safety,safety,Heat,Main,Heat takes at most 40 s,enforced,,subject,",
                 "clause without node,r5,Heat safely,safety,safety,,,never force >= 50 N,,,,,,m.btq,2"
                 + "," * 12
-                + "open,\n",
+                + "open,",
                 "hard requirement not enforced,r5,",
             ),
         ),

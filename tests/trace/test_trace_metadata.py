@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
+
+import pytest
 
 from btq_lang.trace import write
 from btq_lang.trace.collect import collect
 from btq_lang.trace.overview import Overview
+from btq_lang.trace.selection import Selection, selected
 from btq_lang.workspace.workspace import Workspace
 
 MISSION = """\
@@ -76,6 +81,23 @@ def test_requirements_and_hazards_in_json() -> None:
     assert slow["further_qualities"] == [{"name": "reliability.availability", "key": "q2"}]
 
 
+def test_who_has_approved_a_requirement_and_when() -> None:
+    one, two = "approved by Kim on 2026-11-29", "approved by Lee on 2026-11-30, without a fingerprint"
+    in_cells = [line.partition("   ")[0].strip() for line in write(overview(), "table").splitlines()]
+    assert in_cells[in_cells.index(one) :][:3] == [one, two, "approval outdated"]
+    assert f"<br>{one}<br>{two}<br>approval outdated |" in write(overview(), "markdown")
+    assert f'<p>{one}</p><p>{two}</p><p class="missing">approval outdated</p>' in write(overview(), "html")
+    rows = [row for row in csv.DictReader(io.StringIO(write(overview(), "csv"))) if row["requirement"] == "slow"]
+    assert {(row["approval"], row["approved_by"]) for row in rows} == {("suspect", "Kim 2026-11-29; Lee 2026-11-30")}
+
+
+def test_an_approval_without_a_fingerprint_is_a_state_of_its_own() -> None:
+    text = MISSION.replace('    approved by "Kim" on "2026-11-29" of "1:0123456789ab"\n', "")
+    assert overview(text).requirements[1].state == "approved without fingerprint"
+    part = selected(overview(text), Selection(states=["approved without fingerprint"]))
+    assert [row.name for row in part.requirements] == ["slow"]
+
+
 def test_clauses_as_typed() -> None:
     assert overview().requirements[1].clauses == (
         "mission takes at most 1 h",
@@ -98,6 +120,20 @@ def test_a_requirement_counts_for_each_of_its_qualities_and_once_in_all() -> Non
     assert "2 requirements (1 clause: 1 monitored)" in write(document, "table")
 
 
+@pytest.mark.parametrize(
+    ("written", "words"),
+    [('test "TC-12"', "by test TC-12"), ("analysis", "by analysis"), ("review", "by review"), ("test", "by test")],
+)
+def test_nothing_is_called_reviewed_that_a_test_shows(written: str, words: str) -> None:
+    table = overview(MISSION.replace('test "TC-12", monitor', written))
+    assert f"mission, main.btq:8  {words}\n" in write(table, "table")
+    assert f" | {words} | main.btq:7 |" in write(table, "markdown")
+    assert f'<span class="way reviewed">{words}</span></li>' in write(table, "html")
+    rows = csv.DictReader(io.StringIO(write(table, "csv")))
+    assert [row["how"] for row in rows if row["kind"] == "requirement"] == [words]
+    assert "2 requirements (1 clause: 1 by people)" in write(table, "table")
+
+
 def test_one_way_by_a_tool_is_enough_to_monitor() -> None:
     ways = {
         'test "TC-12", monitor': "monitored",
@@ -109,4 +145,5 @@ def test_one_way_by_a_tool_is_enough_to_monitor() -> None:
         row = overview(MISSION.replace('test "TC-12", monitor', written)).requirements[1]
         assert (written, row.way) == (written, way)
     row = overview(MISSION.replace(", monitor", ', review "R-3"')).requirements[1]
+    assert row.ways_in_words == ("by test TC-12 and review R-3",)
     assert row.uses[0].clauses[0].why == 'verified by test "TC-12", review "R-3"'
