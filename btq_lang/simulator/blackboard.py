@@ -6,6 +6,7 @@ A value is a float, an int, a str, or a bool, which the engine keeps as an int. 
 
 from __future__ import annotations
 
+import re
 from typing import Final, TypeAlias
 
 from btq_lang.simulator.errors import EngineError
@@ -206,7 +207,7 @@ def fits(value: float, type_: str) -> bool:
 
 
 def parsed(text: str, type_: str) -> Value:
-    """A text as a value of a type of C++, as `convertFromString` reads it.
+    """A text as a value of a type of C++, as `convertFromString` reads it: of a number, what follows it is ignored.
 
     Raises:
         EngineError: the text cannot be read as such a value.
@@ -215,16 +216,18 @@ def parsed(text: str, type_: str) -> Value:
         return text
     try:
         if type_ in _FLOATING:
-            return float(text)
+            return float(_REAL.findall(text)[0])
         if type_ == BOOL:
             return _TRUTH[text]
         if type_ in _LIMITS:
-            return int(text)
-    except (ValueError, KeyError):
+            return int(_WHOLE.findall(text)[0])
+    except (IndexError, KeyError):
         raise EngineError(f"Can't convert string [{text}] to {type_}") from None
     raise EngineError(f"You (maybe indirectly) called BT::convertFromString() for type [{type_}]")
 
 
+_WHOLE: Final = re.compile(r"\A-?\d+")
+_REAL: Final = re.compile(r"\A[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|inf|nan)")
 _TRUTH: Final = {"1": 1, "true": 1, "TRUE": 1, "True": 1, "0": 0, "false": 0, "FALSE": 0, "False": 0}
 _LIMITS: Final = {
     BOOL: (0, 1),

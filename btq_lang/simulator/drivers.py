@@ -6,6 +6,8 @@ so time jumps there.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from btq_lang.simulator.nodes import FAILURE, RUNNING, SUCCESS, Machine
 from btq_lang.simulator.ticking import execute_tick, halt_node, reset_status
 from btq_lang.simulator.timers import NEVER, advance, next_due, next_passing
@@ -47,18 +49,26 @@ def halt_tree(machine: Machine) -> None:
     reset_status(machine, machine.root)
 
 
-def tick_while_running(machine: Machine, limit: int, period: int = 10) -> int:
+def tick_while_running(
+    machine: Machine, limit: int, period: int = 10, is_over: Callable[[], bool] = lambda: False
+) -> int:
     """Tick the tree until it has ended; its result, or RUNNING if it never ends, or not within a limit.
 
     Args:
         limit: in milliseconds.
         period: the most that the program sleeps between two ticks, in milliseconds; a timer of the tree wakes it up.
+        is_over: called before and after each tick, when time has passed; whether the program ticks no more.
 
     Raises:
         EngineError: as in the engine.
     """
     before: object = None
-    while (result := tick_once(machine)) == RUNNING and machine.now < limit:
+    while not is_over():
+        result = tick_once(machine)
+        if result != RUNNING:
+            return result
+        if is_over() or machine.now >= limit:
+            break
         after = machine.state()
         wakes = next_due(machine)
         changes = min(
@@ -71,8 +81,8 @@ def tick_while_running(machine: Machine, limit: int, period: int = 10) -> int:
             advance(machine, min(step, wakes) if wakes != NEVER else step)
             continue
         if wakes == changes == NEVER:
-            return RUNNING
+            break
         due = machine.now - (machine.now - changes) // period * period if changes != NEVER else NEVER
         advance(machine, min(time for time in (wakes, due) if time != NEVER))
         before = None
-    return result
+    return RUNNING

@@ -10,12 +10,14 @@ from typing import Final
 
 from btq_lang.simulator.blackboard import Value
 from btq_lang.simulator.nodes import FAILURE, RUNNING, SUCCESS, Machine, SimulatedNode
+from btq_lang.simulator.ports import key_of, read
+from btq_lang.simulator.scripts import text_of
 from btq_lang.simulator.timers import NEVER
 from btq_lang.util.record import Record
 
 
 class Write(Record):
-    """An entry that a skill writes when it ends."""
+    """What a skill writes when it ends; key: of an entry, or the port that names the entry."""
 
     key: str
     value: Value
@@ -46,12 +48,39 @@ class GivenSkill(Record):
         rank: how specific it is; for each aspect the most specific one counts.
         activations: in the order of their starts; the last one repeats.
         answers: of successive ticks of conditions; the last one repeats.
+        values: which ports have which values at the start of the activations that it is about.
     """
 
     uids: frozenset[int]
     rank: int
     activations: tuple[GivenActivation, ...] = ()
     answers: tuple[bool, ...] = ()
+    values: tuple[tuple[str, str], ...] = ()
+
+    def concerns(self, node: SimulatedNode) -> bool:
+        """Whether it is about the activation of a node that starts now."""
+        return node.uid in self.uids and has_values(node, self.values)
+
+
+def has_values(node: SimulatedNode, values: Iterable[tuple[str, str]]) -> bool:
+    """Whether ports of a node have these values now; numbers are compared as such."""
+    return all(is_value(value_at(node, port), wanted) for port, wanted in values)
+
+
+def value_at(node: SimulatedNode, port: str) -> str | None:
+    """The value at a port now, as a text; None: there is none."""
+    value = read(node, port)
+    return f"{value:g}" if isinstance(value, float) else None if value is None else text_of(value)
+
+
+def is_value(value: str | None, wanted: str) -> bool:
+    """Whether the value at a port is the wanted one; numbers are compared as such.  None: there is none."""
+    if value is None or value == wanted:
+        return value == wanted
+    try:
+        return float(value) == float(wanted)
+    except ValueError:
+        return False
 
 
 class Unanswered(Exception):
@@ -82,9 +111,14 @@ class Skills:
         self.assumed: Final[set[str]] = set()
         self._givens: Final = sorted(givens, key=lambda given: -given.rank)
         self._conditions: Final = frozenset(conditions)
-        self._starts: Final[dict[int, int]] = {}  # by the index of what is given
+        self._starts: Final[dict[int, int]] = {}  # by the identity of what is given
         self._asked: Final[dict[int, int]] = {}
         self._open: Final[dict[int, _Activation]] = {}  # by the number of the node
+
+    def add(self, given: GivenSkill) -> None:
+        """Take something that is given from now on, which counts before all that is as specific."""
+        place = next((place for place, other in enumerate(self._givens) if other.rank <= given.rank), len(self._givens))
+        self._givens.insert(place, given)
 
     def tick(self, node: SimulatedNode) -> int:
         """Tick a skill; its result.
@@ -101,7 +135,8 @@ class Skills:
             return RUNNING
         del self._open[node.uid]
         for write in activation.writes:
-            node.board.write(write.key, write.value, write.type)
+            key = key_of(node.ports.get(write.key, ""), write.key) or write.key
+            node.board.write(key, write.value, write.type)
         return activation.result
 
     def halt(self, node: SimulatedNode) -> None:
@@ -112,15 +147,19 @@ class Skills:
         """When the next skill ends; negative: none will."""
         return min([each.end for each in self._open.values() if each.end > now], default=NEVER)
 
-    def memory(self) -> object:
-        """Which activations are open, and how many have begun."""
-        return tuple(self._open.items()), tuple(self._starts.items()), tuple(self._asked.items())
+    def memory(self, now: int = 0) -> object:
+        """Which activations are open and when they end, counted from `now`, and how many have begun."""
+        ends = [
+            (uid, each.end if each.end == NEVER else each.end - now, each.result) for uid, each in self._open.items()
+        ]
+        return tuple(ends), tuple(self._starts.items()), tuple(self._asked.items())
 
     def _answer(self, node: SimulatedNode) -> int:
-        for index, given in enumerate(self._givens):
-            if given.answers and node.uid in given.uids:
-                number = self._asked[index] = self._asked.get(index, -1) + 1
-                return SUCCESS if given.answers[min(number, len(given.answers) - 1)] else FAILURE
+        for given in self._givens:
+            if given.answers and given.concerns(node):
+                number = min(self._asked.get(id(given), -1) + 1, len(given.answers) - 1)
+                self._asked[id(given)] = number
+                return SUCCESS if given.answers[number] else FAILURE
         raise Unanswered(node, self.machine.now)
 
     def _begun(self, node: SimulatedNode) -> _Activation:
@@ -129,11 +168,12 @@ class Skills:
         takes: int | None = None
         writes: tuple[Write, ...] | None = None
         is_given = False
-        for index, given in enumerate(self._givens):
-            if not given.activations or node.uid not in given.uids:
+        for given in self._givens:
+            if not given.activations or not given.concerns(node):
                 continue
             is_given = True
-            number = self._starts[index] = self._starts.get(index, -1) + 1
+            most = sum(activation.times or 1 for activation in given.activations[:-1])
+            number = self._starts[id(given)] = min(self._starts.get(id(given), -1) + 1, most)
             of_this = _of_number(given.activations, number)
             result = of_this.result if result is None else result
             takes = of_this.takes if takes is None else takes

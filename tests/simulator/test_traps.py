@@ -21,6 +21,7 @@ IDLE_SET = (
     ("tree", "skills", "old", "new"),
     [
         ('<IfThenElse><Act name="a"/><Act name="b"/></IfThenElse>', FAILS_ONCE, "FFFFFF", "FFFFFF"),
+        ('<Sleep msec="150 s"/>', {}, "RRSRRS", "RRSRRS"),
         ('<IfThenElse><Cond name="a"/><Act name="b"/></IfThenElse>', FAILS_ONCE, "FSFSFS", "FSFSFS"),
         ('<ReactiveSequence><Act name="a"/><Act name="b"/></ReactiveSequence>', LONG, "RRRRRR", "RRRRRR"),
         (
