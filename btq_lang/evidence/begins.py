@@ -47,7 +47,8 @@ class Begins:
         self._in_order: Final = {uid for uid, how in one_tick.items() if how in ("first", "both")}
         nav2 = {uid for uid, node in tree.nodes.items() if node.kind in NODES and one_tick[uid] != "next"}
         built_in = {uid for uid, node in tree.nodes.items() if node.kind in BUILTINS}
-        self._writes_first: Final = (self._into | nav2 | built_in) - tree.leaves
+        after_begin = (self._into | nav2 | built_in) - tree.leaves
+        self._writes_first: Final = {*tree.nodes} if tree.shows_begins else after_begin
         self._parallel: Final = {uid for uid, how in one_tick.items() if how == "unskipped"}
         # By Parallel: the row that showed its activation, and the last child that has written a row since.
         self._ticked: Final[dict[int, tuple[Moment, int]]] = {}

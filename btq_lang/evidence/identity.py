@@ -13,6 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Final
 
+from btq_lang.btcpp.document import Document
 from btq_lang.btcpp.export import is_mission
 from btq_lang.btcpp.instances import Instance
 from btq_lang.btcpp.marks import MARK
@@ -40,12 +41,20 @@ class Candidate:
 
     origin = "side file matches"
 
-    def __init__(self, workspace: Workspace, path: str, name: str, side: list[tuple[int, str]] | None) -> None:
+    def __init__(
+        self,
+        workspace: Workspace,
+        path: str,
+        name: str,
+        side: list[tuple[int, str]] | None,
+        demanded: Requirements | None = None,
+    ) -> None:
+        """demanded: the requirements to judge; None: all that the mission has."""
         self.workspace: Final = workspace
         self.path: Final = path
         self.name: Final = name
         self.side: Final = side
-        self.requirements: Final[Requirements] = requirements(workspace, path)
+        self.requirements: Final[Requirements] = demanded or requirements(workspace, path)
         self._built: Final[list[_BuiltMission]] = []
         self._unbuilt: Final = _builds_of(self)
         self._builds: Final[dict[tuple[int, str], Build]] = {}
@@ -76,7 +85,8 @@ class Candidate:
                 if (number, name) not in self._builds:
                     running = RunningTree(built_mission.built, self.requirements.nodes, name)
                     how = built_mission.how if name == built_mission.main else f"tree {name}, {built_mission.how}"
-                    self._builds[number, name] = Build(how, running, name, name == built_mission.main)
+                    is_main, documents = name == built_mission.main, built_mission.built.documents
+                    self._builds[number, name] = Build(how, running, name, is_main, documents)
                 yield self._builds[number, name]
 
     def trees(self) -> Sequence[str]:
@@ -170,15 +180,21 @@ class _BuiltMission(Record):
 
 
 class Build(Record):
-    """A tree of a build as it runs; `how`: the options of the build, and the tree unless it is the main one."""
+    """A tree of a build as it runs.
+
+    Attributes:
+        how: the options of the build, and the tree unless it is the main one.
+        documents: of all files that are registered, in their order.
+    """
 
     how: str
     running: RunningTree
     name: str
     is_main: bool
+    documents: tuple[Document, ...]
 
-    def tree(self) -> LoggedTree:
-        """The tree as a log would hold it, as far as its nodes have numbers."""
+    def tree(self, shows_begins: bool = False) -> LoggedTree:
+        """The tree as a log would hold it, as far as its nodes have numbers; `shows_begins`: as in `LoggedTree`."""
         return LoggedTree(
             [
                 (instance.uid, kind_of(instance.element), instance.path, instance.parent or 0)
@@ -190,6 +206,7 @@ class Build(Record):
                 for instance, _ in self.running.all
                 if instance.uid is not None and (delay := delay_of(instance.element)) is not None
             },
+            shows_begins=shows_begins,
         )
 
 

@@ -72,6 +72,7 @@ class LoggedTree:
         name: the ID of the tree; empty if the log does not name it.
         xml: as it is in the log; empty if it was made otherwise.
         delays: how long a Delay waits before it ticks its child, in µs, where that is a number.
+        shows_begins: every node writes RUNNING when it begins, as in a simulated run.
     """
 
     def __init__(
@@ -81,9 +82,11 @@ class LoggedTree:
         *,
         xml: str = "",
         delays: Mapping[int, int] | None = None,
+        shows_begins: bool = False,
     ) -> None:
         """Build it from uid, kind, path and parent of each node, in the order of the uids."""
         self.name: Final = name
+        self.shows_begins: Final = shows_begins
         self.xml: Final = xml
         self.delays: Final = delays or {}
         self.parent: Final = {uid: parent for uid, _, _, parent in nodes}

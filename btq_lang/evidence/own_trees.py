@@ -41,7 +41,7 @@ class OwnTree(Candidate):
         main = self._document.root.get("main_tree_to_execute") or ""
         if tree in ("", main):
             built = BuiltFile(self.path, self.path, "", (self._document,), {})
-            yield Build(self.origin, RunningTree(built, self.requirements.nodes, main), main, True)
+            yield Build(self.origin, RunningTree(built, self.requirements.nodes, main), main, True, built.documents)
 
 
 class OwnTrees:

@@ -134,7 +134,7 @@ def claimed(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Applied
     if name not in store.ask(inputs.claiming, viewpoint):
         return ()
     of_name, _ = store.ask(requirement, viewpoint, name)
-    return tuple(_by_subject(store, viewpoint, of_name)) if of_name is not None else ()
+    return tuple(by_subject(store, viewpoint, of_name)) if of_name is not None else ()
 
 
 def claimed_of_no_tree(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Applied, ...]:
@@ -223,7 +223,7 @@ def _filled_part(part: object, values: dict[str, model.Bounded]) -> object:
     return replace(part, **changes) if changes else part
 
 
-def _by_subject(store: Store[Workspace], viewpoint: str, resolved: model.ResolvedRequirement) -> Iterator[Applied]:
+def by_subject(store: Store[Workspace], viewpoint: str, resolved: model.ResolvedRequirement) -> Iterator[Applied]:
     """A claim's own subject takes precedence over what the requirement is attached to."""
     arguments = tuple(
         ResolvedArgument(parameter.name, parameter.default)
