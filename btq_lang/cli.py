@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 
 CLEAN, FINDINGS, TROUBLE = 0, 1, 2
 _SYMBOLS_LIKE_OPTIONS = ("->",)
-_MODULES = {"import": "import_xml", "trace": "tracing"}  # of commands whose name cannot be a module's
+# The modules of commands whose name cannot be a module's.
+_MODULES = {"import": "import_xml", "trace": "tracing", "test": "testing"}
 
 
 def program() -> None:

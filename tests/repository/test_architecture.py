@@ -37,6 +37,7 @@ ROWS = (
     ("diff", "render"),
     ("evidence",),
     ("projects",),
+    ("scenarios",),
     ("ide", "trace"),
     ("preview",),
     ("commands", "lsp"),

@@ -1,0 +1,97 @@
+"""`btq test`: run the scenarios of missions in the model of the engine."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+
+from btq_lang import scenarios
+from btq_lang.commands.output import form_of, form_problem, is_coloured, write_output
+from btq_lang.projects.building import for_target
+from btq_lang.projects.files import STDIN, Files, usage_problem
+from btq_lang.projects.messages import CommandOutput
+from btq_lang.projects.options import refuse
+from btq_lang.scenarios.parallel import results
+from btq_lang.scenarios.results import ScenarioReport
+from btq_lang.scenarios.suite import Suite
+from btq_lang.util.record import Record
+from btq_lang.workspace.file import SUFFIXES, XML_SUFFIXES
+
+
+class ScenarioOptions(Record):
+    """The options of `btq test`.
+
+    Attributes:
+        paths: files and folders, or `-` for standard input.
+        title: only scenarios whose titles contain this text.
+        target: the version of the engine; None: the newest of the project.
+        no_enforce: without the nodes that enforce requirements.
+        show: draw the runs of all scenarios.
+        jobs: the number of processes; 0: as many as there are processors, if there are many scenarios.
+    """
+
+    paths: Sequence[str]
+    stdin_filename: str | None
+    title: str
+    target: str | None
+    no_enforce: bool
+    show: bool
+    jobs: int
+    format: str | None
+    output: str | None
+    watch: bool
+    color: str
+
+
+def run(options: ScenarioOptions, messages: CommandOutput) -> int:
+    """Run the scenarios once, or again and again with `--watch`."""
+    refuse(_usage_problem(options))
+    files = Files()
+    code, watched = _run(options, files, messages)
+    if options.watch:
+        from btq_lang.commands.watch_mode import run_on_changes
+
+        suffixes = (*SUFFIXES, *XML_SUFFIXES)
+        run_on_changes(lambda: _run(options, files, messages)[1], options.paths, watched, suffixes)
+    return code
+
+
+def _usage_problem(options: ScenarioOptions) -> str | None:
+    if options.watch and STDIN in options.paths:
+        return "--watch cannot watch standard input"
+    if options.jobs < 0:
+        return f"--jobs {options.jobs}: expected a number of processes, or 0 to let btq choose"
+    return usage_problem(options.paths) or form_problem(options.format, options.output, scenarios.FORMATS)
+
+
+def _run(options: ScenarioOptions, files: Files, messages: CommandOutput) -> tuple[int, tuple[str, ...]]:
+    """Run the scenarios once; returns the exit code and the files that another run depends on."""
+    groups, problems = files.groups(options.paths, options.stdin_filename)
+    messages.problems(problems)
+    watched = tuple(path for group in groups for path in group.watched)
+    workspaces = [group.workspace for group in groups]
+    if options.target:
+        workspaces = [for_target(each, options.target) for each in workspaces]
+    suites = [Suite(each, not options.no_enforce) for each in workspaces]
+    wanted = [
+        (index, place)
+        for index, group in enumerate(groups)
+        for path in group.given
+        for place, title in suites[index].places(path)
+        if options.title.casefold() in title.casefold()
+    ]
+    if not wanted:
+        messages.remark("btq test: no scenario" + (f" whose title contains `{options.title}`" if options.title else ""))
+        return 2, watched
+    jobs = options.jobs or (os.cpu_count() or 1 if len(wanted) >= _MANY else 1)
+    report = ScenarioReport(tuple(results(suites, wanted, options.show, jobs)))
+    form = form_of(options.format, options.output, scenarios.FORMATS)
+    colour = form == "text" and options.output in (None, "-") and is_coloured(options.color, sys.stdout.isatty())
+    write_output(messages, options.output, scenarios.write(report, form, colour=colour), form)
+    if problems or report.count("error"):
+        return 2, watched
+    return int(report.count("passed") < len(report.scenarios)), watched
+
+
+_MANY = 50  # scenarios; for fewer, starting processes takes longer

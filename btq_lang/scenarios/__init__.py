@@ -1,0 +1,41 @@
+"""Scenarios: the mission runs in the model of the engine, and what it does is compared with what is expected.
+
+One invariant: what a scenario does not say is never guessed: a condition of which nothing is given is an error of the
+scenario, and a value that is needed and not given makes it unknown; actions that are assumed to succeed are listed.
+
+    mission.py     a tree with all that its program registers, as it is built
+    plan.py        what a scenario says, resolved
+    reading.py     the words of a scenario to its plan
+    running.py     one run: the tree is ticked, the world changes as planned
+    unknown_entries.py   entries that are read, and were never given a value
+    judging.py     whether a run is as expected
+    drawing.py     a run as lines of text
+    recording.py   a run of a log as a scenario
+    results.py     what came of scenarios, as data
+    suite.py       the scenarios of files, run one by one
+    parallel.py    the same in several processes
+    text.py, json_document.py, junit.py   the writers
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from btq_lang.scenarios.results import ScenarioReport
+
+FORMATS: Final = ("text", "json", "junit")
+_MODULES: Final = {"json": "json_document"}  # named otherwise
+
+
+def write(report: ScenarioReport, form: str, *, colour: bool = False) -> str:
+    """Write the results in one of FORMATS; `colour`: ANSI colours, for `text`.
+
+    Raises:
+        ValueError: there is no such format.
+    """
+    if form not in FORMATS:
+        raise ValueError(f"unknown format {form!r}; expected one of {', '.join(FORMATS)}")
+    text: str = import_module(f"{__name__}.{_MODULES.get(form, form)}").render(report, colour)
+    return text

@@ -1,0 +1,204 @@
+"""Whether a run is as expected: claims and requirements are judged as in `btq verify`, by the rows of the run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+from btq_lang.evidence.conditions import truth
+from btq_lang.evidence.evaluate import MissionEvaluation
+from btq_lang.evidence.history import History, Nearby
+from btq_lang.evidence.model import FAILURE, ROOT, SampleSeries
+from btq_lang.evidence.observed import Observed
+from btq_lang.evidence.signals import Signals, UnknownValue
+from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, RequirementVerdict, Violation
+from btq_lang.requirements.model import ResolvedSignal, signals_in
+from btq_lang.scenarios.mission import ScenarioMission
+from btq_lang.scenarios.plan import (
+    Expectation,
+    ExpectedClaims,
+    ExpectedEnd,
+    ExpectedEndless,
+    ExpectedValues,
+    Plan,
+    WantedVerdict,
+)
+from btq_lang.scenarios.results import ExpectationResult, Step
+from btq_lang.scenarios.running import START, ScenarioRun, Start
+from btq_lang.simulator.skills import is_value
+from btq_lang.util.record import replace
+
+
+def judged(mission: ScenarioMission, plan: Plan, run: ScenarioRun) -> tuple[ExpectationResult, ...]:
+    """The result of each expectation; the last one is that the run ends, if it does not, unless that is expected."""
+    verdicts = _verdicts(mission, plan, run)
+    judge = _Judge(mission, run, verdicts)
+    results = [judge.result(expectation) for expectation in plan.expectations]
+    is_expected = any(isinstance(each.expected, ExpectedEndless) for each in plan.expectations)
+    if run.end == "does not end" and not is_expected:
+        step = Step(run.now / 1000, *judge.node(ROOT), "it goes on for ever", "an end")
+        results.append(ExpectationResult("mission ends", 0, "failed", "", step))
+    return tuple(results)
+
+
+def _verdicts(mission: ScenarioMission, plan: Plan, run: ScenarioRun) -> dict[str, RequirementVerdict]:
+    """The verdicts of the requirements and claims that are expected, by name."""
+    expected = [expectation.expected for expectation in plan.expectations]
+    names = {each.name for each in expected if isinstance(each, WantedVerdict)}
+    claims = [each for each in expected if isinstance(each, ExpectedClaims)]
+    if not names and not claims:
+        return {}
+    requirements = mission.requirements
+    demanded = {name: requirement for name, requirement in requirements.all.items() if name in names}
+    applied = [each for each in requirements.applied if each.requirement.name in names]
+    candidate, joined = mission.judged_with(
+        replace(
+            requirements,
+            all={**demanded, **{claim.requirement.name: claim.requirement for claim in claims}},
+            applied=(*applied, *(each for claim in claims for each in claim.applied)),
+        )
+    )
+    evaluation = MissionEvaluation(candidate)
+    evaluation.read(run.session(mission), joined, run.signals, 1, "the scenario")
+    return {verdict.id: verdict for verdict in evaluation.verdicts()}
+
+
+class _Judge:
+    def __init__(self, mission: ScenarioMission, run: ScenarioRun, verdicts: dict[str, RequirementVerdict]) -> None:
+        self._mission: Final = mission
+        self._run: Final = run
+        self._verdicts: Final = verdicts
+
+    def result(self, expectation: Expectation) -> ExpectationResult:
+        """The result of an expectation."""
+        expected = expectation.expected
+        why = ""
+        step: Step | None
+        if isinstance(expected, ExpectedClaims):
+            step, why = self._claims(self._verdicts[expected.requirement.name], expectation.text)
+        elif isinstance(expected, WantedVerdict):
+            step, why = self._verdict(self._verdicts[expected.name], expected)
+        elif isinstance(expected, ExpectedValues):
+            step = self._values(expected)
+        elif isinstance(expected, ExpectedEnd):
+            step, why = self._end(expected, expectation.text)
+        else:
+            step = None if self._run.end == "does not end" else self._at_end("it goes on for ever")
+        outcome = "failed" if step is not None else "unknown" if why else "passed"
+        return ExpectationResult(expectation.text, expectation.line, outcome, why, step)  # type: ignore[arg-type]
+
+    def node(self, uid: int) -> tuple[str, str, int]:
+        """The path, the file and the line of a node."""
+        return (self._mission.tree.nodes[uid].path, *self._mission.place(uid))
+
+    def _at_end(self, expected: str) -> Step:
+        how = "it does not end" if self._run.end == "does not end" else f"the mission {self._run.end}"
+        return Step(self._run.now / 1000, *self.node(ROOT), how, expected)
+
+    # ---- claims and verdicts ----
+
+    def _claims(self, verdict: RequirementVerdict, text: str) -> tuple[Step | None, str]:
+        if verdict.verdict == SATISFIED:
+            return None, ""
+        for clause in verdict.clauses:
+            if clause.verdict == VIOLATED and clause.violations:
+                return self._violation(clause.violations[0], text), ""
+        why = next((clause.why for clause in verdict.clauses if clause.why), verdict.verdict)
+        if verdict.verdict in (UNKNOWN, UNDECIDED):
+            return None, why
+        return replace(self._at_end(text), happened=why or "it never ran"), ""
+
+    def _violation(self, violation: Violation, expected: str) -> Step:
+        """The step that broke a clause: where a failure began, or else the node itself."""
+        paths = {node.path: uid for uid, node in reversed(self._mission.tree.nodes.items())}
+        origin = next((link for link in violation.chain if link.kind == "origin"), None)
+        uid = paths.get(origin.path if origin is not None else violation.path, ROOT)
+        at, happened = violation.at, violation.why
+        if origin is not None:
+            failures = [time for time, row_uid, status in self._run.rows if (row_uid, status) == (uid, FAILURE)]
+            at, happened = ((failures[-1] - START) / 1e6 if failures else at), "it fails"
+        elif self._run.end == "does not end" and uid == ROOT:
+            happened = "it does not end"
+        elif violation.measured and violation.passed is not None:
+            at = violation.passed
+        return Step(at, *self.node(uid), happened, expected)
+
+    def _verdict(self, verdict: RequirementVerdict, expected: WantedVerdict) -> tuple[Step | None, str]:
+        is_not_applicable = verdict.verdict == NEVER and any(clause.not_applicable for clause in verdict.clauses)
+        actual = "not applicable" if is_not_applicable else verdict.verdict
+        if actual == expected.verdict:
+            return None, ""
+        why = next((clause.why for clause in verdict.clauses if clause.why), "")
+        if actual == UNKNOWN and expected.verdict in (SATISFIED, VIOLATED):
+            return None, why
+        wanted = f"{expected.name} {expected.verdict}"
+        if actual == VIOLATED:
+            violations = [violation for clause in verdict.clauses for violation in clause.violations]
+            first = min(violations, key=lambda violation: violation.at)
+            return self._violation(first, f"{wanted}{f', bound {first.bound}' if first.bound else ''}"), ""
+        return replace(self._at_end(wanted), happened=f"it is {actual}{f': {why}' if why else ''}"), ""
+
+    # ---- values of ports ----
+
+    def _values(self, expected: ExpectedValues) -> Step | None:
+        starts = [start for start in self._run.starts if start.uid in expected.uids and _has(start, expected.pairs)]
+        for start, value in zip(starts, expected.values, strict=False):
+            actual = self._value(start, expected.port)
+            if not is_value(actual, value):
+                return self._other(start, actual, f'"{value}"')
+        if len(starts) > len(expected.values):
+            start = starts[len(expected.values)]
+            return self._other(start, self._value(start, expected.port), "no further activation")
+        if len(starts) < len(expected.values):
+            value = expected.values[len(starts)]
+            step = self._at_end(f'"{value}"')
+            return replace(step, happened=f"{step.happened}, and the node has not run with it")
+        return None
+
+    def _value(self, start: Start, port: str | None) -> str | None:
+        name = port or self._mission.input_port(start.uid)
+        return start.values.get(name) if name is not None else None
+
+    def _other(self, start: Start, actual: str | None, expected: str) -> Step:
+        happened = f'it runs with "{actual}"' if actual is not None else "it runs with no value"
+        return Step(start.at / 1000, *self.node(start.uid), happened, expected)
+
+    # ---- the end ----
+
+    def _end(self, expected: ExpectedEnd, text: str) -> tuple[Step | None, str]:
+        begin, end = (START, 0), (START + self._run.now * 1000, 0)
+        signals = Signals(self._run.signals, self._run.entries)
+        holds = truth(expected.condition, Observed(signals, _NothingRuns(self._mission), begin, end), end)
+        if isinstance(holds, UnknownValue):
+            unset = [each.name for each in signals_in(expected.condition) if not _series_of(each, self._run)]
+            return None, f"nothing gives `{unset[0]}` a value" if unset else holds.why
+        if holds:
+            return None, ""
+        read = [(signal.name, signals.reading(signal, end[0])) for signal in signals_in(expected.condition)]
+        values = [f"{name} is {_shown(value)}" for name, value in dict(read).items()]
+        return replace(self._at_end(text), happened=", ".join(values) or "it does not hold"), ""
+
+
+class _NothingRuns(Nearby):
+    """The nodes after the end of the run."""
+
+    def __init__(self, mission: ScenarioMission) -> None:
+        super().__init__(ROOT, mission.joined, History())
+
+    def runs(self, target: object, moment: object, is_early: bool) -> bool:
+        """Nothing runs."""
+        return False
+
+
+def _series_of(signal: ResolvedSignal, run: ScenarioRun) -> SampleSeries | None:
+    return run.signals.get(signal.name) or run.entries.get(signal.entry)
+
+
+def _has(start: Start, pairs: Sequence[tuple[str, str]]) -> bool:
+    return all(is_value(start.values.get(port), value) for port, value in pairs)
+
+
+def _shown(value: object) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return f"{value:g}" if isinstance(value, float) else f'"{value}"' if isinstance(value, str) else str(value)

@@ -1,0 +1,56 @@
+"""Results for people: a line a scenario, and of those that are not as expected the first step that differs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from btq_lang.evidence.wording import duration
+from btq_lang.render.cells import printable
+from btq_lang.render.colour import Paint, painter
+from btq_lang.scenarios.results import ExpectationResult, Outcome, ScenarioReport, ScenarioResult, Step
+from btq_lang.util.text import counted
+
+
+def render(report: ScenarioReport, colour: bool = False) -> str:
+    """The results of all scenarios, and how many there are of each."""
+    paint = painter(colour)
+    lines = [line for scenario in report.scenarios for line in _scenario(scenario, paint)]
+    counts = [f"{number} {word}" for outcome, word in _COUNTED.items() if (number := report.count(outcome))]
+    return "\n".join([*lines, f"{counted(len(report.scenarios), 'scenario')}: {', '.join(counts)}"]) + "\n"
+
+
+def _scenario(scenario: ScenarioResult, paint: Paint) -> Iterator[str]:
+    mark = paint(_STYLES[scenario.outcome], scenario.outcome.ljust(_WIDTH))
+    ended = f": {scenario.ended} after {duration(scenario.seconds)}" if scenario.expectations else ""
+    yield f"{mark} {printable(f'{scenario.title} ({scenario.file}:{scenario.line}){ended}')}"
+    blank = " " * (_WIDTH + 1)
+    yield from (printable(f"{blank}{line}") for line in scenario.why.splitlines())
+    for expectation in scenario.expectations:
+        if expectation.outcome != "passed":
+            yield from (printable(f"{blank}{line}") for line in _expectation(expectation))
+    yield from (printable(f"{blank}  {line}") for line in scenario.drawing)
+    if scenario.assumed and (scenario.drawing or scenario.outcome != "passed"):
+        yield printable(f"{blank}ASSUMED to succeed at once: {', '.join(scenario.assumed)}")
+
+
+def _expectation(expectation: ExpectationResult) -> Iterator[str]:
+    line = f"line {expectation.line}: " if expectation.line else ""
+    yield f"{line}expect {expectation.text}"
+    yield f"  {step_in_words(expectation.step)}" if expectation.step is not None else f"  unknown: {expectation.why}"
+
+
+def step_in_words(step: Step) -> str:
+    """The first step that differs."""
+    place = f" ({step.file}:{step.line})" if step.file else ""
+    return f"after {duration(step.at)} {step.node}{place}: {step.happened}; expected {step.expected}"
+
+
+_WIDTH: Final = 7
+_COUNTED: Final[dict[Outcome, str]] = {
+    "passed": "passed",
+    "failed": "failed",
+    "unknown": "unknown",
+    "error": "with an error",
+}
+_STYLES: Final[dict[Outcome, str]] = {"passed": "hint", "failed": "error", "unknown": "warning", "error": "error"}
