@@ -65,6 +65,11 @@ def run(options: VerifyOptions, messages: CommandOutput) -> int:
         )
         reached = to_editor or (lambda files, runs: progress.reached(files, f", {counted(runs, 'run')} judged"))
         verification = judged(logs, means, options.mission, options.signals or "", options.jobs, reached)
+    if options.show is not None:
+        from btq_lang.commands.recorded import show_run
+
+        refuse(*verification.problems)
+        return show_run(verification.report, means, logs, options.show, options.output, messages)
     return finish(options, verification, missions, logs, messages)
 
 
@@ -72,7 +77,7 @@ def _inputs(
     options: VerifyOptions, problems: list[str]
 ) -> tuple[Sequence[str], Sequence[Candidate], dict[str, SampleSeries]]:
     """The logs, missions and samples of a command line; problems are appended."""
-    problem = form_problem(options.format, options.output, FORMATS)
+    problem = form_problem(options.format, options.output, FORMATS) if options.show is None else None
     if options.jobs < 1:
         problem = problem or f"--jobs {options.jobs}: expected a number of processes"
     if problem:

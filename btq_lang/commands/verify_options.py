@@ -25,6 +25,7 @@ class VerifyOptions(Record):
         live: the address of a running robot.
         summary: where to write the verdicts for an editor.
         run: the number of the run to print.
+        show: the requirement whose worst run is written as a scenario.
         store: where what is found in logs is kept.
         no_store: keep nothing, also where the project names a store.
         by: what the verdicts of a store are grouped by, `label` or `robot`.
@@ -44,6 +45,7 @@ class VerifyOptions(Record):
     live: str | None = None
     summary: str | None = None
     run: int | None = None
+    show: str | None = None
     store: str | None = None
     no_store: bool = False
     by: Sequence[str] = ()
@@ -95,6 +97,11 @@ def add_verify_options(parser: SuggestingParser) -> None:
         "--summary",
         metavar="FILE",
         help="for editors: write the verdicts as JSON with all that was measured, and progress to standard output",
+    )
+    parser.add(
+        "--show",
+        metavar="ID",
+        help="write the run with the worst violation of this requirement as a scenario, which btq test runs: with -o",
     )
     parser.add("--run", type=int, metavar="N", help="for editors: print the run with this number in a log, as JSON")
     kept = parser.add_argument_group("keeping verdicts")

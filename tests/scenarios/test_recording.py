@@ -1,0 +1,124 @@
+"""Runs of logs as scenarios: what the nodes do there they do in `btq test`."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterable, Set
+from pathlib import Path
+
+import pytest
+from evidence_logs import as_logged, btlog
+from in_process import run_btq
+
+from btq_lang.commands.recorded import run_of
+from btq_lang.evidence.identity import Candidate
+from btq_lang.evidence.judging import Means
+from btq_lang.evidence.model import Activation
+from btq_lang.evidence.readers.samples import read as read_samples
+from btq_lang.evidence.runs import activations
+from btq_lang.projects.opening import open_workspace
+from btq_lang.scenarios.mission import ScenarioMission, as_program, main_tree
+from btq_lang.scenarios.reading import plan_of
+from btq_lang.scenarios.recording import as_scenario
+from btq_lang.scenarios.running import START, ScenarioRun, run
+from btq_lang.syntax.tree import Scenario
+
+LABORATORY = Path(__file__).resolve().parents[2] / "examples" / "laboratory"
+SAMPLES = read_samples(str(LABORATORY / "signals.csv"))
+MISSION = """\
+QualityReq quick : performance-efficiency "Dock in time"
+    Dock takes at most 5 s
+
+Condition Low
+Action Move
+    input to : string
+Action Dock
+
+BehaviorTree Main
+    R?
+        -> Charging
+            Low
+            Retry (num_attempts = 3)
+                Dock
+        Inverter
+            ->
+                Move (to = "A")
+                Move (to = "B")
+                Move (to = "C")
+"""
+ODD = """\
+include "main.btq"
+
+scenario "A low battery on the way"
+    given Low answers false
+    given Move takes 10 s
+    given Dock fails after 2 s twice, then succeeds after 7.5 s
+    when 25 s have passed: Low answers true
+    expect mission succeeds
+"""
+
+
+def ran(path: Path, is_enforced: bool = True) -> tuple[ScenarioMission, ScenarioRun]:
+    """The run of the only scenario of a file."""
+    workspace = open_workspace(str(path))
+    name = next(each for each in workspace.files if each.endswith(f"/{path.name}"))
+    tree = main_tree(workspace, name)
+    program = as_program(workspace, name, tree)
+    mission = ScenarioMission(program, name, tree, is_enforced)
+    (scenario,) = program.files[name].of_type(Scenario)
+    return mission, run(mission, plan_of(mission, scenario, ()))
+
+
+def test_a_run_is_the_same_again(tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text(MISSION, encoding="utf-8")
+    (tmp_path / "odd.btq").write_text(ODD, encoding="utf-8")
+    assert run_btq("build", "main.btq", cwd=tmp_path)[0] == 0
+    _, first = ran(tmp_path / "odd.btq")
+    tree = as_logged((tmp_path / "main.xml").read_text(encoding="utf-8"))
+    rows = [(time - START, uid, status) for time, uid, status in first.rows]
+    (tmp_path / "run.btlog").write_bytes(btlog(tree, rows))
+    written = run_btq("verify", "run.btlog", "--mission", "main.btq", "--show", "quick", "-o", "case.btq", cwd=tmp_path)
+    assert written == (0, "", "run 1 of run.btlog is in case.btq: run it with btq test case.btq\n")
+    assert (tmp_path / "case.btq").read_text(encoding="utf-8") == (
+        'include "main.btq"\n\nscenario "Run 1 of run.btlog" verifies quick\n'
+        "    given every Low answers false\n"
+        "    when 25 s have passed: every Low answers true\n"
+        "    given every Move succeeds after 10 s 2 times, then does not end\n"
+        "    given every Dock fails after 2 s 2 times, then succeeds after 7.5 s\n"
+        "    expect mission succeeds\n    expect quick violated\n"
+    )
+    _, again = ran(tmp_path / "case.btq")
+    assert [*again.rows] == [*first.rows]
+    assert run_btq("test", "case.btq", cwd=tmp_path)[:2] == (
+        0,
+        "passed  Run 1 of run.btlog (case.btq:3): succeeds after 36.5 s\n1 scenario: 1 passed\n",
+    )
+
+
+def test_an_unknown_requirement_has_no_run(tmp_path: Path) -> None:
+    code, _, err = run_btq("verify", str(LABORATORY), "--show", "rq9", cwd=tmp_path)
+    assert (code, err) == (2, "btq verify: --show rq9: no requirement of a mission in these logs has this ID\n")
+
+
+@pytest.mark.parametrize("number", [1, 8, 21, 24])
+def test_runs_of_the_laboratory(number: int, tmp_path: Path) -> None:
+    """All that its nodes did happens again, but how often the conditions of reactive nodes are asked: the model that
+    made the log does not reset them."""
+    for name in ("mission.btq", "btq.toml"):
+        shutil.copy(LABORATORY / name, tmp_path / name)
+    workspace = open_workspace(str(tmp_path / "mission.btq"))
+    (path,) = workspace.files
+    candidate = Candidate(workspace, path, "mission", None)
+    recorded = run_of([str(LABORATORY / "runs.btlog")], candidate, Means([candidate], SAMPLES), number)
+    assert recorded is not None
+    text = as_scenario(recorded[1], "again", "mission.btq", [])
+    (tmp_path / "case.btq").write_text(text, encoding="utf-8")
+    mission, again = ran(tmp_path / "case.btq", is_enforced=False)
+    polled = {uid for uid, node in mission.tree.nodes.items() if node.kind in ("SensorsAlive", "BatteryFull")}
+    assert told(activations(again.session(mission)), polled) == told(recorded[1].activations, polled)
+
+
+def told(all_activations: Iterable[Activation], polled: Set[int]) -> list[tuple[int, str]]:
+    """The nodes in the order of their starts, each with its outcome, without some of them."""
+    started = sorted(all_activations, key=lambda activation: (activation.started, activation.uid))
+    return [(activation.uid, activation.outcome) for activation in started if activation.uid not in polled]
