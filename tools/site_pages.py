@@ -87,7 +87,7 @@ def on_page_markdown(markdown: str, page: Any, config: Any, files: Files) -> str
             return f"[{match[1]}]({inside})"
         return match[1] if target.startswith("../") and "/" not in page.file.src_uri else match[0]
 
-    markdown = re.sub(r"(?m)^```btq classic$", "```btq", markdown)
+    markdown = re.sub(r"(?m)^```btq (?:classic|scenario)$", "```btq", markdown)
     markdown = re.sub(r"\[([^\]]*)\]\(([^)#\s]+)\)", led, markdown)
     return re.sub(r"(?m)^\|.*", lambda row: re.sub(r"`[^`]+`", _plain_pipes, row[0]), markdown)
 

@@ -145,7 +145,7 @@ def test_a_folder_is_asked_for(btq: Run, command: str, output: str, message: str
 
 def test_check_a_clean_folder(process: Run) -> None:
     done = process("check", str(EXAMPLES / "laboratory"))
-    assert (done.returncode, done.stdout, done.stderr) == (0, "No problems found in 1 file\n", "")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "No problems found in 2 files\n", "")
 
 
 def test_check_shows_the_place(process: Run, tmp_path: Path) -> None:
