@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.export import is_mission
-from btq_lang.btcpp.outputs import as_xml
+from btq_lang.btcpp.outputs import as_xml, loaded_files
 from btq_lang.checks import check_each
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements.resolve import Requirements
@@ -83,6 +83,7 @@ def trace_tables(
         bundled: they are built with all their includes.
         details_of, verdicts_of, builds_of: as in `collect`.
     """
+    parts = [(workspace, loaded_files(workspace, requested) or requested) for workspace, requested in parts]
     errors = {path: number for workspace, requested in parts for path, number in _errors(workspace, requested)}
     broken = frozenset(path for path, number in errors.items() if number)
 
