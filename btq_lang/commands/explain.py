@@ -73,10 +73,10 @@ def _own_pages(name: str) -> Iterator[str]:
     match = find(tuple(name.split(".")))
     for quality in (match.quality,) if match.quality else match.candidates:
         yield "\n".join(_quality(quality, name, match.explanation))
-    for phrase in phrases_of(name):
-        yield f"# {phrase.words} ({phrase.part})\n\n    {phrase.form}\n\n{phrase.sentence}"
     if name in VERDICTS:
         yield _verdict(VERDICTS[name])
+    for phrase in phrases_of(name):
+        yield f"# {phrase.words} ({phrase.part})\n\n    {phrase.form}\n\n{phrase.sentence}"
     if name in ("verdict", "verdicts"):
         yield "\n".join(("# Verdicts of `btq verify`", "", *_verdicts(), "", "`btq explain` explains each of them."))
     if name in RESERVED_ATTRIBUTES:
