@@ -14,6 +14,11 @@ from btq_lang.simulator.scripts import holds, run_script
 
 def execute_tick(machine: Machine, node: SimulatedNode) -> int:
     """Tick a node; its result, which is its status afterwards unless it is SKIPPED."""
+    return tick_itself(machine, node) if machine.recall is None else machine.recall(node)
+
+
+def tick_itself(machine: Machine, node: SimulatedNode) -> int:
+    """Tick a node, whatever is remembered of it; its result."""
     result = _by_condition(machine, node) if node.conditions else IDLE
     if result == IDLE:
         try:

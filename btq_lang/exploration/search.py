@@ -1,0 +1,137 @@
+"""All states of a tree between two ticks, the nearest first, and what can happen on the way.
+
+One invariant: a state is reached by the fewest ticks; the order in which states are found is the same in every run.
+A search that ends before its budget has seen every state.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from time import process_time
+from typing import Any, Final
+
+from btq_lang.exploration.outcomes import ENDED, THROWN, UNKNOWN, Outcome, Outcomes, OutOfWork, flat
+from btq_lang.exploration.snapshots import Snapshots
+from btq_lang.simulator.nodes import RUNNING
+from btq_lang.simulator.ticking import reset_status
+from btq_lang.simulator.timers import NEVER, fire
+from btq_lang.util.record import Record
+
+
+class Budget(Record):
+    """How far to search.
+
+    Attributes:
+        states: how many states between two ticks.
+        seconds: of processor time; None: any.
+    """
+
+    states: int = 100_000
+    seconds: float | None = None
+
+
+class End(Record):
+    """How a run can end.
+
+    Attributes:
+        result: of the root, or THROWN or UNKNOWN.
+        message: of what is thrown, or why it is not known.
+    """
+
+    result: int
+    message: str
+
+
+class Search:
+    """What has been searched.
+
+    Attributes:
+        states: how many.
+        is_closed: all states were seen, and in each it is known what happens.
+        ends: how runs can end, with the choices of each tick of a shortest run that does.
+        found: the choices of each tick of a shortest run to what was asked; None: it was not found.
+        edges: for each state the states that a tick can lead to; empty unless they were to be kept.
+    """
+
+    def __init__(self, snapshots: Snapshots, budget: Budget, keeps_edges: bool = False) -> None:
+        self._snapshots: Final = snapshots
+        self._budget: Final = budget
+        self._keeps_edges: Final = keeps_edges
+        self.ends: Final[dict[End, Sequence[Sequence[int]]]] = {}
+        self.found: Sequence[Sequence[int]] | None = None
+        self.is_closed = False
+        self.edges: Final[list[list[int]]] = []
+        self._from: Final[list[tuple[int, Outcome | None]]] = []  # for each state, another one and what led from it
+        self.current = 0  # the state whose ticks are computed
+
+    @property
+    def states(self) -> int:
+        return len(self._from)
+
+    def run(self) -> Search:
+        """Search until what was asked is found, or there is nothing more, or the budget is spent; itself."""
+        snapshots, root = self._snapshots, self._snapshots.machine.root
+        outcomes = Outcomes(snapshots, self._budget.states * _RUNS_A_STATE)
+        states = [(snapshots.memories(root), snapshots.shared())]
+        numbers = {states[0]: 0}
+        self._from.append((0, None))
+        limit = None if self._budget.seconds is None else process_time() + self._budget.seconds
+        is_unknown = False
+        while self.current < len(states):
+            if limit is not None and process_time() > limit:
+                return self
+            memories, shared = states[self.current]
+            snapshots.put_back(root, memories)
+            snapshots.put_back_shared(shared)
+            try:
+                results = outcomes.of(root, self._fire_timers)
+            except OutOfWork:
+                return self
+            following: list[int] = []
+            for outcome in results:
+                if outcome.result == ENDED:
+                    self.found = self._ways(self.current, outcome)
+                    return self
+                if outcome.result != RUNNING:
+                    is_unknown = is_unknown or outcome.result == UNKNOWN
+                    end = End(outcome.result, outcome.message)
+                    if end not in self.ends:
+                        self.ends[end] = self._ways(self.current, outcome)
+                    continue
+                state = (outcome.memories, outcome.shared)
+                number = numbers.get(state)
+                if number is None:
+                    if len(states) >= self._budget.states:
+                        return self
+                    number = numbers[state] = len(states)
+                    states.append(state)
+                    self._from.append((self.current, outcome))
+                following.append(number)
+            if self._keeps_edges:
+                self.edges.append(following)
+            self.current += 1
+        self.is_closed = not is_unknown
+        return self
+
+    def _fire_timers(self) -> None:
+        """Have timers go off between two ticks, those of children before those of parents."""
+        snapshots = self._snapshots
+        snapshots.machine.is_woken = False
+        for node in reversed(snapshots.machine.timed):
+            if node.due != NEVER and snapshots.choose(2):
+                fire(snapshots.machine, node)
+
+    def ways_to(self, state: int) -> Sequence[Sequence[int]]:
+        """The choices of each tick that leads to a state."""
+        logs: list[Sequence[object]] = []
+        state, outcome = self._from[state]
+        while outcome is not None:
+            logs.append(outcome.log)
+            state, outcome = self._from[state]
+        return [flat(log) for log in reversed(logs)]
+
+    def _ways(self, state: int, outcome: Outcome) -> Sequence[Sequence[int]]:
+        return [*self.ways_to(state), flat(outcome.log)]
+
+
+_RUNS_A_STATE: Final = 100

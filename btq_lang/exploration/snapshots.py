@@ -1,0 +1,138 @@
+"""What a tick depends on and changes, as values: the memory of a node and all below it, and what all nodes share.
+
+One invariant: equal snapshots go on alike.  So values of entries are numbered in the order of their entries, and what
+cannot matter again is left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Final, TypeAlias
+
+from btq_lang.exploration.choices import Choices
+from btq_lang.exploration.values import Domain, FreeValue, domain_of
+from btq_lang.simulator.blackboard import Board, BoardEntry, Value
+from btq_lang.simulator.nodes import Machine, SimulatedNode
+
+Memories: TypeAlias = tuple[tuple[Any, ...], ...]  # of a node and all below it
+Shared: TypeAlias = tuple[Any, ...]
+
+
+class Snapshots:
+    """The parts of a machine that change, all of which can be kept and put back.
+
+    Attributes:
+        choices: those of the run that is going on.
+        domains: what is known of the values that leaves have written.
+        watched: what a question remembers of what has happened.
+    """
+
+    def __init__(self, machine: Machine) -> None:
+        self.machine: Final = machine
+        self.choices = Choices()
+        self.domains: dict[int, Domain] = {}
+        self.watched: Any = None
+        self._positions: Final = {node.uid: position for position, node in enumerate(machine.nodes)}
+        self._sizes: Final = _sizes(machine.root)
+        boards = {id(node.board): node.board for node in machine.nodes}
+        root = machine.root.board.root
+        self._boards: Final[Sequence[Board]] = [root, *[board for board in boards.values() if board is not root]]
+        self._counts_writes: Final = any(node.rules.counts_writes for node in machine.nodes)
+        self._values: Final[list[FreeValue]] = []
+        self._last = 0  # the number of the newest value
+
+    def choose(self, count: int) -> int:
+        """A number below `count`."""
+        return self.choices.choose(count)
+
+    def new_value(self, type_: str) -> FreeValue:
+        """A value of which nothing is known but its type."""
+        self._last += 1
+        self.domains[self._last] = domain_of(type_)
+        return FreeValue(self._last, self)
+
+    # ---- nodes ----
+
+    def memories(self, node: SimulatedNode) -> Memories:
+        """Those of a node and all below it."""
+        return tuple([each.memory() for each in self._below(node)])
+
+    def put_back(self, node: SimulatedNode, memories: Memories) -> None:
+        """Give a node and all below it the memories that they had."""
+        for each, memory in zip(self._below(node), memories, strict=True):
+            (
+                each.status,
+                each.index,
+                each.count,
+                each.skipped,
+                each.is_on,
+                each.completed,
+                each.seen,
+                each.result,
+                each.due,
+                each.has_fired,
+                each.queue,
+                each.kept,
+            ) = memory
+
+    def _below(self, node: SimulatedNode) -> Sequence[SimulatedNode]:
+        start = self._positions[node.uid]
+        return self.machine.nodes[start : start + self._sizes[node.uid]]
+
+    # ---- what they share ----
+
+    def shared(self) -> Shared:
+        """Entries, what is known of their values, and what is watched."""
+        numbers: dict[int, int] = {}
+        domains: list[Domain] = []
+        boards = tuple(
+            [
+                tuple([self._row(key, board.entries[key], numbers, domains) for key in sorted(board.entries)])
+                for board in self._boards
+            ]
+        )
+        return self.watched, boards, tuple(domains)
+
+    def _row(
+        self, key: str, entry: BoardEntry, numbers: dict[int, int], domains: list[Domain]
+    ) -> tuple[str, str, bool, Value | None, int]:
+        """An entry as a value, which is whole or real."""
+        value = entry.value
+        if isinstance(value, FreeValue):
+            domain = self.domains[value.number]
+            if domain.fixed is not None:
+                value = domain.fixed
+                value = float(value) if entry.type in ("double", "float") and not isinstance(value, str) else value
+            else:
+                if value.number not in numbers:
+                    domains.append(domain)
+                    numbers[value.number] = len(domains)
+                value = self._numbered(numbers[value.number])
+        return key, entry.type, isinstance(value, float), value, entry.number if self._counts_writes else 0
+
+    def _numbered(self, number: int) -> FreeValue:
+        while len(self._values) < number:
+            self._values.append(FreeValue(len(self._values) + 1, self))
+        return self._values[number - 1]
+
+    def put_back_shared(self, shared: Shared) -> None:
+        """Put entries back, what was known of their values, and what was watched."""
+        self.watched, boards, domains = shared
+        for board, rows in zip(self._boards, boards, strict=True):
+            entries = board.entries
+            entries.clear()
+            for key, type_, _, value, number in rows:
+                entries[key] = BoardEntry(type_, value, number)
+        self.domains = dict(enumerate(domains, start=1))
+        self._last = len(domains)
+
+
+def _sizes(root: SimulatedNode) -> dict[int, int]:
+    """How many nodes are below each, and itself, by number."""
+    sizes: dict[int, int] = {}
+    order = [root]
+    for node in order:
+        order += node.children
+    for node in reversed(order):
+        sizes[node.uid] = 1 + sum(sizes[child.uid] for child in node.children)
+    return sizes
