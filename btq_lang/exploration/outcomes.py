@@ -9,15 +9,17 @@ out, for all that follows is reached without the detour.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Final
+from time import process_time
+from typing import Final, TypeAlias
 
 from btq_lang.exploration.choices import Choices
+from btq_lang.exploration.resuming import is_endless, is_resumed
 from btq_lang.exploration.snapshots import Memories, Shared, Snapshots
 from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.nodes import SimulatedNode
-from btq_lang.simulator.ports import key_of
 from btq_lang.simulator.ticking import tick_itself
 
+_Place: TypeAlias = tuple[int, Memories, Shared]  # a node, before its tick or within it
 ENDED: Final = 5  # results beside those of nodes: what was asked has happened
 THROWN: Final = 6  # the engine throws an exception
 UNKNOWN: Final = 7  # what happens is not known
@@ -65,63 +67,99 @@ class Outcome:
 class Outcomes:
     """Computes outcomes, and remembers them."""
 
-    def __init__(self, snapshots: Snapshots, most_runs: int) -> None:
-        """Begin with nothing remembered; `most_runs`: how many ways are tried before `OutOfWork` is raised."""
+    def __init__(self, snapshots: Snapshots, most_runs: int, deadline: float | None = None) -> None:
+        """Begin with nothing remembered.
+
+        Args:
+            most_runs: how many ways are tried before `OutOfWork` is raised.
+            deadline: until when, in seconds of processor time; None: any.
+        """
         self._snapshots: Final = snapshots
         self._most_runs: Final = most_runs
+        self._deadline: Final = deadline
         self._runs = 0
-        self._remembered: dict[tuple[int, Memories, Shared], Sequence[Outcome]] = {}
-        self._seen: set[tuple[object, ...]] = set()  # where the ticks of children began in the run that is going on
-        endless = [node for node in snapshots.machine.nodes if _is_endless(node)]
-        self._uncounted: Final = {node.uid for node in endless}
-        self._endless: Final = {child.uid for node in endless for child in node.children}
+        self._remembered: Final[dict[_Place, Sequence[Outcome]]] = {}
+        self._steps: Final[dict[tuple[bool, _Place], Sequence[Outcome]]] = {}
+        nodes = snapshots.machine.nodes
+        self._parents: Final = {child.uid: node for node in nodes for child in node.children}
+        self._resumed: Final = {node.uid for node in nodes if is_resumed(node)}
+        self._uncounted: Final = {node.uid for node in nodes if is_endless(node)}
+        self._running: SimulatedNode | None = None  # whose run goes on
+        self._has_ticked = False  # it has ticked a child in this run
         snapshots.machine.recall = self._recall
 
     def of(self, node: SimulatedNode, before: Callable[[], None] | None = None) -> Sequence[Outcome]:
         """What a tick of a node can come to now; `before`: what happens first, which may choose as well."""
         snapshots = self._snapshots
-        memories, shared = snapshots.memories(node), snapshots.shared()
-        key = node.uid, memories, shared
-        remembered = self._remembered.get(key)
+        start: _Place = (node.uid, snapshots.memories(node), snapshots.shared())
+        remembered = self._remembered.get(start)
         if remembered is not None:
             return remembered
-        outer, outer_seen = snapshots.choices, self._seen
-        snapshots.choices = choices = Choices()
+        outer, running, has_ticked = snapshots.choices, self._running, self._has_ticked
         outcomes: dict[tuple[object, ...], Outcome] = {}
-        is_first = True
-        while is_first or choices.next_run():
-            if not is_first:
-                snapshots.put_back(node, memories)
-                snapshots.put_back_shared(shared)
-            is_first = False
-            outcome = self._run(node, before)
-            if outcome is not None:
-                outcomes.setdefault((outcome.result, outcome.message, outcome.memories, outcome.shared), outcome)
-        snapshots.choices, self._seen = outer, outer_seen
+        places: list[tuple[_Place, Outcome | None]] = [(start, None)]
+        reached = {start}
+        for place, way in places:
+            for step in self._steps_from(node, place, before if way is None else None, goes_on=way is not None):
+                if step.result == _GOES_ON:
+                    following: _Place = (node.uid, step.memories, step.shared)
+                    if following not in reached:
+                        reached.add(following)
+                        places.append((following, _joined(way, step)))
+                    continue
+                key = (step.result, step.message, step.memories, step.shared)
+                if key not in outcomes:
+                    outcomes[key] = _joined(way, step)
+        snapshots.choices, self._running, self._has_ticked = outer, running, has_ticked
         if len(self._remembered) >= _MOST_REMEMBERED:
             self._remembered.clear()
-        result = self._remembered[key] = tuple(outcomes.values())
+        result = self._remembered[start] = tuple(outcomes.values())
         return result
 
-    def _run(self, node: SimulatedNode, before: Callable[[], None] | None) -> Outcome | None:
-        """What one run comes to; None: it has come back to where it was."""
+    def _steps_from(
+        self, node: SimulatedNode, place: _Place, before: Callable[[], None] | None, goes_on: bool
+    ) -> Sequence[Outcome]:
+        """What a tick comes to until it would tick a second child, if its flow can go on there, or ends."""
+        is_resumed = node.uid in self._resumed
+        if is_resumed and (steps := self._steps.get((goes_on, place))) is not None:
+            return steps
+        snapshots = self._snapshots
+        _, memories, shared = place
+        choices = Choices()
+        outcomes: dict[tuple[object, ...], Outcome] = {}
+        has_more = True
+        while has_more:
+            snapshots.put_back(node, memories)
+            snapshots.put_back_shared(shared)
+            snapshots.choices, self._running, self._has_ticked = choices, node, False
+            outcome = self._run(node, before, goes_on)
+            outcomes.setdefault((outcome.result, outcome.message, outcome.memories, outcome.shared), outcome)
+            has_more = choices.next_run()
+        steps = tuple(outcomes.values())
+        if is_resumed:
+            if len(self._steps) >= _MOST_REMEMBERED:
+                self._steps.clear()
+            self._steps[goes_on, place] = steps
+        return steps
+
+    def _run(self, node: SimulatedNode, before: Callable[[], None] | None, goes_on: bool) -> Outcome:
+        """What one run comes to."""
         self._runs += 1
-        if self._runs > self._most_runs:
+        if self._runs > self._most_runs or (self._deadline is not None and process_time() > self._deadline):
             raise OutOfWork
-        self._seen = set()
         snapshots = self._snapshots
         try:
             if before is not None:
                 before()
-            result = tick_itself(snapshots.machine, node)
+            result = tick_itself(snapshots.machine, node, goes_on)
         except Happened:
             return Outcome(ENDED, snapshots.choices.log)
         except EngineError as error:
             return Outcome(THROWN, snapshots.choices.log, message=str(error), is_wrapped=error.is_wrapped)
         except NotModelled as error:
             return Outcome(UNKNOWN, snapshots.choices.log, message=str(error))
-        except _CameBack:
-            return None
+        except _GoesOn:
+            result = _GOES_ON
         if node.uid in self._uncounted:
             node.count = 0
         return Outcome(result, snapshots.choices.log, snapshots.memories(node), snapshots.shared())
@@ -129,16 +167,16 @@ class Outcomes:
     def _recall(self, node: SimulatedNode) -> int:
         """Tick a child as one of its outcomes says."""
         snapshots = self._snapshots
-        if node.uid in self._endless:
-            place = (node.uid, snapshots.memories(node), snapshots.shared())
-            if place in self._seen:
-                raise _CameBack
-            self._seen.add(place)
+        running = self._running
+        if running is not None and running.uid in self._resumed and self._parents.get(node.uid) is running:
+            if self._has_ticked:
+                raise _GoesOn
+            self._has_ticked = True
         if not node.children:
             return tick_itself(snapshots.machine, node)
         outcomes = self.of(node)
         if not outcomes:
-            raise _CameBack
+            raise NotModelled(f"{node.path} goes on without an end in one tick")
         choices = snapshots.choices
         outcome = outcomes[choices.pick(len(outcomes))]
         choices.log.append(outcome)
@@ -153,8 +191,15 @@ class Outcomes:
         return outcome.result
 
 
-class _CameBack(Exception):
-    """A tick has come back to where it was."""
+class _GoesOn(Exception):
+    """A tick has come to its second child."""
+
+
+def _joined(way: Outcome | None, step: Outcome) -> Outcome:
+    """What a step comes to, after others."""
+    if way is None:
+        return step
+    return Outcome(step.result, (way, step), step.memories, step.shared, step.message, step.is_wrapped)
 
 
 def flat(log: Sequence[object]) -> list[int]:
@@ -171,10 +216,5 @@ def flat(log: Sequence[object]) -> list[int]:
     return choices
 
 
-def _is_endless(node: SimulatedNode) -> bool:
-    """Whether it may tick its child again and again in one tick, and how often it did so does not matter."""
-    written = [node.ports.get(port, "") for port in ("num_cycles", "num_attempts")]
-    return any(text.strip() == "-1" and key_of(text, "") is None for text in written)
-
-
+_GOES_ON: Final = 8
 _MOST_REMEMBERED: Final = 200_000

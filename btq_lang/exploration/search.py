@@ -71,15 +71,13 @@ class Search:
     def run(self) -> Search:
         """Search until what was asked is found, or there is nothing more, or the budget is spent; itself."""
         snapshots, root = self._snapshots, self._snapshots.machine.root
-        outcomes = Outcomes(snapshots, self._budget.states * _RUNS_A_STATE)
+        limit = None if self._budget.seconds is None else process_time() + self._budget.seconds
+        outcomes = Outcomes(snapshots, self._budget.states * _RUNS_A_STATE, limit)
         states = [(snapshots.memories(root), snapshots.shared())]
         numbers = {states[0]: 0}
         self._from.append((0, None))
-        limit = None if self._budget.seconds is None else process_time() + self._budget.seconds
         is_unknown = False
         while self.current < len(states):
-            if limit is not None and process_time() > limit:
-                return self
             memories, shared = states[self.current]
             snapshots.put_back(root, memories)
             snapshots.put_back_shared(shared)
