@@ -11,7 +11,6 @@ from typing import Final
 
 from btq_lang.exploration.snapshots import Snapshots
 from btq_lang.simulator import nav2, nav2_conditions
-from btq_lang.simulator.leaves import halt_leaf, tick_custom
 from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SUCCESS, Flow, Machine, SimulatedNode, TickRules
 from btq_lang.simulator.ports import key_of
 from btq_lang.simulator.ticking import execute_tick, reset_child, set_status

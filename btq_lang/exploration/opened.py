@@ -66,9 +66,7 @@ class Opened:
         self.leaves: Final = FreeLeaves(kinds)
         world = FreeWorld()
         actions = [name for name, kind in kinds.items() if kind.is_action]
-        self.machine: Final[Machine] = load(
-            documents, main, dialect, self.leaves, self._changed, None, actions, world
-        )
+        self.machine: Final[Machine] = load(documents, main, dialect, self.leaves, self._changed, None, actions, world)
         self.snapshots: Final = Snapshots(self.machine)
         self.leaves.snapshots = world.snapshots = self.snapshots
         self.leaves.unset_read = self._unset_read

@@ -88,7 +88,7 @@ class Outcomes:
         self._has_ticked = False  # it has ticked a child in this run
         snapshots.machine.recall = self._recall
 
-    def of(self, node: SimulatedNode, before: Callable[[], None] | None = None) -> Sequence[Outcome]:
+    def of(self, node: SimulatedNode, before: Callable[[], object] | None = None) -> Sequence[Outcome]:
         """What a tick of a node can come to now; `before`: what happens first, which may choose as well."""
         snapshots = self._snapshots
         start: _Place = (node.uid, snapshots.memories(node), snapshots.shared())
@@ -117,7 +117,7 @@ class Outcomes:
         return result
 
     def _steps_from(
-        self, node: SimulatedNode, place: _Place, before: Callable[[], None] | None, goes_on: bool
+        self, node: SimulatedNode, place: _Place, before: Callable[[], object] | None, goes_on: bool
     ) -> Sequence[Outcome]:
         """What a tick comes to until it would tick a second child, if its flow can go on there, or ends."""
         is_resumed = node.uid in self._resumed
@@ -142,7 +142,7 @@ class Outcomes:
             self._steps[goes_on, place] = steps
         return steps
 
-    def _run(self, node: SimulatedNode, before: Callable[[], None] | None, goes_on: bool) -> Outcome:
+    def _run(self, node: SimulatedNode, before: Callable[[], object] | None, goes_on: bool) -> Outcome:
         """What one run comes to."""
         self._runs += 1
         if self._runs > self._most_runs or (self._deadline is not None and process_time() > self._deadline):

@@ -25,6 +25,7 @@ class Snapshots:
         choices: those of the run that is going on.
         domains: what is known of the values that leaves have written.
         watched: what a question remembers of what has happened.
+        tracked: nodes whose statuses a question asks for wherever a tick is.
     """
 
     def __init__(self, machine: Machine) -> None:
@@ -32,6 +33,7 @@ class Snapshots:
         self.choices = Choices()
         self.domains: dict[int, Domain] = {}
         self.watched: Any = None
+        self.tracked: Sequence[SimulatedNode] = ()
         self._positions: Final = {node.uid: position for position, node in enumerate(machine.nodes)}
         self._sizes: Final = _sizes(machine.root)
         boards = {id(node.board): node.board for node in machine.nodes}
@@ -91,7 +93,7 @@ class Snapshots:
                 for board in self._boards
             ]
         )
-        return self.watched, boards, tuple(domains)
+        return self.watched, tuple([node.status for node in self.tracked]), boards, tuple(domains)
 
     def _row(
         self, key: str, entry: BoardEntry, numbers: dict[int, int], domains: list[Domain]
@@ -117,7 +119,7 @@ class Snapshots:
 
     def put_back_shared(self, shared: Shared) -> None:
         """Put entries back, what was known of their values, and what was watched."""
-        self.watched, boards, domains = shared
+        self.watched, _, boards, domains = shared
         for board, rows in zip(self._boards, boards, strict=True):
             entries = board.entries
             entries.clear()
