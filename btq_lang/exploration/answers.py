@@ -30,6 +30,7 @@ class Answer(Record):
         states: how many were seen.
         witness: for yes, the ticks of a shortest run, without those of a circle.
         circle: the ticks that a run can repeat without an end, if that was asked.
+        is_assumed: the witness takes a value that was calculated from unknown ones to be something, which it may not be.
         unknown: what is not known of the tree, so that not all was seen.
     """
 
@@ -37,6 +38,7 @@ class Answer(Record):
     states: int
     witness: tuple[Tick, ...] = ()
     circle: tuple[Tick, ...] = ()
+    is_assumed: bool = False
     unknown: tuple[str, ...] = ()
 
 
@@ -64,8 +66,9 @@ def _answered(opened: Opened, question: Question, asking: Asking, budget: Budget
         found = search.circle(leaves) if isinstance(question.asked, NeverEnds) else search.found
         if found is not None:
             ways, circle = found if isinstance(found, tuple) else (found, ())
+            opened.snapshots.has_assumed = False
             ticks = replay(opened, asking, leaves, [*ways, *circle])
-            return Answer("yes", states, ticks[: len(ways)], ticks[len(ways) :])
+            return Answer("yes", states, ticks[: len(ways)], ticks[len(ways) :], opened.snapshots.has_assumed)
         if leaves == running:
             unknown = tuple([end.message for end in search.ends if end.result == UNKNOWN])
             return Answer("no" if search.is_closed else "not found", states, unknown=unknown)

@@ -25,7 +25,6 @@ from btq_lang.simulator.ports import key_of
 from btq_lang.simulator.versions import Dialect
 from btq_lang.syntax.tree import Path
 from btq_lang.util.spelling import did_you_mean, near
-from btq_lang.workspace import inputs
 from btq_lang.workspace.engine_version import written_for
 from btq_lang.workspace.port_types import as_kind
 from btq_lang.workspace.resolved import ResolvedNode
@@ -119,9 +118,8 @@ class ExploredMission:
         if node is None:
             return None
         file = self.workspace.files[node.path]
-        entry = self.workspace.store.ask(inputs.entry, node.path, node.facts)
-        start = file.on_disk(node.place.span.shifted(entry.start)).start
-        return node.path, file.source_lines.place(start)[0] + 1
+        span = file.on_disk(file.span_of(node.place))
+        return node.path, file.source_lines.position(span.start).line + 1
 
     def server(self, node: SimulatedNode) -> str:
         """The action server that a leaf calls; empty if none is known."""

@@ -13,6 +13,7 @@ from btq_lang.btcpp.document import Document
 from btq_lang.exploration.choices import Choices
 from btq_lang.exploration.leaves import FreeLeaves, FreeWorld, LeafKind, set_free
 from btq_lang.exploration.snapshots import Memories, Shared, Snapshots
+from btq_lang.simulator.errors import EngineError
 from btq_lang.simulator.leaves import tick_custom
 from btq_lang.simulator.loading import load
 from btq_lang.simulator.nodes import Machine, SimulatedNode
@@ -67,6 +68,9 @@ class Opened:
         world = FreeWorld()
         actions = [name for name, kind in kinds.items() if kind.is_action]
         self.machine: Final[Machine] = load(documents, main, dialect, self.leaves, self._changed, None, actions, world)
+        for node in self.machine.nodes:
+            if node.rules.is_decorator and len(node.children) != 1:
+                raise EngineError(f"{node.path} must have exactly 1 child")
         self.snapshots: Final = Snapshots(self.machine)
         self.leaves.snapshots = world.snapshots = self.snapshots
         self.leaves.unset_read = self._unset_read

@@ -144,6 +144,6 @@ _ENTRY: Final = "entry__"
 _KEY: Final = re.compile(r"\{([^{}]*)\}")
 _EVENT_WORDS: Final = frozenset(("starts", "succeeds", "fails", "finishes", "halts", "before", "after"))
 _FORMS: Final = (
-    "a question is an event (`Pick starts`), one `before` or `after` another, a condition (`node Pick and {done} == 1`), "
-    "`Pick reads {pose} unset` or `mission does not end`"
+    "a question is an event (`Pick starts`), one `before` or `after` another, a condition "
+    "(`node Pick and {done} == 1`), `Pick reads {pose} unset` or `mission does not end`"
 )

@@ -6,13 +6,12 @@ import json
 from collections.abc import Iterator, Sequence
 from typing import Final
 
-from btq_lang.requirements.fingerprint import Json
-
 from btq_lang.exploration.answers import Answer
 from btq_lang.exploration.missions import ExploredMission
 from btq_lang.exploration.questions import Question
 from btq_lang.exploration.surveys import Survey
 from btq_lang.exploration.witness import Tick
+from btq_lang.requirements.fingerprint import Json
 from btq_lang.util.record import Record
 from btq_lang.util.text import counted
 from btq_lang.workspace.loader import shown
@@ -47,6 +46,8 @@ def _lines(explored: Explored) -> Iterator[str]:
     for asked in explored.asked:
         answer = asked.answer
         yield f"  {'can' if asked.is_wanted else 'never'} {asked.question.text}: {_word(answer)}"
+        if answer.is_assumed:
+            yield "    if what is calculated from entries can have such values"
         yield from (f"    not known: {reason}" for reason in answer.unknown)
         yield from _run(mission, answer.witness, 1)
         if answer.circle:
@@ -104,6 +105,7 @@ def _mission(explored: Explored) -> Json:
                 "asked": "can" if asked.is_wanted else "never",
                 "answer": asked.answer.word,
                 "states": asked.answer.states,
+                "assumed": asked.answer.is_assumed,
                 "unknown": list(asked.answer.unknown),
                 "witness": _ticks(mission, asked.answer.witness),
                 "circle": _ticks(mission, asked.answer.circle),

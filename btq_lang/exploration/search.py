@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
 from functools import partial
+from itertools import pairwise
 from time import process_time
 from typing import Final
 
@@ -100,7 +101,7 @@ class Search:
                     if end not in self.ends:
                         self.ends[end] = self._ways(self.current, outcome)
                     continue
-                state = (outcome.memories, outcome.shared)
+                state = self._counted_anew(outcome)
                 number = numbers.get(state)
                 if number is None:
                     if len(states) >= self._budget.states:
@@ -114,6 +115,16 @@ class Search:
             self.current += 1
         self.is_closed = not is_unknown
         return self
+
+    def _counted_anew(self, outcome: Outcome) -> tuple[Memories, Shared]:
+        """The state that an outcome leaves, with writes counted anew."""
+        snapshots, root = self._snapshots, self._snapshots.machine.root
+        if not snapshots.counts_writes:
+            return outcome.memories, outcome.shared
+        snapshots.put_back(root, outcome.memories)
+        snapshots.put_back_shared(outcome.shared)
+        snapshots.count_anew()
+        return snapshots.memories(root), snapshots.shared()
 
     def circle(self, leaves: Collection[int]) -> tuple[Sequence[Sequence[int]], Sequence[Sequence[int]]] | None:
         """The choices of a run to a circle, and those of the circle, on which none of some leaves and no timer runs
@@ -140,7 +151,7 @@ class Search:
     def _around(self, stops: Sequence[int], knot: Collection[int]) -> Sequence[Sequence[int]]:
         """The choices of a walk past some states, within a knot."""
         ways: list[Sequence[int]] = []
-        for start, stop in zip(stops, stops[1:], strict=False):
+        for start, stop in pairwise(stops):
             if start != stop or len(stops) == 2:
                 ways += self._walk(start, stop, knot)
         return ways or self._walk(stops[0], stops[0], knot)

@@ -10,9 +10,11 @@ from collections.abc import Sequence
 from typing import Any, Final, TypeAlias
 
 from btq_lang.exploration.choices import Choices
-from btq_lang.exploration.values import Domain, FreeValue, domain_of
+from btq_lang.exploration.values import Domain, FreeValue, Origin, domain_of
 from btq_lang.simulator.blackboard import Board, BoardEntry, Value
 from btq_lang.simulator.nodes import Machine, SimulatedNode
+from btq_lang.simulator.ports import key_of
+from btq_lang.util.record import replace
 
 Memories: TypeAlias = tuple[tuple[Any, ...], ...]  # of a node and all below it
 Shared: TypeAlias = tuple[Any, ...]
@@ -25,6 +27,7 @@ class Snapshots:
         choices: those of the run that is going on.
         domains: what is known of the values that leaves have written.
         watched: what a question remembers of what has happened.
+        has_assumed: a value that was calculated from unknown ones was taken to be something.
         tracked: nodes whose statuses a question asks for wherever a tick is.
     """
 
@@ -33,13 +36,18 @@ class Snapshots:
         self.choices = Choices()
         self.domains: dict[int, Domain] = {}
         self.watched: Any = None
+        self.has_assumed = False
         self.tracked: Sequence[SimulatedNode] = ()
         self._positions: Final = {node.uid: position for position, node in enumerate(machine.nodes)}
         self._sizes: Final = _sizes(machine.root)
         boards = {id(node.board): node.board for node in machine.nodes}
         root = machine.root.board.root
         self._boards: Final[Sequence[Board]] = [root, *[board for board in boards.values() if board is not root]]
-        self._counts_writes: Final = any(node.rules.counts_writes for node in machine.nodes)
+        self._counting: Final = [node for node in machine.nodes if node.rules.counts_writes]
+        unsets = any(node.id == "UnsetBlackboard" for node in machine.nodes) and bool(self._counting)
+        homes = [node.board.home(updated_key(node)) for node in self._counting]
+        # The entries whose writes count; None: all, for one that is removed and made again counts from 1.
+        self._counted: Final = None if unsets else frozenset([(id(board), name) for board, name in homes])
         self._values: Final[list[FreeValue]] = []
         self._last = 0  # the number of the newest value
 
@@ -52,6 +60,19 @@ class Snapshots:
         self._last += 1
         self.domains[self._last] = domain_of(type_)
         return FreeValue(self._last, self)
+
+    def derived(self, origin: Origin) -> FreeValue:
+        """The value that an operator makes of two."""
+        for number, domain in self.domains.items():
+            if domain.origin == origin:
+                return FreeValue(number, self)
+        self._last += 1
+        self.domains[self._last] = Domain(is_derived=True, origin=origin)
+        return FreeValue(self._last, self)
+
+    def assume(self) -> None:
+        """A derived value was taken to be something."""
+        self.has_assumed = True
 
     # ---- nodes ----
 
@@ -89,16 +110,51 @@ class Snapshots:
         domains: list[Domain] = []
         boards = tuple(
             [
-                tuple([self._row(key, board.entries[key], numbers, domains) for key in sorted(board.entries)])
+                tuple([self._row(board, key, numbers, domains) for key in sorted(board.entries)])
                 for board in self._boards
             ]
         )
+        if any(domain.is_derived for domain in self.domains.values()):
+            self._add_derived(numbers, domains)
         return self.watched, tuple([node.status for node in self.tracked]), boards, tuple(domains)
 
+    def _add_derived(self, numbers: dict[int, int], domains: list[Domain]) -> None:
+        """Add what is known of values derived from others that last, and name these by their new numbers."""
+        for number, domain in sorted(self.domains.items()):
+            if domain.is_derived:
+                operands = [part[0] for part in domain.origin if isinstance(part, tuple)]
+                lasts = bool(operands) and all(operand in numbers for operand in operands)
+                origin: Origin = ()
+                if lasts:
+                    origin = tuple([(numbers[part[0]],) if isinstance(part, tuple) else part for part in domain.origin])
+                renamed = replace(domain, origin=origin)
+                if number in numbers:
+                    domains[numbers[number] - 1] = renamed
+                elif lasts and renamed != Domain(is_derived=True, origin=origin):
+                    domains.append(renamed)
+                    numbers[number] = len(domains)
+
+    @property
+    def counts_writes(self) -> bool:
+        """Whether writes can be counted anew."""
+        return bool(self._counting) and self._counted is not None
+
+    def count_anew(self) -> None:
+        """Count the writes of entries anew: it only matters whether a node has seen the last one."""
+        written: list[BoardEntry] = []
+        for node in self._counting:
+            entry = node.board.entry(updated_key(node))
+            if entry is not None and entry.number:
+                written.append(entry)
+                node.seen = _SEEN if node.seen == entry.number else _UNSEEN
+        for entry in written:
+            entry.number = _SEEN
+
     def _row(
-        self, key: str, entry: BoardEntry, numbers: dict[int, int], domains: list[Domain]
+        self, board: Board, key: str, numbers: dict[int, int], domains: list[Domain]
     ) -> tuple[str, str, bool, Value | None, int]:
         """An entry as a value, which is whole or real."""
+        entry = board.entries[key]
         value = entry.value
         if isinstance(value, FreeValue):
             domain = self.domains[value.number]
@@ -110,7 +166,8 @@ class Snapshots:
                     domains.append(domain)
                     numbers[value.number] = len(domains)
                 value = self._numbered(numbers[value.number])
-        return key, entry.type, isinstance(value, float), value, entry.number if self._counts_writes else 0
+        number = entry.number if self._counted is None or (id(board), key) in self._counted else 0
+        return key, entry.type, isinstance(value, float), value, number
 
     def _numbered(self, number: int) -> FreeValue:
         while len(self._values) < number:
@@ -129,6 +186,12 @@ class Snapshots:
         self._last = len(domains)
 
 
+def updated_key(node: SimulatedNode) -> str:
+    """The entry whose writes a node counts."""
+    written = node.ports.get("entry", "")
+    return key_of(written, "entry") or written
+
+
 def _sizes(root: SimulatedNode) -> dict[int, int]:
     """How many nodes are below each, and itself, by number."""
     sizes: dict[int, int] = {}
@@ -138,3 +201,7 @@ def _sizes(root: SimulatedNode) -> dict[int, int]:
     for node in reversed(order):
         sizes[node.uid] = 1 + sum(sizes[child.uid] for child in node.children)
     return sizes
+
+
+_UNSEEN: Final = 1
+_SEEN: Final = 2

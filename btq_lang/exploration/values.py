@@ -7,12 +7,14 @@ value.  It does not know sums of such values: what needs one ends with `NotModel
 from __future__ import annotations
 
 from math import ceil, floor, inf
-from typing import Final, Protocol
+from typing import Final, Protocol, TypeAlias
 
 from btq_lang.simulator.blackboard import LIMITS, Unknown, Value
 from btq_lang.simulator.errors import NotModelled
 from btq_lang.simulator.scripts import NUMBER, compared
 from btq_lang.util.record import Record, replace
+
+Origin: TypeAlias = tuple[str | float | tuple[int], ...]
 
 
 class Domain(Record):
@@ -24,6 +26,8 @@ class Domain(Record):
         is_whole: a number without a fraction.
         excluded: what it is not, numbers and texts.
         fixed: what it is; None: more than one value.
+        is_derived: it is calculated from other such values, and what they are is not held against it.
+        origin: the operator and the two operands, of which an unknown one is a number in brackets; empty: none.
     """
 
     low: float = -inf
@@ -33,12 +37,20 @@ class Domain(Record):
     is_whole: bool = False
     excluded: frozenset[float | str] = frozenset()
     fixed: float | int | str | None = None
+    is_derived: bool = False
+    origin: Origin = ()
 
 
 class Domains(Protocol):
     """What is known of all values, and who decides where more than one thing is possible."""
 
     domains: dict[int, Domain]
+
+    def derived(self, origin: Origin) -> FreeValue:
+        """The value that an operator makes of two."""
+
+    def assume(self) -> None:
+        """A derived value was taken to be something."""
 
     def choose(self, count: int) -> int:
         """A number below `count`."""
@@ -72,8 +84,18 @@ class FreeValue(Unknown):
             return compared(domain.fixed, operator, other)
         answers = [(answer, rest) for answer in (True, False) if (rest := _rest(domain, operator, answer, other))]
         answer, rest = answers[self.all.choose(len(answers))]
+        if domain.is_derived and len(answers) > 1:
+            self.all.assume()
         self.all.domains[self.number] = rest
         return answer
+
+    def combined(self, operator: str, other: Value, is_left: bool) -> Value:
+        """A value of which nothing is known but that the same operator makes the same of the same values."""
+        mine: tuple[int] = (self.number,)
+        its = (
+            (other.number,) if isinstance(other, FreeValue) else str(other) if isinstance(other, str) else float(other)
+        )
+        return self.all.derived((operator, mine, its) if is_left else (operator, its, mine))
 
     def __float__(self) -> float:
         return float(self._value("read as a number"))

@@ -23,6 +23,10 @@ class Unknown:
         """Whether a comparison with it on the left holds."""
         raise self.needed("compared")
 
+    def combined(self, operator: str, other: Value, is_left: bool) -> Value:
+        """What an operator makes of it and another value; `is_left`: it is the left operand."""
+        raise self.needed("calculated with")
+
     def __bool__(self) -> bool:
         return self.compared("!=", 0)
 

@@ -183,6 +183,11 @@ def _real(value: Value | None) -> float:
 
 def _combined(operator: str, left: Value, right: Value) -> Value:
     """The value of two operands."""
+    if operator not in ("&&", "||"):
+        if isinstance(left, Unknown):
+            return left.combined(operator, right, is_left=True)
+        if isinstance(right, Unknown):
+            return right.combined(operator, left, is_left=False)
     if isinstance(left, str) or isinstance(right, str):
         are_texts = isinstance(left, str) and isinstance(right, str)
         if (operator == "+" and are_texts) or operator == "..":
@@ -216,10 +221,12 @@ def _combined(operator: str, left: Value, right: Value) -> Value:
     return float(bits[0] | bits[1] if operator == "|" else bits[0] ^ bits[1])
 
 
-def _negated(operator: str, operand: float | Unknown) -> float:
+def _negated(operator: str, operand: float | Unknown) -> Value:
     """The value of `-x`, `~x` or `!x`."""
     if isinstance(operand, Unknown) and operator == "!":
         return float(not operand)
+    if isinstance(operand, Unknown):
+        return operand.combined("-", 0, is_left=False)
     if operator == "-":
         return -float(operand)
     return float(~int(operand)) if operator == "~" else float(operand == 0)
@@ -278,9 +285,8 @@ def _next(entry: BoardEntry, value: Value) -> Value:
 def _changed(entry: BoardEntry, operator: str, value: Value) -> Value:
     """What an entry holds after `+=` and its like."""
     old = _set(entry.value, "left", operator)
-    for operand in (old, value):
-        if isinstance(operand, Unknown):
-            raise operand.needed("changed")
+    if isinstance(old, Unknown) or isinstance(value, Unknown):
+        return _combined(operator[0], old, value)
     if isinstance(value, str):
         if operator != "+=" or not isinstance(old, str):
             raise EngineError("This Assignment operator can't be used with a non-numeric type")
