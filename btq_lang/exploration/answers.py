@@ -30,7 +30,7 @@ class Answer(Record):
         states: how many were seen.
         witness: for yes, the ticks of a shortest run, without those of a circle.
         circle: the ticks that a run can repeat without an end, if that was asked.
-        is_assumed: the witness takes a value that was calculated from unknown ones to be something, which it may not be.
+        is_assumed: the witness takes a value calculated from unknown ones to be something, which it may not be.
         unknown: what is not known of the tree, so that not all was seen.
     """
 

@@ -76,12 +76,12 @@ class FreeValue(Unknown):
 
     def compared(self, operator: str, other: Value) -> bool:
         """Whether a comparison holds; where both is possible, one is chosen, and known from now on."""
-        if other == self:
+        if isinstance(other, FreeValue) and other.number == self.number:
             return operator in ("==", "<=", ">=")
-        other = self._fixed(other)
         domain = self.all.domains[self.number]
         if domain.fixed is not None:
             return compared(domain.fixed, operator, other)
+        other = self._fixed(other)
         answers = [(answer, rest) for answer in (True, False) if (rest := _rest(domain, operator, answer, other))]
         answer, rest = answers[self.all.choose(len(answers))]
         if domain.is_derived and len(answers) > 1:
