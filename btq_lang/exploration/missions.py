@@ -54,7 +54,7 @@ class ExploredMission:
         self.path: Final = path
         file = workspace.files[path]
         scope = workspace.scope(path)
-        distribution = distribution_among(scope.paths)
+        distribution = distribution_among(scope.node_paths)
         is_mine = workspace.store.ask(lookups.signs, path)
         versions = written_for(workspace.project, distribution, is_mine)
         version = workspace.project.target if not versions else versions[-1]

@@ -6,7 +6,6 @@ One invariant: nothing is remembered here; a witness is what the model does when
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from math import inf
 from typing import Final
 
 from btq_lang.exploration.choices import Choices
@@ -148,14 +147,15 @@ def described(domain: Domain) -> str:
     if domain.fixed is not None:
         return f"= {domain.fixed!r}"
     parts: list[str] = []
-    if domain.low > -inf:
+    if domain.low > -_LIMIT:
         parts.append(f"{'>' if domain.is_low_open else '>='} {domain.low:g}")
-    if domain.high < inf:
+    if domain.high < _LIMIT:
         parts.append(f"{'<' if domain.is_high_open else '<='} {domain.high:g}")
     parts += [f"!= {value!r}" for value in sorted(domain.excluded, key=str)]
     return " and ".join(parts) if parts else "has a value"
 
 
+_LIMIT: Final = 2.0**31 - 1  # beyond it, a limit is that of a type
 _WORDS: Final = {
     SUCCESS: "succeeds",
     FAILURE: "fails",

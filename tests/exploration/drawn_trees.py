@@ -8,6 +8,7 @@ CONTROLS = (
     *("Sequence", "Fallback", "ReactiveSequence", "ReactiveFallback", "SequenceWithMemory", "AsyncSequence"),
     *("IfThenElse", "WhileDoElse", "ParallelAll", "Switch2", "TryCatch", "Parallel"),
 )
+CHILDREN = {"Switch2": (3, 3), "IfThenElse": (2, 3), "WhileDoElse": (2, 3), "TryCatch": (2, 3)}
 DECORATORS = (
     *("Inverter", "ForceSuccess", "ForceFailure", "KeepRunningUntilFailure", "RunOnce"),
     *('RetryUntilSuccessful num_attempts="2"', 'Repeat num_cycles="2"', 'Timeout msec="100"', 'Delay delay_msec="100"'),
@@ -15,7 +16,8 @@ DECORATORS = (
 )
 LEAVES = (
     *("Act", "Act", "Cond", "Do", 'Act out="{x}"', 'Cond out="{y}"', 'Do a="{z}"', 'Act in="{y}"'),
-    *('Script code="x := 1"', 'Script code="y := x"', 'ScriptCondition code="x &gt; 2"', "AlwaysSuccess", "AlwaysFailure"),
+    *('Script code="x := 1"', 'Script code="y := x"', 'ScriptCondition code="x &gt; 2"'),
+    *("AlwaysSuccess", "AlwaysFailure"),
     *('ScriptCondition code="x == y"', 'ScriptCondition code="y &lt; 5 &amp;&amp; y &gt; 1"', 'Sleep msec="5"'),
     *('SetBlackboard value="{x}" output_key="y"', 'Act _skipIf="x == 1"', 'Act _while="y != 3"'),
 )
@@ -34,8 +36,7 @@ def drawn(random: Random) -> str:
             start = random.choice(DECORATORS)
             return f"<{start}>{node(depth + 1)}</{start.split()[0]}>"
         tag = random.choice(CONTROLS)
-        least, most = {"Switch2": (3, 3), "IfThenElse": (2, 3), "WhileDoElse": (2, 3), "TryCatch": (2, 3)}.get(tag, (1, 3))
-        number = random.randint(least, most)
+        number = random.randint(*CHILDREN.get(tag, (1, 3)))
         ports = ' variable="{x}" case_1="1" case_2="4"' if tag == "Switch2" else ""
         return f"<{tag}{ports}>{''.join(node(depth + 1) for _ in range(number))}</{tag}>"
 

@@ -137,7 +137,8 @@ def _state(tree: Opened) -> object:
         value = board.entries[key].value
         if isinstance(value, FreeValue):
             domain = tree.snapshots.domains[value.number]
-            entries.append((key, names.setdefault(value.number, key) if domain.fixed is None else "", repr(domain)))
+            name = names.setdefault(value.number, key)
+            entries.append((key, repr(domain.fixed)) if domain.fixed is not None else (key, name, repr(domain)))
         else:
             entries.append((key, repr(value)))
     return tuple(node.memory() for node in tree.machine.nodes), tuple(entries)

@@ -89,5 +89,3 @@ def test_same_states_changes_and_ends(seed: int) -> None:
         assert (answer.found is not None) == (pair in orders)
         if answer.found is not None:
             assert replay(tree, Seen(tree, pair), leaves, answer.found)[-1].result == ""
-
-
