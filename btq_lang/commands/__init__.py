@@ -12,6 +12,7 @@ How to check, build or judge is unknown here; other packages do that.
     explain.py         with explain_nav2, a page about a node of Nav2
     init.py            with init_from_xml, whose parts are init_lines and packages
     verify.py          with verify_options, candidates, stored, live, live_screen, verdict_report and verdict_events
+    explore.py         what can happen
     compare.py, report.py, tracing.py   what a store has, and the overview; given_evidence: verdicts beside requirements
     completion.py      with the scripts in shell/
 """

@@ -8,8 +8,8 @@ from btq_lang.commands.output import write_output
 from btq_lang.exploration.answers import answered
 from btq_lang.exploration.missions import ExploredMission, NotExplored, explorable
 from btq_lang.exploration.questions import NoQuestion, Question, parse_question
-from btq_lang.exploration.report import Asked, Explored, as_json, as_text
-from btq_lang.exploration.search import Budget
+from btq_lang.exploration.report import AskedQuestion, Explored, as_json, as_text
+from btq_lang.exploration.search import SearchBudget
 from btq_lang.exploration.surveys import surveyed
 from btq_lang.exploration.watching import Unasked
 from btq_lang.projects.files import Files, no_mission_below, usage_problem
@@ -51,7 +51,7 @@ def run(options: ExploreOptions, messages: CommandOutput) -> int:
     refuse(no_mission_below(options.paths, groups))
     if problems:
         return 2
-    budget = Budget(options.states, options.seconds)
+    budget = SearchBudget(options.states, options.seconds)
     code = 0
     explored: list[Explored] = []
     for group in groups:
@@ -60,7 +60,8 @@ def run(options: ExploreOptions, messages: CommandOutput) -> int:
             try:
                 mission = ExploredMission(group.workspace, path, options.tree or "")
                 asked = [
-                    Asked(question, is_wanted, answered(mission, question, budget)) for question, is_wanted in questions
+                    AskedQuestion(question, is_wanted, answered(mission, question, budget))
+                    for question, is_wanted in questions
                 ]
                 survey = surveyed(mission, budget) if not questions else None
             except (NotExplored, Unasked) as problem:
@@ -87,7 +88,7 @@ def _question(text: str) -> Question:
         raise Refused(f"`{text}`: {problem}") from None
 
 
-def _code(asked: Asked, strict: bool) -> int:
+def _code(asked: AskedQuestion, strict: bool) -> int:
     """Whether an answer is not the wanted one."""
     if asked.answer.word == "not found":
         return int(asked.is_wanted or strict)

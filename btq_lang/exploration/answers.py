@@ -12,9 +12,9 @@ from typing import Literal, TypeAlias
 from btq_lang.exploration.missions import ExploredMission
 from btq_lang.exploration.opened import Opened
 from btq_lang.exploration.outcomes import UNKNOWN
-from btq_lang.exploration.questions import NeverEnds, Question
+from btq_lang.exploration.questions import EndlessRun, Question
 from btq_lang.exploration.running import may_run
-from btq_lang.exploration.search import Budget, Search
+from btq_lang.exploration.search import Search, SearchBudget
 from btq_lang.exploration.watching import Asking
 from btq_lang.exploration.witness import Tick, replay
 from btq_lang.util.record import Record
@@ -42,7 +42,7 @@ class Answer(Record):
     unknown: tuple[str, ...] = ()
 
 
-def answered(mission: ExploredMission, question: Question, budget: Budget) -> Answer:
+def answered(mission: ExploredMission, question: Question, budget: SearchBudget) -> Answer:
     """The answer to a question.
 
     Raises:
@@ -55,15 +55,15 @@ def answered(mission: ExploredMission, question: Question, budget: Budget) -> An
     return _answered(opened, question, asking, budget)
 
 
-def _answered(opened: Opened, question: Question, asking: Asking, budget: Budget) -> Answer:
+def _answered(opened: Opened, question: Question, asking: Asking, budget: SearchBudget) -> Answer:
     """First with leaves that end at once, and then with leaves that run on."""
     running = full_runs(opened, asking.tracked)
     states = 0
     for leaves in (frozenset[int](), running):
         opened.begin(asking, leaves)
-        search = Search(opened.snapshots, budget, keeps_edges=isinstance(question.asked, NeverEnds)).run()
+        search = Search(opened.snapshots, budget, keeps_edges=isinstance(question.asked, EndlessRun)).run()
         states = search.states
-        found = search.circle(leaves) if isinstance(question.asked, NeverEnds) else search.found
+        found = search.circle(leaves) if isinstance(question.asked, EndlessRun) else search.found
         if found is not None:
             ways, circle = found if isinstance(found, tuple) else (found, ())
             opened.snapshots.has_assumed = False

@@ -43,11 +43,11 @@ class ReadsUnset(Record):
     key: str
 
 
-class NeverEnds(Record):
+class EndlessRun(Record):
     """`mission does not end`."""
 
 
-Asked: TypeAlias = Order | Holds | ReadsUnset | NeverEnds
+Asked: TypeAlias = Order | Holds | ReadsUnset | EndlessRun
 
 
 class Question(Record):
@@ -74,7 +74,7 @@ def parse_question(text: str) -> Question:
         NoQuestion: the text is none.
     """
     if " ".join(text.split()) == "mission does not end":
-        return Question(text, NeverEnds())
+        return Question(text, EndlessRun())
     keys: list[str] = []
 
     def name(match: re.Match[str]) -> str:

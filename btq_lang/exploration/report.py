@@ -17,7 +17,7 @@ from btq_lang.util.text import counted
 from btq_lang.workspace.loader import shown
 
 
-class Asked(Record):
+class AskedQuestion(Record):
     """A question and its answer; `is_wanted`: it is to be possible, rather than impossible."""
 
     question: Question
@@ -29,7 +29,7 @@ class Explored(Record):
     """What was asked of a mission."""
 
     mission: ExploredMission
-    asked: tuple[Asked, ...]
+    asked: tuple[AskedQuestion, ...]
     survey: Survey | None
 
 

@@ -20,7 +20,7 @@ from btq_lang.util.reach import knots
 from btq_lang.util.record import Record
 
 
-class Budget(Record):
+class SearchBudget(Record):
     """How far to search.
 
     Attributes:
@@ -55,7 +55,7 @@ class Search:
         edges: for each state the states that a tick can lead to, and how; empty unless they were to be kept.
     """
 
-    def __init__(self, snapshots: Snapshots, budget: Budget, keeps_edges: bool = False) -> None:
+    def __init__(self, snapshots: Snapshots, budget: SearchBudget, keeps_edges: bool = False) -> None:
         self._snapshots: Final = snapshots
         self._budget: Final = budget
         self._keeps_edges: Final = keeps_edges

@@ -13,7 +13,7 @@ from btq_lang.exploration.answers import full_runs
 from btq_lang.exploration.missions import ExploredMission
 from btq_lang.exploration.opened import Opened
 from btq_lang.exploration.outcomes import THROWN, UNKNOWN
-from btq_lang.exploration.search import Budget, Search
+from btq_lang.exploration.search import Search, SearchBudget
 from btq_lang.exploration.witness import Tick, replay
 from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SUCCESS, SimulatedNode
 from btq_lang.util.record import Record
@@ -50,7 +50,7 @@ class Survey(Record):
     unknown: tuple[str, ...] = ()
 
 
-def surveyed(mission: ExploredMission, budget: Budget) -> Survey:
+def surveyed(mission: ExploredMission, budget: SearchBudget) -> Survey:
     """Answer the standard questions.
 
     Raises:

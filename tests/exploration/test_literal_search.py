@@ -14,7 +14,7 @@ from btq_lang.exploration.answers import full_runs
 from btq_lang.exploration.leaves import LeafKind
 from btq_lang.exploration.opened import Opened
 from btq_lang.exploration.outcomes import Happened
-from btq_lang.exploration.search import Budget, Search
+from btq_lang.exploration.search import Search, SearchBudget
 from btq_lang.exploration.witness import replay
 from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.nodes import SimulatedNode
@@ -72,7 +72,7 @@ def test_same_states_changes_and_ends(seed: int) -> None:
         return
     watch = Seen(tree)
     tree.begin(watch, leaves)
-    result = Search(tree.snapshots, Budget(10 * MOST)).run()
+    result = Search(tree.snapshots, SearchBudget(10 * MOST)).run()
     assert watch.changes == found.changes
     assert {(end.result, end.message) for end in result.ends} == found.ends
     assert result.states == found.states
@@ -84,7 +84,7 @@ def test_same_states_changes_and_ends(seed: int) -> None:
         pair = random.choice(changes), random.choice(changes)
         asked = Seen(tree, pair)
         tree.begin(asked, leaves)
-        answer = Search(tree.snapshots, Budget(10 * MOST)).run()
+        answer = Search(tree.snapshots, SearchBudget(10 * MOST)).run()
         orders = search(lambda: opened(xml, version), leaves, 10 * MOST, pair).orders
         assert (answer.found is not None) == (pair in orders)
         if answer.found is not None:
