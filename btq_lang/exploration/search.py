@@ -16,6 +16,7 @@ from btq_lang.exploration.outcomes import ENDED, UNKNOWN, Outcome, Outcomes, Out
 from btq_lang.exploration.snapshots import Memories, Shared, Snapshots
 from btq_lang.simulator.nodes import RUNNING, SimulatedNode
 from btq_lang.simulator.timers import NEVER, fire
+from btq_lang.util.garbage import NotCollecting
 from btq_lang.util.reach import knots
 from btq_lang.util.record import Record
 
@@ -73,6 +74,10 @@ class Search:
 
     def run(self) -> Search:
         """Search until what was asked is found, or there is nothing more, or the budget is spent; itself."""
+        with NotCollecting():
+            return self._run()
+
+    def _run(self) -> Search:
         snapshots, root = self._snapshots, self._snapshots.machine.root
         limit = None if self._budget.seconds is None else process_time() + self._budget.seconds
         outcomes = Outcomes(snapshots, self._budget.states * _RUNS_A_STATE, limit)
@@ -200,4 +205,4 @@ def fire_timers(snapshots: Snapshots) -> Sequence[SimulatedNode]:
     return fired
 
 
-_RUNS_A_STATE: Final = 100
+_RUNS_A_STATE: Final = 10
