@@ -46,7 +46,7 @@ def run(options: ExploreOptions, messages: CommandOutput) -> int:
     """Answer the questions for each mission, or the standard ones."""
     refuse(usage_problem(options.paths))
     questions = [(_question(text), is_wanted) for is_wanted, text in _texts(options)]
-    groups, problems = Files().groups(options.paths, options.stdin_filename)
+    groups, problems = Files().groups(options.paths, options.stdin_filename, with_xml=True)
     messages.problems(problems)
     refuse(no_mission_below(options.paths, groups))
     if problems:

@@ -90,7 +90,10 @@ def _at(mission: ExploredMission, uid: int) -> str:
 def as_json(explored: Sequence[Explored]) -> str:
     """For programs."""
     missions: list[Json] = [_mission(each) for each in explored]
-    return json.dumps({"version": _VERSION, "missions": missions}, indent=2, ensure_ascii=False) + "\n"
+    return (
+        json.dumps({"format": "btq-explore", "version": _VERSION, "missions": missions}, indent=2, ensure_ascii=False)
+        + "\n"
+    )
 
 
 def _mission(explored: Explored) -> Json:
