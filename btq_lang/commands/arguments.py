@@ -351,7 +351,7 @@ def _add_explore(parser: SuggestingParser) -> None:
     parser.add("--tree", metavar="ID", help="the tree that the program creates; default: the main tree")
     parser.add("--states", type=int, default=100_000, metavar="N", help="how many states to search; default: 100000")
     parser.add("--seconds", type=float, metavar="S", help="how much processor time to use; default: any")
-    parser.flag("--strict", "exit 1 where a search for --never was cut off")
+    parser.flag("--strict", "exit 1 where a search was cut off")
     parser.add("--format", choices=("text", "json"), default="text", help="default: text")
     parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
     _add_config(parser)

@@ -10,7 +10,7 @@ from btq_lang.exploration.missions import ExploredMission, NotExplored, explorab
 from btq_lang.exploration.questions import NoQuestion, Question, parse_question
 from btq_lang.exploration.report import AskedQuestion, Explored, as_json, as_text
 from btq_lang.exploration.search import SearchBudget
-from btq_lang.exploration.surveys import surveyed
+from btq_lang.exploration.surveys import Survey, surveyed
 from btq_lang.exploration.watching import Unasked
 from btq_lang.projects.files import Files, no_mission_below, usage_problem
 from btq_lang.projects.messages import CommandOutput
@@ -64,11 +64,13 @@ def run(options: ExploreOptions, messages: CommandOutput) -> int:
                     for question, is_wanted in questions
                 ]
                 survey = surveyed(mission, budget) if not questions else None
-            except (NotExplored, Unasked) as problem:
-                messages.remark(f"btq explore: {shown(path)}: {problem}")
+            except (NotExplored, Unasked, RecursionError) as problem:
+                reason = "its tree is nested too deeply" if isinstance(problem, RecursionError) else problem
+                messages.remark(f"btq explore: {shown(path)}: {reason}")
                 code = 2
                 continue
-            code = max(code, *[_code(each, options.strict) for each in asked], int(bool(survey and survey.findings)), 0)
+            codes = [_code(each, options.strict) for each in asked]
+            code = max(code, _survey_code(survey, options.strict), *codes)
             explored.append(Explored(mission, tuple(asked), survey))
     if not explored and not code:
         raise Refused("no mission has a main tree; choose one with --tree")
@@ -86,6 +88,11 @@ def _question(text: str) -> Question:
         return parse_question(text)
     except NoQuestion as problem:
         raise Refused(f"`{text}`: {problem}") from None
+
+
+def _survey_code(survey: Survey | None, strict: bool) -> int:
+    """Whether something was found, or not all was seen."""
+    return int(survey is not None and (bool(survey.findings) or (strict and not survey.is_closed)))
 
 
 def _code(asked: AskedQuestion, strict: bool) -> int:

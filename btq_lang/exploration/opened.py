@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Final, Protocol, TypeAlias
 
 from btq_lang.btcpp.document import Document
+from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.exploration.choices import Choices
 from btq_lang.exploration.leaves import FreeLeaves, FreeWorld, LeafKind, set_free
 from btq_lang.exploration.snapshots import Memories, Shared, Snapshots
@@ -69,8 +70,7 @@ class Opened:
         actions = [name for name, kind in kinds.items() if kind.is_action]
         self.machine: Final[Machine] = load(documents, main, dialect, self.leaves, self._changed, None, actions, world)
         for node in self.machine.nodes:
-            if node.rules.is_decorator and len(node.children) != 1:
-                raise EngineError(f"{node.path} must have exactly 1 child")
+            _refuse(node)
         self.snapshots: Final = Snapshots(self.machine)
         self.leaves.snapshots = world.snapshots = self.snapshots
         self.leaves.unset_read = self._unset_read
@@ -148,6 +148,23 @@ class Opened:
                 key = key_of(written, port)
                 if key is not None or port == "output_key":
                     yield _home(node, written if key is None else key)
+
+
+def _refuse(node: SimulatedNode) -> None:
+    """Refuse what the engine refuses when it creates a node, or throws as soon as it ticks one.
+
+    Raises:
+        EngineError: it does.
+    """
+    if node.rules.is_decorator and len(node.children) != 1:
+        raise EngineError(f"{node.path} must have exactly 1 child")
+    for script in (*[script for _, script in node.conditions], *node.scripts.values()):
+        if not script.complete:
+            raise EngineError(f"the script [{script.text}] of {node.path} cannot be read")
+    kind = BUILTINS.get(node.id) if node.rules.flow is not tick_custom else None
+    for port in kind.ports if kind is not None else ():
+        if port.required and port.name not in node.ports and port.direction != "output":
+            raise EngineError(f"{node.path} lacks the port [{port.name}]")
 
 
 def _home(node: SimulatedNode, key: str) -> _Home:

@@ -57,3 +57,38 @@ def test_drawn_and_damaged_trees(explore: Exploring, seed: int) -> None:
         assert err.startswith("btq explore: ") or "tree.xml" in err
     else:
         assert list(violations(json.loads(out), SCHEMA)) == []
+
+
+def test_a_tree_of_many_levels(explore: Exploring) -> None:
+    explore.tree("<Inverter>" * 3_000 + "<A/>" + "</Inverter>" * 3_000)
+    assert explore()[0] == 2
+
+
+@pytest.mark.parametrize(
+    "tree",
+    [
+        "",
+        "<A/><B/>",
+        "<Inverter/>",
+        "<Sequence/>",
+        "<Script/>",
+        '<Script code="x :="/>',
+        '<ScriptCondition code=""/>',
+        '<SetBlackboard output_key="x"/>',
+        '<Switch2 variable="{x}"><A/></Switch2>',
+        '<Parallel success_count="9"><A/></Parallel>',
+        '<Repeat num_cycles="{n}"><A/></Repeat>',
+        "<Precondition><A/></Precondition>",
+        '<SubTree ID="Main"/>',
+        '<SubTree ID="Other"/>',
+        "<Unknown><A/></Unknown>",
+        '<LoopInt value="{x}"><A/></LoopInt>',
+        '<Timeout msec="soon"><A/></Timeout>',
+        "<WasEntryUpdated/>",
+    ],
+)
+def test_trees_that_the_engine_refuses_or_that_throw(explore: Exploring, tree: str) -> None:
+    explore.tree(tree)
+    code, _, err = explore("--strict")
+    assert code in (1, 2)
+    assert (code == 2) == err.startswith("btq explore: tree.xml: ")
