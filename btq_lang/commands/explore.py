@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from btq_lang.commands.output import write_output
-from btq_lang.exploration.answers import answered
+from btq_lang.exploration.answers import Answer, answered
+from btq_lang.exploration.clauses import clause_answers
 from btq_lang.exploration.missions import ExploredMission, NotExplored, explorable
 from btq_lang.exploration.questions import NoQuestion, Question, parse_question
 from btq_lang.exploration.report import AskedQuestion, Explored, as_json, as_text
@@ -63,15 +64,17 @@ def run(options: ExploreOptions, messages: CommandOutput) -> int:
                     AskedQuestion(question, is_wanted, answered(mission, question, budget))
                     for question, is_wanted in questions
                 ]
+                clauses = tuple(clause_answers(mission, budget)) if not questions else ()
                 survey = surveyed(mission, budget) if not questions else None
             except (NotExplored, Unasked, RecursionError) as problem:
                 reason = "its tree is nested too deeply" if isinstance(problem, RecursionError) else problem
                 messages.remark(f"btq explore: {shown(path)}: {reason}")
                 code = 2
                 continue
-            codes = [_code(each, options.strict) for each in asked]
+            codes = [_code_of(each.answer, each.is_wanted, options.strict) for each in asked]
+            codes += [_code_of(clause.answer, False, options.strict) for clause in clauses]
             code = max(code, _survey_code(survey, options.strict), *codes)
-            explored.append(Explored(mission, tuple(asked), survey))
+            explored.append(Explored(mission, tuple(asked), clauses, survey))
     if not explored and not code:
         raise Refused("no mission has a main tree; choose one with --tree")
     if explored:
@@ -95,8 +98,8 @@ def _survey_code(survey: Survey | None, strict: bool) -> int:
     return int(survey is not None and (bool(survey.findings) or (strict and not survey.is_closed)))
 
 
-def _code(asked: AskedQuestion, strict: bool) -> int:
+def _code_of(answer: Answer, is_wanted: bool, strict: bool) -> int:
     """Whether an answer is not the wanted one."""
-    if asked.answer.word == "not found":
-        return int(asked.is_wanted or strict)
-    return int((asked.answer.word == "yes") != asked.is_wanted)
+    if answer.word == "not found":
+        return int(is_wanted or strict)
+    return int((answer.word == "yes") != is_wanted)

@@ -10,7 +10,7 @@ from collections.abc import Collection
 from typing import Literal, TypeAlias
 
 from btq_lang.exploration.missions import ExploredMission
-from btq_lang.exploration.opened import Opened
+from btq_lang.exploration.opened import Opened, Watch
 from btq_lang.exploration.outcomes import UNKNOWN
 from btq_lang.exploration.questions import EndlessRun, Question
 from btq_lang.exploration.running import may_run
@@ -52,22 +52,29 @@ def answered(mission: ExploredMission, question: Question, budget: SearchBudget)
     opened = mission.open([key for _, key in question.keys])
     asking = Asking(question, opened.snapshots, mission.uids)
     opened.snapshots.tracked = tuple(asking.tracked.values())
-    return _answered(opened, question, asking, budget)
+    return answered_by(opened, asking, asking.tracked, budget, isinstance(question.asked, EndlessRun))
 
 
-def _answered(opened: Opened, question: Question, asking: Asking, budget: SearchBudget) -> Answer:
-    """First with leaves that end at once, and then with leaves that run on."""
-    running = full_runs(opened, asking.tracked)
+def answered_by(
+    opened: Opened, watch: Watch, tracked: Collection[int], budget: SearchBudget, is_circle: bool = False
+) -> Answer:
+    """The answer that a watch gives, first with leaves that end at once, and then with leaves that run on.
+
+    Args:
+        tracked: the numbers of the nodes whose statuses it asks for at any time.
+        is_circle: what is asked is whether the mission need not end.
+    """
+    running = full_runs(opened, tracked)
     states = 0
     for leaves in (frozenset[int](), running):
-        opened.begin(asking, leaves)
-        search = Search(opened.snapshots, budget, keeps_edges=isinstance(question.asked, EndlessRun)).run()
+        opened.begin(watch, leaves)
+        search = Search(opened.snapshots, budget, keeps_edges=is_circle).run()
         states = search.states
-        found = search.circle(leaves) if isinstance(question.asked, EndlessRun) else search.found
+        found = search.circle(leaves) if is_circle else search.found
         if found is not None:
             ways, circle = found if isinstance(found, tuple) else (found, ())
             opened.snapshots.has_assumed = False
-            ticks = replay(opened, asking, leaves, [*ways, *circle])
+            ticks = replay(opened, watch, leaves, [*ways, *circle])
             return Answer("yes", states, ticks[: len(ways)], ticks[len(ways) :], opened.snapshots.has_assumed)
         if leaves == running:
             unknown = tuple([end.message for end in search.ends if end.result == UNKNOWN])

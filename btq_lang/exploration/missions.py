@@ -19,6 +19,7 @@ from btq_lang.evidence.identity import Build, Candidate
 from btq_lang.exploration.leaves import LeafKind
 from btq_lang.exploration.opened import Opened
 from btq_lang.exploration.watching import Unasked
+from btq_lang.requirements.model import MissionRun, NodeTarget
 from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.nodes import SimulatedNode
 from btq_lang.simulator.ports import key_of
@@ -67,6 +68,7 @@ class ExploredMission:
         self.tree: Final = build.name
         self.build: Final[Build] = build
         self.nodes: Final = mission.requirements.nodes
+        self.applied: Final = mission.requirements.applied
         nav2 = distribution or ""
         self.dialect: Final = Dialect(ENGINES[nav2] if is_old and nav2 else version, nav2)
         if is_old or file.is_xml:
@@ -100,17 +102,18 @@ class ExploredMission:
         if path is None:
             return frozenset({1})
         names = tuple([name.text for name in path.names])
-        found = {
-            instance.uid
-            for target in self.nodes.find(names)
-            for instance in self.build.running.instances(target)
-            if instance.uid is not None
-        }
+        found = frozenset[int]().union(*map(self.uids_of, self.nodes.find(names)))
         if not found:
             shown = "/".join(names)
             likely = near(names[-1], sorted({name for node in self.nodes.all for name in node.names}))
             raise Unasked(f"no node of the tree {self.tree} is called `{shown}`{did_you_mean(likely)}")
-        return frozenset(found)
+        return found
+
+    def uids_of(self, target: NodeTarget | MissionRun) -> frozenset[int]:
+        """The numbers of the instances of a node; of the mission, that of the root."""
+        if isinstance(target, MissionRun):
+            return frozenset({1})
+        return frozenset([each.uid for each in self.build.running.instances(target) if each.uid is not None])
 
     def place(self, uid: int) -> tuple[str, int] | None:
         """The file and the line of a node, from 1; None: it is not written."""

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from btq_lang.exploration.answers import Answer
+from btq_lang.exploration.clauses import ClauseAnswer
 from btq_lang.exploration.missions import ExploredMission
 from btq_lang.exploration.questions import Question
 from btq_lang.exploration.surveys import Survey
@@ -30,6 +31,7 @@ class Explored(Record):
 
     mission: ExploredMission
     asked: tuple[AskedQuestion, ...]
+    clauses: tuple[ClauseAnswer, ...]
     survey: Survey | None
 
 
@@ -53,6 +55,12 @@ def _lines(explored: Explored) -> Iterator[str]:
         if answer.circle:
             yield "    and from here again and again:"
             yield from _run(mission, answer.circle, len(answer.witness) + 1)
+    for clause in explored.clauses:
+        yield f"  {clause.requirement} `{clause.text}` can be violated: {_word(clause.answer)}"
+        if clause.answer.is_assumed:
+            yield "    if what is calculated from entries can have such values"
+        yield from (f"    not known: {reason}" for reason in clause.answer.unknown)
+        yield from _run(mission, clause.answer.witness, 1)
     if explored.survey is not None:
         survey = explored.survey
         seen = "all" if survey.is_closed else "not all: the first"
@@ -106,14 +114,13 @@ def _mission(explored: Explored) -> Json:
             {
                 "text": asked.question.text,
                 "asked": "can" if asked.is_wanted else "never",
-                "answer": asked.answer.word,
-                "states": asked.answer.states,
-                "assumed": asked.answer.is_assumed,
-                "unknown": list(asked.answer.unknown),
-                "witness": _ticks(mission, asked.answer.witness),
-                "circle": _ticks(mission, asked.answer.circle),
+                **_answer(mission, asked.answer),
             }
             for asked in explored.asked
+        ],
+        "clauses": [
+            {"requirement": clause.requirement, "text": clause.text, **_answer(mission, clause.answer)}
+            for clause in explored.clauses
         ],
     }
     if mission.dialect.nav2:
@@ -134,6 +141,17 @@ def _mission(explored: Explored) -> Json:
             ],
         }
     return record
+
+
+def _answer(mission: ExploredMission, answer: Answer) -> dict[str, Json]:
+    return {
+        "answer": answer.word,
+        "states": answer.states,
+        "assumed": answer.is_assumed,
+        "unknown": list(answer.unknown),
+        "witness": _ticks(mission, answer.witness),
+        "circle": _ticks(mission, answer.circle),
+    }
 
 
 def _ticks(mission: ExploredMission, ticks: Sequence[Tick]) -> Json:
