@@ -145,7 +145,9 @@ class Outcomes:
     def _run(self, node: SimulatedNode, before: Callable[[], object] | None, goes_on: bool) -> Outcome:
         """What one run comes to."""
         self._runs += 1
-        if self._runs > self._most_runs or (self._deadline is not None and process_time() > self._deadline):
+        if self._runs > self._most_runs:
+            raise OutOfWork
+        if self._deadline is not None and self._runs % _CLOCK_PERIOD == 0 and process_time() > self._deadline:
             raise OutOfWork
         snapshots = self._snapshots
         try:
@@ -217,4 +219,5 @@ def flat(log: Sequence[object]) -> list[int]:
 
 
 _GOES_ON: Final = 8
+_CLOCK_PERIOD: Final = 256  # runs between two looks at the clock, which may take longer than a run
 _MOST_REMEMBERED: Final = 200_000

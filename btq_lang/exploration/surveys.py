@@ -63,7 +63,8 @@ def surveyed(mission: ExploredMission, budget: SearchBudget) -> Survey:
     search = Search(opened.snapshots, budget).run()
     findings = [*_thrown(opened, search, running), *_unset(opened, watch), *_shared(mission, opened, search)]
     if search.is_closed:
-        findings += [*_missing_ends(search), *_never(opened, watch)]
+        never = [finding for finding in _never(opened, watch) if mission.place(finding.uid) is not None]
+        findings += [*_missing_ends(search), *never]  # without nodes that only enforce requirements
     unknown = tuple([end.message for end in search.ends if end.result == UNKNOWN])
     return Survey(search.states, search.is_closed, tuple(findings), unknown)
 
