@@ -1,4 +1,4 @@
-"""Every way in which a computation can go that asks for choices: it is run again and again, and told other choices."""
+"""Every way in which a computation can go that asks for choices: it runs again and again, with other choices."""
 
 from __future__ import annotations
 

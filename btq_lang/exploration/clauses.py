@@ -1,4 +1,4 @@
-"""Clauses of a mission that speak of order or occurrence, each asked whether it can be violated.
+"""Clauses of a mission about order or occurrence, each asked whether it can be violated.
 
 One invariant: a clause is asked only if a single run can violate it and time has no part in that: `follows`, `each … is
 followed by`, `never` of nodes that run, `tries at most` and `succeeds`, without scopes and shares of runs.
@@ -83,7 +83,7 @@ class _Violation:
         return 0
 
     def unset_read(self, node: SimulatedNode, key: str) -> None:
-        """A clause does not speak of that."""
+        """No clause is about that."""
 
 
 class _Occurs(_Violation):
@@ -202,7 +202,7 @@ def _events(mission: ExploredMission, event: ResolvedEvent | ResolvedAnyEvent) -
 def _test(
     mission: ExploredMission, condition: Condition, snapshots: Snapshots, tracked: dict[int, SimulatedNode]
 ) -> _Test | None:
-    """A function that says whether nodes run as a condition says; None: it speaks of something else."""
+    """A function that says whether nodes run as a condition says; None: it has other parts."""
     if isinstance(condition, Running):
         return _runs(mission.uids_of(condition.target), snapshots, tracked)
     if isinstance(condition, Negation):

@@ -1,7 +1,7 @@
 """A tree whose leaves are free, ready to be explored.
 
-One invariant: an entry that nothing in the tree writes is one that the program sets before: it has a value, and nobody
-knows which.  All others begin without one.
+One invariant: an entry that nothing in the tree writes is one that the program sets before: it has a value, which
+is unknown.  All others begin without one.
 """
 
 from __future__ import annotations

@@ -84,6 +84,7 @@ class Outcomes:
         self._parents: Final = {child.uid: node for node in nodes for child in node.children}
         self._resumed: Final = {node.uid for node in nodes if is_resumed(node)}
         self._uncounted: Final = {node.uid for node in nodes if is_endless(node)}
+        self._kept = 0
         self._running: SimulatedNode | None = None  # whose run goes on
         self._has_ticked = False  # it has ticked a child in this run
         snapshots.machine.recall = self._recall
@@ -111,8 +112,11 @@ class Outcomes:
                 if key not in outcomes:
                     outcomes[key] = _joined(way, step)
         snapshots.choices, self._running, self._has_ticked = outer, running, has_ticked
-        if len(self._remembered) >= _MOST_REMEMBERED:
+        self._kept += len(outcomes)
+        if self._kept > _MOST_KEPT:
+            self._kept = 0
             self._remembered.clear()
+            self._steps.clear()
         result = self._remembered[start] = tuple(outcomes.values())
         return result
 
@@ -137,8 +141,7 @@ class Outcomes:
             has_more = choices.next_run()
         steps = tuple(outcomes.values())
         if is_resumed:
-            if len(self._steps) >= _MOST_REMEMBERED:
-                self._steps.clear()
+            self._kept += len(steps)
             self._steps[goes_on, place] = steps
         return steps
 
@@ -220,4 +223,4 @@ def flat(log: Sequence[object]) -> list[int]:
 
 _GOES_ON: Final = 8
 _CLOCK_PERIOD: Final = 256  # runs between two looks at the clock, which may take longer than a run
-_MOST_REMEMBERED: Final = 200_000
+_MOST_KEPT: Final = 1_000_000  # outcomes

@@ -55,7 +55,7 @@ class Question(Record):
 
     Attributes:
         text: as typed.
-        keys: the entries that it names, by the names that stand for them in conditions.
+        keys: the entries that it names, by their names in conditions.
     """
 
     text: str
@@ -64,14 +64,14 @@ class Question(Record):
 
 
 class NoQuestion(Exception):
-    """A text that is no question; the message says what is wrong."""
+    """A text cannot be read as a question; the message says what is wrong."""
 
 
 def parse_question(text: str) -> Question:
     """Read a question.
 
     Raises:
-        NoQuestion: the text is none.
+        NoQuestion: the text cannot be read as one.
     """
     if " ".join(text.split()) == "mission does not end":
         return Question(text, EndlessRun())

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from btq_lang.simulator.nodes import SimulatedNode
+from btq_lang.simulator import controls, decorators, nav2, timers
+from btq_lang.simulator.nodes import Flow, SimulatedNode
 
 
 def may_run(root: SimulatedNode, conditions: frozenset[str], asked: frozenset[int] = frozenset()) -> frozenset[int]:
@@ -23,16 +24,29 @@ def may_run(root: SimulatedNode, conditions: frozenset[str], asked: frozenset[in
             if is_seen and node.id not in conditions:
                 numbers.add(node.uid)
             continue
-        is_seen = is_seen or node.id not in _WAITING
+        is_seen = is_seen or node.rules.flow not in _WAITING
         stack += [(child, is_seen) for child in node.children]
     return frozenset(numbers)
 
 
-_WAITING: Final = frozenset(
-    (
-        *("Sequence", "Fallback", "AsyncSequence", "AsyncFallback", "SequenceWithMemory", "SequenceStar"),
-        *("IfThenElse", "TryCatch", "Inverter", "ForceSuccess", "ForceFailure", "Repeat", "RetryUntilSuccessful"),
-        *("RunOnce", "SubTree", "SubTreePlus", "KeepRunningUntilFailure", "Delay", "Precondition"),
-        *("RecoveryNode", "RoundRobin", "PersistentSequence", "SingleTrigger"),
-    )
+_WAITING: Final[tuple[Flow, ...]] = (
+    controls.tick_sequence,
+    controls.tick_fallback,
+    controls.tick_sequence_with_memory,
+    controls.tick_if_then_else,
+    controls.tick_try_catch,
+    decorators.tick_inverter,
+    decorators.tick_force_success,
+    decorators.tick_force_failure,
+    decorators.tick_repeat,
+    decorators.tick_retry,
+    decorators.tick_run_once,
+    decorators.tick_precondition,
+    decorators.tick_keep_running_until_failure,
+    decorators.tick_subtree,
+    timers.tick_delay,
+    nav2.tick_recovery,
+    nav2.tick_round_robin,
+    nav2.tick_persistent,
+    nav2.tick_single_trigger,
 )

@@ -122,7 +122,7 @@ class Search:
         return self
 
     def _counted_anew(self, outcome: Outcome) -> tuple[Memories, Shared]:
-        """The state that an outcome leaves, with writes counted anew."""
+        """The state that an outcome leaves, with writes counted again from the first."""
         snapshots, root = self._snapshots, self._snapshots.machine.root
         if not snapshots.counts_writes:
             return outcome.memories, outcome.shared

@@ -13,6 +13,7 @@ from typing import Any, Final, TypeAlias
 from btq_lang.exploration.choices import Choices
 from btq_lang.exploration.values import Domain, FreeValue, Origin, domain_of
 from btq_lang.simulator.blackboard import Board, BoardEntry, Value
+from btq_lang.simulator.leaves import tick_unset_blackboard
 from btq_lang.simulator.nodes import Machine, SimulatedNode
 from btq_lang.simulator.ports import key_of
 from btq_lang.util.record import replace
@@ -45,12 +46,13 @@ class Snapshots:
         root = machine.root.board.root
         self._boards: Final[Sequence[Board]] = [root, *[board for board in boards.values() if board is not root]]
         self._counting: Final = [node for node in machine.nodes if node.rules.counts_writes]
-        unsets = any(node.id == "UnsetBlackboard" for node in machine.nodes) and bool(self._counting)
+        unsets = any(node.rules.flow is tick_unset_blackboard for node in machine.nodes) and bool(self._counting)
         homes = [node.board.home(updated_key(node)) for node in self._counting]
         # The entries whose writes count; None: all, for one that is removed and made again counts from 1.
         self._counted: Final = None if unsets else frozenset([(id(board), name) for board, name in homes])
         self._domain_numbers: Final[dict[Domain, int]] = {}  # numbers are compared faster
         self._all_domains: list[Domain] = []
+        self._interned: Final[dict[tuple[Any, ...], tuple[Any, ...]]] = {}  # most states share nearly all memories
         self._last = 0  # the number of the newest value
 
     def choose(self, count: int) -> int:
@@ -80,7 +82,8 @@ class Snapshots:
 
     def memories(self, node: SimulatedNode) -> Memories:
         """Those of a node and all below it."""
-        return tuple(map(_memory, self._below(node)))
+        shared = self._interned.setdefault
+        return tuple([shared(memory, memory) for memory in map(_memory, self._below(node))])
 
     def put_back(self, node: SimulatedNode, memories: Memories) -> None:
         """Give a node and all below it the memories that they had."""
@@ -122,7 +125,8 @@ class Snapshots:
                     kind = _REAL
                 count = entry.number if self._counted is None or (id(board), key) in self._counted else 0
                 rows.append((key, entry.type, kind, value, count))
-            boards.append(tuple(rows))
+            board_rows = tuple(rows)
+            boards.append(self._interned.setdefault(board_rows, board_rows))
         if any(domain.is_derived for domain in self.domains.values()):
             self._add_derived(numbers, domains)
         known = tuple([self._domain_numbers.setdefault(domain, len(self._domain_numbers)) for domain in domains])
@@ -146,11 +150,11 @@ class Snapshots:
 
     @property
     def counts_writes(self) -> bool:
-        """Whether writes can be counted anew."""
+        """Whether writes can be counted again from the first."""
         return bool(self._counting) and self._counted is not None
 
     def count_anew(self) -> None:
-        """Count the writes of entries anew: it only matters whether a node has seen the last one."""
+        """Count the writes of entries again from the first: it only matters whether a node has seen the last one."""
         written: list[BoardEntry] = []
         for node in self._counting:
             entry = node.board.entry(updated_key(node))

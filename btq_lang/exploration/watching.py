@@ -146,7 +146,7 @@ class Asking:
         if word.kind == NAME:
             if word.raw in ("true", "false"):
                 return lambda: int(word.raw == "true")
-            raise Unasked(f"`{word.raw}` is no entry, and what signals are is not known here: write {{{word.raw}}}")
+            raise Unasked(f"the values of signals are not known here; write {{{word.raw}}} for an entry")
         try:
             number = float(word.raw)
         except ValueError:

@@ -57,7 +57,7 @@ class NotReplayed(Exception):
 def replay(
     opened: Opened, watch: Watch | None, may_run: Collection[int], ways: Sequence[Sequence[int]]
 ) -> tuple[Tick, ...]:
-    """What the model does when it is told what to choose.
+    """What the model does with given choices.
 
     Args:
         may_run: as in the search.

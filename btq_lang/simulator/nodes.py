@@ -161,7 +161,7 @@ class Machine:
         changes: called with each change of a status, and the status before.
         world: what nodes read beside entries and the time.
         is_woken: a node has asked to be ticked again at once.
-        recall: what ticks a node instead, for whoever has remembered what it may do.
+        recall: what ticks a node instead, where what it may do is remembered.
     """
 
     def __init__(

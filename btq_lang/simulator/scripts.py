@@ -129,7 +129,7 @@ def compared(first: Value, operator: str, second: Value) -> bool:
     """Whether a comparison of two values holds.
 
     Raises:
-        EngineError: a text that is compared with a number is none.
+        EngineError: a text is compared with a number, and cannot be read as one.
     """
     if isinstance(first, Unknown):
         return first.compared(operator, second)

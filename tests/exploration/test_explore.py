@@ -188,7 +188,10 @@ def test_questions_that_are_none(explore: Exploring) -> None:
         ("", "btq explore: ``: "),
         ("Grap starts", "btq explore: tree.xml: no node of the tree Main is called `Grap`"),
         ("{x", "btq explore: `{x`: "),
-        ("battery < 3 %", "btq explore: tree.xml: `battery` is no entry"),
+        (
+            "battery < 3 %",
+            "btq explore: tree.xml: the values of signals are not known here; write {battery} for an entry",
+        ),
     ):
         code, out, err = explore("--can", question)
         assert (code, out) == (2, "")
