@@ -190,7 +190,7 @@ def test_questions_that_are_none(explore: Exploring) -> None:
         ("{x", "btq explore: `{x`: "),
         (
             "battery < 3 %",
-            "btq explore: tree.xml: the values of signals are not known here; write {battery} for an entry",
+            "btq explore: tree.xml: the values of signals are not known here; write {battery}",
         ),
     ):
         code, out, err = explore("--can", question)
