@@ -15,10 +15,10 @@ from btq_lang.exploration.outcomes import Happened
 from btq_lang.exploration.search import SearchBudget
 from btq_lang.exploration.snapshots import Snapshots
 from btq_lang.exploration.watching import happens
+from btq_lang.requirements.applied import Applied
 from btq_lang.requirements.model import (
     All,
     Any,
-    Applied,
     Condition,
     MissionRun,
     Negation,

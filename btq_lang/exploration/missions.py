@@ -21,6 +21,8 @@ from btq_lang.exploration.opened import Opened
 from btq_lang.exploration.watching import Unasked
 from btq_lang.requirements.model import MissionRun, NodeTarget
 from btq_lang.simulator.errors import EngineError, NotModelled
+from btq_lang.simulator.kinds import is_of_nav2
+from btq_lang.simulator.nav2_models import ports_in
 from btq_lang.simulator.nodes import SimulatedNode
 from btq_lang.simulator.ports import key_of
 from btq_lang.simulator.versions import Dialect
@@ -43,6 +45,7 @@ class ExploredMission:
         tree: the name of the tree that runs.
         dialect: the engine.
         kinds: what is known of its leaves, by name.
+        is_nav2_assumed: no distribution of Nav2 is named, and the tree has nodes of Nav2.
     """
 
     def __init__(self, workspace: Workspace, path: str, tree: str = "") -> None:
@@ -56,8 +59,7 @@ class ExploredMission:
         file = workspace.files[path]
         scope = workspace.scope(path)
         distribution = distribution_among(scope.node_paths)
-        is_mine = workspace.store.ask(lookups.signs, path)
-        versions = written_for(workspace.project, distribution, is_mine)
+        versions = written_for(workspace.project, distribution, workspace.store.ask(lookups.signs, path))
         version = workspace.project.target if not versions else versions[-1]
         is_old = is_before_4(version)
         mission = Candidate(workspace, path, path, None)
@@ -69,9 +71,12 @@ class ExploredMission:
         self.build: Final[Build] = build
         self.nodes: Final = mission.requirements.nodes
         self.applied: Final = mission.requirements.applied
-        nav2 = distribution or ""
+        nodes = [node for _, node in build.running.all if node is not None]
+        has_nav2 = any(node.children and node.id is not None and is_of_nav2(node.id.text) for node in nodes)
+        self.is_nav2_assumed: Final = distribution is None and has_nav2
+        nav2 = distribution or ((_ASSUMED_OLD if is_old else _ASSUMED) if has_nav2 else "")
         self.dialect: Final = Dialect(ENGINES[nav2] if is_old and nav2 else version, nav2)
-        if is_old or file.is_xml:
+        if file.is_xml:
             self._documents: Sequence[Document] = self._plain()
         else:
             self._documents = build.running.documents
@@ -150,12 +155,14 @@ class ExploredMission:
                 for ports in store.ask(lookups.ports_of_models, self.path, Kind.MODEL, name)
                 for port in map(as_kind, ports)
             }
+            if self.is_nav2_assumed and not declared:
+                declared = {port.name: port for port in ports_in(self.dialect.nav2).get(name, ())}
             kinds[name] = LeafKind(
                 is_condition=node.category == "Condition",
-                is_action=node.category == "Action" and is_stated(node),
+                is_action=node.category == "Action" and (is_stated(node) or bool(declared)),
                 reads=tuple([port.name for port in declared.values() if port.direction != "output"]),
                 writes=tuple([(port.name, port.type) for port in declared.values() if port.direction != "input"]),
-                is_declared=node.of_model is not None,
+                is_declared=node.of_model is not None or bool(declared),
             )
         return kinds
 
@@ -168,3 +175,7 @@ def is_stated(node: ResolvedNode) -> bool:
 def explorable(workspace: Workspace, paths: Sequence[str]) -> Iterator[str]:
     """The files among some that have a main tree."""
     return (path for path in paths if workspace.main_tree(path) is not None)
+
+
+_ASSUMED: Final = "jazzy"
+_ASSUMED_OLD: Final = "humble"  # of version 3

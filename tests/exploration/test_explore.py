@@ -202,3 +202,17 @@ def test_the_same_bytes_again(explore: Exploring) -> None:
     explore.mission(MISSION)
     first = explore("--format", "json", "--can", "Grasp halts", "--never", "mission fails")
     assert explore("--format", "json", "--can", "Grasp halts", "--never", "mission fails") == first
+
+
+def test_nodes_of_nav2_without_its_distribution(explore: Exploring) -> None:
+    explore.tree(
+        '<RecoveryNode number_of_retries="2"><ComputePathToPose goal="{goal}" path="{path}"/><Wait/></RecoveryNode>'
+    )
+    code, out, _ = explore("--can", "Wait starts before ComputePathToPose fails", "--can", "Wait starts")
+    assert code == 1
+    assert out.splitlines()[:4] == [
+        'tree.xml: tree Main, BehaviorTree.CPP 4.10, Nav2 Jazzy (assumed; name it: nodes = ["nav2-jazzy"])',
+        "  can Wait starts before ComputePathToPose fails: no, in all 1 state",
+        "  can Wait starts: yes, in 1 tick",
+        "    tick 1",
+    ]
