@@ -223,4 +223,4 @@ def flat(log: Sequence[object]) -> list[int]:
 
 _GOES_ON: Final = 8
 _CLOCK_PERIOD: Final = 256  # runs between two looks at the clock, which may take longer than a run
-_MOST_KEPT: Final = 1_000_000  # outcomes
+_MOST_KEPT: Final = 300_000  # outcomes, of a kilobyte in a large tree
