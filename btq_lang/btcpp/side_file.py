@@ -173,11 +173,13 @@ class RunningTree:
 
     Attributes:
         all: each with the written node; None if that is not a node of a mission.
+        documents: from which the engine makes them.
     """
 
     def __init__(self, built: BuiltFile, nodes: Nodes, main: str | None) -> None:
         written = {id(built.elements[id(node.node)]): node for node in nodes.all if id(node.node) in built.elements}
         self._written = written
+        self.documents = built.documents
         self._of: dict[int, list[Instance]] = {}
         self.all = [
             (instance, written.get(id(instance.element)))

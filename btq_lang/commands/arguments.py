@@ -363,6 +363,28 @@ def _add_graph(parser: SuggestingParser) -> None:
 
 
 @_command(
+    "explore",
+    "find out what can happen in a mission when its leaves do anything",
+    "exit codes: 0 what is asked with --can can happen, and what is asked with --never cannot; without questions: no\n"
+    "findings; 1 otherwise; 2 usage or I/O\n\n"
+    "examples:\n  btq explore mission.btq --can 'Grasp starts before DetectCup succeeds'\n"
+    "  btq explore mission.btq --never 'mission fails'\n"
+    "  btq explore                        what never runs, never ends, is read unset\n",
+)
+def _add_explore(parser: SuggestingParser) -> None:
+    _add_paths(parser)
+    parser.add("--can", action="append", default=[], metavar="QUESTION", help="whether this can happen")
+    parser.add("--never", action="append", default=[], metavar="QUESTION", help="whether this cannot happen")
+    parser.add("--tree", metavar="ID", help="the tree that the program creates; default: the main tree")
+    parser.add("--states", type=int, default=100_000, metavar="N", help="how many states to search; default: 100000")
+    parser.add("--seconds", type=float, metavar="S", help="how much processor time to use; default: any")
+    parser.flag("--strict", "exit 1 where a search was cut off")
+    parser.add("--format", choices=("text", "json"), default="text", help="default: text")
+    parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
+    _add_config(parser)
+
+
+@_command(
     "preview",
     "show a mission's trees in a browser, redrawn whenever a file is saved",
     "exit codes: 0 ended by Ctrl+C, 2 usage or I/O\n\n"

@@ -9,9 +9,43 @@ from __future__ import annotations
 import re
 from typing import Final, TypeAlias
 
-from btq_lang.simulator.errors import EngineError
+from btq_lang.simulator.errors import EngineError, NotModelled
 
-Value: TypeAlias = float | int | str
+
+class Unknown:
+    """A value that nothing determines: it can be written and passed on.
+
+    Whatever else is done with it raises NotModelled, but for a comparison where a subclass has an answer.
+    """
+
+    __slots__ = ()
+
+    def compared(self, operator: str, other: Value) -> bool:
+        """Whether a comparison with it on the left holds."""
+        raise self.needed("compared")
+
+    def combined(self, operator: str, other: Value, is_left: bool) -> Value:
+        """What an operator makes of it and another value; `is_left`: it is the left operand."""
+        raise self.needed("calculated with")
+
+    def __bool__(self) -> bool:
+        return self.compared("!=", 0)
+
+    def __float__(self) -> float:
+        raise self.needed("read as a number")
+
+    def __int__(self) -> int:
+        raise self.needed("read as a number")
+
+    def __str__(self) -> str:
+        raise self.needed("read as a text")
+
+    def needed(self, what: str) -> NotModelled:
+        """The exception for something that cannot be done without its value."""
+        return NotModelled(f"an entry whose value is unknown is {what}")
+
+
+Value: TypeAlias = float | int | str | Unknown
 
 UNTYPED: Final = ""
 STRING: Final = "std::string"
@@ -151,7 +185,7 @@ class Board:
 
 def _into(entry: BoardEntry, key: str, value: Value, type_: str) -> Value:
     """What a typed entry holds after a value of a type is written to it."""
-    if entry.type == type_:
+    if entry.type == type_ or isinstance(value, Unknown):
         return value
     if isinstance(value, str):
         return parsed(value, entry.type)
@@ -169,7 +203,9 @@ def copied(value: Value, old: Value | None) -> Value:
     Raises:
         EngineError: it cannot be converted without a loss, or one is a text and the other a number.
     """
-    if old is None or (isinstance(value, str) and isinstance(old, str)):
+    if old is None or isinstance(value, Unknown) or isinstance(old, Unknown):
+        return value
+    if isinstance(value, str) and isinstance(old, str):
         return value
     if isinstance(value, str) or isinstance(old, str):
         raise EngineError("Any::copyInto fails")
@@ -180,7 +216,7 @@ def copied(value: Value, old: Value | None) -> Value:
 
 def type_of(value: Value | None) -> str:
     """The type that a value has in an entry without one."""
-    if value is None:
+    if value is None or isinstance(value, Unknown):
         return UNTYPED
     return STRING if isinstance(value, str) else DOUBLE if isinstance(value, float) else INT64
 
@@ -202,7 +238,7 @@ def fits(value: float, type_: str) -> bool:
     """Whether a number can be kept in a type of C++ without a loss."""
     if type_ in _FLOATING:
         return True
-    limits = _LIMITS.get(type_)
+    limits = LIMITS.get(type_)
     return limits is not None and float(value).is_integer() and limits[0] <= value <= limits[1]
 
 
@@ -219,7 +255,7 @@ def parsed(text: str, type_: str) -> Value:
             return float(_REAL.findall(text)[0])
         if type_ == BOOL:
             return _TRUTH[text]
-        if type_ in _LIMITS:
+        if type_ in LIMITS:
             return int(_WHOLE.findall(text)[0])
     except (IndexError, KeyError):
         raise EngineError(f"Can't convert string [{text}] to {type_}") from None
@@ -229,7 +265,7 @@ def parsed(text: str, type_: str) -> Value:
 _WHOLE: Final = re.compile(r"\A-?\d+")
 _REAL: Final = re.compile(r"\A[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|inf|nan)")
 _TRUTH: Final = {"1": 1, "true": 1, "TRUE": 1, "True": 1, "0": 0, "false": 0, "FALSE": 0, "False": 0}
-_LIMITS: Final = {
+LIMITS: Final = {
     BOOL: (0, 1),
     **{
         f"{'u' if low == 0 else ''}int{bits}_t": (low and -(1 << bits - 1), (1 << bits - (low != 0)) - 1)

@@ -9,9 +9,10 @@ import re
 from typing import Final
 
 from btq_lang.catalog.nodes import BUILTINS
+from btq_lang.simulator.blackboard import Unknown
 from btq_lang.simulator.errors import EngineError
 from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Machine, SimulatedNode
-from btq_lang.simulator.ports import read_text, read_truth, read_whole
+from btq_lang.simulator.ports import read, read_text, read_truth, read_whole
 from btq_lang.simulator.scripts import EPSILON, NUMBER
 from btq_lang.simulator.ticking import (
     execute_tick,
@@ -247,7 +248,7 @@ def tick_switch(machine: Machine, node: SimulatedNode) -> int:
     cases = len(BUILTINS[node.id].ports) - 1
     if len(node.children) != cases + 1:
         raise EngineError("Wrong number of children in SwitchNode; must be (num_cases + default)")
-    variable = read_text(node, "variable")
+    variable = _variable(node)
     chosen = cases
     for position in range(cases) if variable is not None else ():
         case = read_text(node, f"case_{position + 1}")
@@ -266,6 +267,12 @@ def tick_switch(machine: Machine, node: SimulatedNode) -> int:
     return result
 
 
+def _variable(node: SimulatedNode) -> str | Unknown | None:
+    """What a Switch compares with its cases."""
+    value = read(node, "variable")
+    return value if isinstance(value, Unknown) else read_text(node, "variable")
+
+
 def _as_whole(text: str, matches_prefixes: bool) -> float | None:
     match = (_WHOLE.match if matches_prefixes else _WHOLE.fullmatch)(text)
     return float(match[0]) if match is not None else None
@@ -276,8 +283,10 @@ def _as_real(text: str, matches_prefixes: bool) -> float | None:
     return float(match[0]) if match is not None else None
 
 
-def _is_case(variable: str, case: str, dialect: Dialect) -> bool:
+def _is_case(variable: str | Unknown, case: str, dialect: Dialect) -> bool:
     """Whether two texts are equal, or, since version 4, the same number."""
+    if isinstance(variable, Unknown):
+        return variable.compared("==", case)
     if variable == case or dialect.is_old:
         return variable == case
     for number, tolerance in ((_as_whole, 0.0), (_as_real, EPSILON)):

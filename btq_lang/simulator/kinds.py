@@ -35,6 +35,11 @@ def rules_of(
     return _STATEFUL if id_ in stateful else _LEAF
 
 
+def is_of_nav2(id_: str) -> bool:
+    """Whether a registered name is that of a node of Nav2 that is modelled here."""
+    return id_ in _NAV2
+
+
 _LEAF: Final = TickRules(leaves.tick_custom, leaves.halt_leaf)
 _STATEFUL: Final = TickRules(leaves.tick_custom, leaves.halt_leaf, is_stateful=True)
 _DECORATORS: Final[dict[str, Flow]] = {

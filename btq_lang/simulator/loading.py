@@ -77,7 +77,10 @@ class _Loader:
                 f"Recursive behavior tree cycle detected: tree '{name}' references itself (directly or indirectly)"
             )
         self._open.append(name)
-        (root,) = tree.elements
+        roots = list(tree.elements)
+        if len(roots) != 1:
+            raise EngineError("The node <BehaviorTree> must have exactly 1 child")
+        root = roots[0]
         if ONE_ASYNC_SEQUENCE.holds(self._dialect.version):
             _refuse_two_async(root)
         node = self._node(root, board, prefix)

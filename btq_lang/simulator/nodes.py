@@ -83,7 +83,7 @@ class SimulatedNode:
         self.path: Final = path
         self.ports: Final = ports
         self.board: Final = board
-        self.rules: Final = rules
+        self.rules = rules
         self.conditions: Final[list[tuple[str, Script]]] = []
         self.scripts: Final[dict[str, Script]] = {}
         self.children: Final[list[SimulatedNode]] = []
@@ -161,6 +161,7 @@ class Machine:
         changes: called with each change of a status, and the status before.
         world: what nodes read beside entries and the time.
         is_woken: a node has asked to be ticked again at once.
+        recall: what ticks a node instead, where what it may do is remembered.
     """
 
     def __init__(
@@ -181,6 +182,7 @@ class Machine:
         self.changes: Final = changes
         self.world: Final = world
         self.is_woken = False
+        self.recall: Callable[[SimulatedNode], int] | None = None
         self._counts_writes: Final = any(node.rules.counts_writes for node in self.nodes)
 
     def state(self) -> tuple[object, ...]:

@@ -9,7 +9,7 @@ import re
 from math import inf, nan
 from typing import Final
 
-from btq_lang.simulator.blackboard import UNTYPED, Board, BoardEntry, Value, copied, parsed, whole
+from btq_lang.simulator.blackboard import UNTYPED, Board, BoardEntry, Unknown, Value, copied, parsed, whole
 from btq_lang.simulator.errors import EngineError
 from btq_lang.syntax.script.tree import (
     Assign,
@@ -63,6 +63,8 @@ def truth(value: Value) -> bool:
     Raises:
         EngineError: it is a text, or a whole number other than 0 and 1.
     """
+    if isinstance(value, Unknown):
+        return bool(value)
     if isinstance(value, float):
         return value != 0
     if isinstance(value, str):
@@ -99,7 +101,8 @@ def evaluate(node: Expression, board: Board, has_real_truth: bool) -> Value | No
         return _negated(node.operator, operand)
     if isinstance(node, Ternary):
         condition = evaluate(node.condition, board, has_real_truth)
-        branch = node.then if _real(condition) != 0 else node.otherwise
+        is_true = bool(condition) if isinstance(condition, Unknown) else _real(condition) != 0
+        branch = node.then if is_true else node.otherwise
         return evaluate(branch, board, has_real_truth)
     assert isinstance(node, Assign), "the last kind of expression; brackets are gone"
     return _assigned(node, board, has_real_truth)
@@ -116,16 +119,26 @@ def _compared(node: ScriptComparison, board: Board, has_real_truth: bool) -> flo
     left = evaluate(node.operands[0], board, has_real_truth)
     for operator, operand in zip(node.operators, node.operands[1:], strict=True):
         right = evaluate(operand, board, has_real_truth)
-        first, second = _set(left, "left", operator), _set(right, "right", operator)
-        if isinstance(first, str) and isinstance(second, str):
-            is_true = _is_true(operator, first == second, first >= second, first <= second)
-        else:
-            low, high = as_number(first), as_number(second)
-            is_true = _is_true(operator, abs(low - high) <= EPSILON, low >= high, low <= high)
-        if not is_true:
+        if not compared(_set(left, "left", operator), operator, _set(right, "right", operator)):
             return 0.0
         left = right
     return 1.0
+
+
+def compared(first: Value, operator: str, second: Value) -> bool:
+    """Whether a comparison of two values holds.
+
+    Raises:
+        EngineError: a text is compared with a number, and cannot be read as one.
+    """
+    if isinstance(first, Unknown):
+        return first.compared(operator, second)
+    if isinstance(second, Unknown):
+        return second.compared(_TURNED.get(operator, operator), first)
+    if isinstance(first, str) and isinstance(second, str):
+        return _is_true(operator, first == second, first >= second, first <= second)
+    low, high = as_number(first), as_number(second)
+    return _is_true(operator, abs(low - high) <= EPSILON, low >= high, low <= high)
 
 
 def _is_true(operator: str, is_same: bool, is_at_least: bool, is_at_most: bool) -> bool:
@@ -170,11 +183,23 @@ def _real(value: Value | None) -> float:
 
 def _combined(operator: str, left: Value, right: Value) -> Value:
     """The value of two operands."""
+    if operator not in ("&&", "||"):
+        if isinstance(left, Unknown):
+            return left.combined(operator, right, is_left=True)
+        if isinstance(right, Unknown):
+            return right.combined(operator, left, is_left=False)
     if isinstance(left, str) or isinstance(right, str):
         are_texts = isinstance(left, str) and isinstance(right, str)
         if (operator == "+" and are_texts) or operator == "..":
             return text_of(left) + text_of(right)
         raise EngineError("Operation not permitted")
+    if operator in ("&&", "||"):
+        try:
+            both = truth(left), truth(right)
+        except EngineError:
+            message = "Logic operators are not allowed if one of the operands is not castable to bool"
+            raise EngineError(message) from None
+        return float(all(both) if operator == "&&" else any(both))
     first, second = float(left), float(right)
     if operator == "+":
         return first + second
@@ -184,13 +209,6 @@ def _combined(operator: str, left: Value, right: Value) -> Value:
         return first * second
     if operator == "/":
         return _quotient(first, second)
-    if operator in ("&&", "||"):
-        try:
-            both = truth(left), truth(right)
-        except EngineError:
-            message = "Logic operators are not allowed if one of the operands is not castable to bool"
-            raise EngineError(message) from None
-        return float(all(both) if operator == "&&" else any(both))
     if operator == "..":
         raise EngineError("Operation not permitted")
     try:
@@ -203,8 +221,12 @@ def _combined(operator: str, left: Value, right: Value) -> Value:
     return float(bits[0] | bits[1] if operator == "|" else bits[0] ^ bits[1])
 
 
-def _negated(operator: str, operand: float) -> float:
+def _negated(operator: str, operand: float | Unknown) -> Value:
     """The value of `-x`, `~x` or `!x`."""
+    if isinstance(operand, Unknown) and operator == "!":
+        return float(not operand)
+    if isinstance(operand, Unknown):
+        return operand.combined("-", 0, is_left=False)
     if operator == "-":
         return -float(operand)
     return float(~int(operand)) if operator == "~" else float(operand == 0)
@@ -253,6 +275,8 @@ def _first(entry: BoardEntry, value: Value) -> Value:
 
 def _next(entry: BoardEntry, value: Value) -> Value:
     """What an entry with a value holds after an assignment: it stays of its kind, but a text turns into a number."""
+    if isinstance(entry.value, Unknown):
+        return _first(entry, value)
     if isinstance(value, str) and not isinstance(entry.value, str):
         return as_number(value) if entry.type == UNTYPED else parsed(value, entry.type)
     return copied(value, entry.value)
@@ -261,6 +285,8 @@ def _next(entry: BoardEntry, value: Value) -> Value:
 def _changed(entry: BoardEntry, operator: str, value: Value) -> Value:
     """What an entry holds after `+=` and its like."""
     old = _set(entry.value, "left", operator)
+    if isinstance(old, Unknown) or isinstance(value, Unknown):
+        return _combined(operator[0], old, value)
     if isinstance(value, str):
         if operator != "+=" or not isinstance(old, str):
             raise EngineError("This Assignment operator can't be used with a non-numeric type")
@@ -270,5 +296,6 @@ def _changed(entry: BoardEntry, operator: str, value: Value) -> Value:
     return copied(_combined(operator[0], float(old), float(value)), old)
 
 
+_TURNED: Final = {"<": ">", ">": "<", "<=": ">=", ">=": "<="}
 EPSILON: Final = 2.0**-23  # of a float
 NUMBER: Final = re.compile(r"-?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|-?(?:inf|nan)")

@@ -14,7 +14,16 @@ from btq_lang.simulator.scripts import holds, run_script
 
 def execute_tick(machine: Machine, node: SimulatedNode) -> int:
     """Tick a node; its result, which is its status afterwards unless it is SKIPPED."""
-    result = _by_condition(machine, node) if node.conditions else IDLE
+    return tick_itself(machine, node) if machine.recall is None else machine.recall(node)
+
+
+def tick_itself(machine: Machine, node: SimulatedNode, goes_on: bool = False) -> int:
+    """Tick a node, whatever is remembered of it; its result.
+
+    Args:
+        goes_on: its tick has begun and is continued, so that its conditions are not asked.
+    """
+    result = _by_condition(machine, node) if node.conditions and not goes_on else IDLE
     if result == IDLE:
         try:
             result = node.rules.flow(machine, node)

@@ -115,11 +115,11 @@ def advance(machine: Machine, now: int) -> None:
         machine.now = due
         for node in machine.timed:
             if node.due == due:
-                _fire(machine, node)
+                fire(machine, node)
     machine.now = now
 
 
-def _fire(machine: Machine, node: SimulatedNode) -> None:
+def fire(machine: Machine, node: SimulatedNode) -> None:
     """What a timer does when it goes off: that of a Timeout, nothing unless the child runs."""
     node.due = NEVER
     if node.rules.flow is not tick_timeout:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
-from btq_lang.simulator.blackboard import BOOL, DOUBLE, STRING, Board, Value, parsed
+from btq_lang.simulator.blackboard import BOOL, DOUBLE, STRING, Board, Unknown, Value, parsed
 from btq_lang.simulator.errors import EngineError
 from btq_lang.simulator.nodes import FAILURE, RUNNING, SUCCESS, Machine, SimulatedNode
 from btq_lang.simulator.ports import key_of, read, read_status, read_whole
@@ -65,7 +65,7 @@ def tick_blackboard_check(machine: Machine, node: SimulatedNode) -> int:
 def _compared(node: SimulatedNode, port: str) -> Value | None:
     """The value at a port in the type that the node compares; None: there is none."""
     value, type_ = read(node, port), _COMPARED[node.id]
-    if value is None or type_ == STRING:
+    if value is None or type_ == STRING or isinstance(value, Unknown):
         return value
     try:
         return parsed(text_of(value), type_)
@@ -74,6 +74,10 @@ def _compared(node: SimulatedNode, port: str) -> Value | None:
 
 
 def _is_same(first: Value, second: Value) -> bool:
+    if isinstance(first, Unknown):
+        return first.compared("==", second)
+    if isinstance(second, Unknown):
+        return second.compared("==", first)
     if isinstance(first, float) and isinstance(second, float):
         return abs(first - second) <= EPSILON
     return first == second

@@ -36,6 +36,7 @@ ROWS = (
     ("checks", "nav2"),
     ("diff", "render"),
     ("evidence",),
+    ("exploration",),
     ("projects",),
     ("scenarios",),
     ("ide", "trace"),

@@ -1,0 +1,105 @@
+"""`btq explore`: what can happen in a mission when its leaves do anything."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from btq_lang.commands.output import write_output
+from btq_lang.exploration.answers import Answer, answered
+from btq_lang.exploration.clauses import clause_answers
+from btq_lang.exploration.missions import ExploredMission, NotExplored, explorable
+from btq_lang.exploration.questions import NoQuestion, Question, parse_question
+from btq_lang.exploration.report import AskedQuestion, Explored, as_json, as_text
+from btq_lang.exploration.search import SearchBudget
+from btq_lang.exploration.surveys import Survey, surveyed
+from btq_lang.exploration.watching import Unasked
+from btq_lang.projects.files import Files, no_mission_below, usage_problem
+from btq_lang.projects.messages import CommandOutput
+from btq_lang.projects.options import Refused, refuse
+from btq_lang.util.record import Record
+from btq_lang.workspace.loader import shown
+
+
+class ExploreOptions(Record):
+    """The options of `btq explore`.
+
+    Attributes:
+        can, never: questions.
+        tree: the tree that the program creates; None: the main tree.
+        states: how many states are searched for each question.
+        seconds: how much processor time, likewise; None: any.
+        strict: what was not found in a search that was cut off may happen.
+    """
+
+    paths: Sequence[str]
+    stdin_filename: str | None
+    can: Sequence[str]
+    never: Sequence[str]
+    tree: str | None
+    states: int
+    seconds: float | None
+    strict: bool
+    format: str
+    output: str | None
+
+
+def run(options: ExploreOptions, messages: CommandOutput) -> int:
+    """Answer the questions for each mission, or the standard ones."""
+    refuse(usage_problem(options.paths))
+    questions = [(_question(text), is_wanted) for is_wanted, text in _texts(options)]
+    groups, problems = Files().groups(options.paths, options.stdin_filename, with_xml=True)
+    messages.problems(problems)
+    refuse(no_mission_below(options.paths, groups))
+    if problems:
+        return 2
+    budget = SearchBudget(options.states, options.seconds)
+    code = 0
+    explored: list[Explored] = []
+    for group in groups:
+        paths = group.given if options.tree else tuple(explorable(group.workspace, group.given))
+        for path in paths:
+            try:
+                mission = ExploredMission(group.workspace, path, options.tree or "")
+                asked = [
+                    AskedQuestion(question, is_wanted, answered(mission, question, budget))
+                    for question, is_wanted in questions
+                ]
+                clauses = tuple(clause_answers(mission, budget)) if not questions else ()
+                survey = surveyed(mission, budget) if not questions else None
+            except (NotExplored, Unasked, RecursionError) as problem:
+                reason = "its tree is nested too deeply" if isinstance(problem, RecursionError) else problem
+                messages.remark(f"btq explore: {shown(path)}: {reason}")
+                code = 2
+                continue
+            codes = [_code_of(each.answer, each.is_wanted, options.strict) for each in asked]
+            codes += [_code_of(clause.answer, False, options.strict) for clause in clauses]
+            code = max(code, _survey_code(survey, options.strict), *codes)
+            explored.append(Explored(mission, tuple(asked), clauses, survey))
+    if not explored and not code:
+        raise Refused("no mission has a main tree; choose one with --tree")
+    if explored:
+        write_output(messages, options.output, (as_json if options.format == "json" else as_text)(explored))
+    return code
+
+
+def _texts(options: ExploreOptions) -> Sequence[tuple[bool, str]]:
+    return [*[(True, text) for text in options.can], *[(False, text) for text in options.never]]
+
+
+def _question(text: str) -> Question:
+    try:
+        return parse_question(text)
+    except NoQuestion as problem:
+        raise Refused(f"`{text}`: {problem}") from None
+
+
+def _survey_code(survey: Survey | None, strict: bool) -> int:
+    """Whether something was found, or not all was seen."""
+    return int(survey is not None and (bool(survey.findings) or (strict and not survey.is_closed)))
+
+
+def _code_of(answer: Answer, is_wanted: bool, strict: bool) -> int:
+    """Whether an answer is not the wanted one."""
+    if answer.word == "not found":
+        return int(is_wanted or strict)
+    return int((answer.word == "yes") != is_wanted)

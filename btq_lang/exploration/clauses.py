@@ -1,0 +1,224 @@
+"""Clauses of a mission about order or occurrence, each asked whether it can be violated.
+
+One invariant: a clause is asked only if a single run can violate it and time has no part in that: `follows`, `each … is
+followed by`, `never` of nodes that run, `tries at most` and `succeeds`, without scopes and shares of runs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Final, TypeAlias
+
+from btq_lang.exploration.answers import Answer, answered_by
+from btq_lang.exploration.missions import ExploredMission
+from btq_lang.exploration.outcomes import Happened
+from btq_lang.exploration.search import SearchBudget
+from btq_lang.exploration.snapshots import Snapshots
+from btq_lang.exploration.watching import happens
+from btq_lang.requirements.applied import Applied
+from btq_lang.requirements.model import (
+    All,
+    Any,
+    Condition,
+    MissionRun,
+    Negation,
+    NodeTarget,
+    Quantity,
+    ResolvedAnyEvent,
+    ResolvedClaim,
+    ResolvedEachEvent,
+    ResolvedEvent,
+    Running,
+)
+from btq_lang.simulator.nodes import FAILURE, RUNNING, SUCCESS, SimulatedNode
+from btq_lang.util.record import Record
+
+_Test: TypeAlias = Callable[[], bool]
+_Events: TypeAlias = list[tuple[frozenset[int], str]]  # nodes and what happens to them
+
+
+class ClauseAnswer(Record):
+    """Whether a clause can be violated.
+
+    Attributes:
+        requirement: its name.
+        text: of the clause, as typed.
+    """
+
+    requirement: str
+    text: str
+    answer: Answer
+
+
+def clause_answers(mission: ExploredMission, budget: SearchBudget) -> Iterator[ClauseAnswer]:
+    """The clauses that can be asked, with the answers.
+
+    Raises:
+        NotExplored: the tree cannot be explored.
+    """
+    for applied in mission.applied:
+        requirement = applied.requirement
+        if requirement.scopes or requirement.odds is not None or requirement.span is not None:
+            continue
+        for claim in requirement.claims:
+            opened = mission.open()
+            watch = _watch(mission, applied, claim, opened.snapshots)
+            if watch is not None:
+                opened.snapshots.tracked = tuple(watch.tracked.values())
+                yield ClauseAnswer(requirement.name, claim.text, answered_by(opened, watch, watch.tracked, budget))
+
+
+class _Violation:
+    """Watches for the violation of a clause.
+
+    Attributes:
+        tracked: the nodes of whose statuses it asks at any time, by number.
+    """
+
+    def __init__(self, snapshots: Snapshots) -> None:
+        self.snapshots: Final = snapshots
+        self.tracked: dict[int, SimulatedNode] = {}
+
+    def begin(self) -> object:
+        return 0
+
+    def unset_read(self, node: SimulatedNode, key: str) -> None:
+        """No clause is about that."""
+
+
+class _Occurs(_Violation):
+    """Events that must not occur more often than so many times in a run, or in an activation of some node."""
+
+    def __init__(self, snapshots: Snapshots, events: _Events, most: int, per: frozenset[int]) -> None:
+        super().__init__(snapshots)
+        self._events: Final = events
+        self._most: Final = most
+        self._per: Final = per
+
+    def changed(self, node: SimulatedNode, before: int, after: int) -> None:
+        if node.uid in self._per and happens("starts", before, after):
+            self.snapshots.watched = 0
+        if _is_any(self._events, node, before, after):
+            if self.snapshots.watched == self._most:
+                raise Happened
+            self.snapshots.watched += 1
+
+
+class _Holds(_Violation):
+    """Nodes that must not run together while others run."""
+
+    def __init__(self, snapshots: Snapshots, test: _Test, tracked: dict[int, SimulatedNode]) -> None:
+        super().__init__(snapshots)
+        self._test: Final = test
+        self.tracked = tracked
+
+    def changed(self, node: SimulatedNode, before: int, after: int) -> None:
+        if self._test():
+            raise Happened
+
+
+class _Follows(_Violation):
+    """Starts that need an event since the start before."""
+
+    def __init__(self, snapshots: Snapshots, starting: frozenset[int], events: _Events) -> None:
+        super().__init__(snapshots)
+        self._starting: Final = starting
+        self._events: Final = events
+
+    def changed(self, node: SimulatedNode, before: int, after: int) -> None:
+        if _is_any(self._events, node, before, after):
+            self.snapshots.watched = 1
+        if node.uid in self._starting and happens("starts", before, after):
+            if not self.snapshots.watched:
+                raise Happened
+            self.snapshots.watched = 0
+
+
+class _Followed(_Violation):
+    """Events after which another must occur before the mission ends."""
+
+    def __init__(self, snapshots: Snapshots, events: _Events, others: _Events) -> None:
+        super().__init__(snapshots)
+        self._events: Final = events
+        self._others: Final = others
+
+    def changed(self, node: SimulatedNode, before: int, after: int) -> None:
+        if _is_any(self._events, node, before, after):
+            self.snapshots.watched = 1
+        if _is_any(self._others, node, before, after):
+            self.snapshots.watched = 0
+        if node is self.snapshots.machine.root and after in (SUCCESS, FAILURE) and self.snapshots.watched:
+            raise Happened
+
+
+_Watch: TypeAlias = _Occurs | _Holds | _Follows | _Followed
+
+
+def _is_any(events: _Events, node: SimulatedNode, before: int, after: int) -> bool:
+    return any(node.uid in uids and happens(word, before, after) for uids, word in events)
+
+
+def _watch(mission: ExploredMission, applied: Applied, claim: ResolvedClaim, snapshots: Snapshots) -> _Watch | None:
+    """Who watches for the violation of a claim; None: it is not asked."""
+    subject = claim.subject or applied.subject
+    if isinstance(subject, ResolvedEachEvent):
+        events = _events(mission, subject.event)
+        others = _events(mission, claim.event) if claim.event is not None else None
+        is_asked = claim.verb == "followed" and claim.limit is None
+        return _Followed(snapshots, events, others) if is_asked and events and others else None
+    if not isinstance(subject, NodeTarget | MissionRun):
+        return None
+    uids = mission.uids_of(subject)
+    if claim.verb == "succeeds" and claim.limit is None:
+        return _Occurs(snapshots, [(uids, "fails")], 0, frozenset())
+    if claim.verb == "follows" and claim.event is not None and claim.limit is None:
+        events = _events(mission, claim.event)
+        return _Follows(snapshots, uids, events) if events else None
+    if claim.verb == "tries":
+        most = claim.limit.value if claim.limit is not None and claim.limit.relation == "<=" else None
+        per = mission.uids_of(claim.per) if isinstance(claim.per, NodeTarget) else frozenset()
+        if not isinstance(most, Quantity):
+            return None
+        return _Occurs(snapshots, [(uids, "starts")], int(most.si), per)
+    if claim.verb == "never" and claim.condition is not None and claim.limit is None:
+        tracked: dict[int, SimulatedNode] = {}
+        test = _test(mission, claim.condition, snapshots, tracked)
+        if test is None or not tracked:
+            return None
+        if isinstance(subject, NodeTarget):
+            while_running = _runs(uids, snapshots, tracked)
+            return _Holds(snapshots, lambda: while_running() and test(), tracked)
+        return _Holds(snapshots, test, tracked)
+    return None
+
+
+def _events(mission: ExploredMission, event: ResolvedEvent | ResolvedAnyEvent) -> _Events | None:
+    """Changes of statuses that an event is; None: it is a condition."""
+    if any(atom.subject is None for atom in event.atoms):
+        return None
+    return [(mission.uids_of(atom.subject), atom.happening) for atom in event.atoms if atom.subject is not None]
+
+
+def _test(
+    mission: ExploredMission, condition: Condition, snapshots: Snapshots, tracked: dict[int, SimulatedNode]
+) -> _Test | None:
+    """A function that says whether nodes run as a condition says; None: it has other parts."""
+    if isinstance(condition, Running):
+        return _runs(mission.uids_of(condition.target), snapshots, tracked)
+    if isinstance(condition, Negation):
+        inner = _test(mission, condition.condition, snapshots, tracked)
+        return None if inner is None else lambda: not inner()
+    if isinstance(condition, All | Any):
+        tests = [_test(mission, each, snapshots, tracked) for each in condition.conditions]
+        known = [test for test in tests if test is not None]
+        if len(known) < len(tests):
+            return None
+        joined = all if isinstance(condition, All) else any
+        return lambda: joined(test() for test in known)
+    return None
+
+
+def _runs(uids: frozenset[int], snapshots: Snapshots, tracked: dict[int, SimulatedNode]) -> _Test:
+    nodes = [node for node in snapshots.machine.nodes if node.uid in uids]
+    tracked.update({node.uid: node for node in nodes})
+    return lambda: any(node.status == RUNNING for node in nodes)

@@ -1,0 +1,181 @@
+"""A mission of a workspace as a tree that can be explored: what runs is what is built.
+
+One invariant: the nodes of the tree have the numbers of the engine, and those that are written know their place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from typing import Final
+
+from btq_lang.btcpp.document import Document
+from btq_lang.btcpp.reader import read
+from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.nav2 import ENGINES, distribution_among
+from btq_lang.catalog.nav2.creation import SERVERS
+from btq_lang.catalog.versions import is_before_4
+from btq_lang.checks import lookups
+from btq_lang.evidence.identity import Build, Candidate
+from btq_lang.exploration.leaves import LeafKind
+from btq_lang.exploration.opened import Opened
+from btq_lang.exploration.watching import Unasked
+from btq_lang.requirements.model import MissionRun, NodeTarget
+from btq_lang.simulator.errors import EngineError, NotModelled
+from btq_lang.simulator.kinds import is_of_nav2
+from btq_lang.simulator.nav2_models import ports_in
+from btq_lang.simulator.nodes import SimulatedNode
+from btq_lang.simulator.ports import key_of
+from btq_lang.simulator.versions import Dialect
+from btq_lang.syntax.tree import Path
+from btq_lang.util.spelling import did_you_mean, near
+from btq_lang.workspace.engine_version import written_for
+from btq_lang.workspace.port_types import as_kind
+from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.workspace import Workspace
+
+
+class NotExplored(Exception):
+    """A mission cannot be explored; the message says why."""
+
+
+class ExploredMission:
+    """A mission and its tree.
+
+    Attributes:
+        tree: the name of the tree that runs.
+        dialect: the engine.
+        kinds: what is known of its leaves, by name.
+        is_nav2_assumed: no distribution of Nav2 is named, and the tree has nodes of Nav2.
+    """
+
+    def __init__(self, workspace: Workspace, path: str, tree: str = "") -> None:
+        """Build a mission; `tree`: the one that the program creates; empty: the main tree.
+
+        Raises:
+            NotExplored: it cannot be built, or has no such tree.
+        """
+        self.workspace: Final = workspace
+        self.path: Final = path
+        file = workspace.files[path]
+        scope = workspace.scope(path)
+        distribution = distribution_among(scope.node_paths)
+        versions = written_for(workspace.project, distribution, workspace.store.ask(lookups.signs, path))
+        version = workspace.project.target if not versions else versions[-1]
+        is_old = is_before_4(version)
+        mission = Candidate(workspace, path, path, None)
+        name = tree or (main.symbol.name if (main := workspace.main_tree(path)) is not None else "")
+        build = next(mission.builds(name), None) if name else None
+        if build is None:
+            raise NotExplored(f"has no tree `{tree}`" if tree else "has no main tree; choose one with --tree")
+        self.tree: Final = build.name
+        self.build: Final[Build] = build
+        self.nodes: Final = mission.requirements.nodes
+        self.applied: Final = mission.requirements.applied
+        nodes = [node for _, node in build.running.all if node is not None]
+        has_nav2 = any(node.children and node.id is not None and is_of_nav2(node.id.text) for node in nodes)
+        self.is_nav2_assumed: Final = distribution is None and has_nav2
+        nav2 = distribution or ((_ASSUMED_OLD if is_old else _ASSUMED) if has_nav2 else "")
+        self.dialect: Final = Dialect(ENGINES[nav2] if is_old and nav2 else version, nav2)
+        if file.is_xml:
+            self._documents: Sequence[Document] = self._plain()
+        else:
+            self._documents = build.running.documents
+        self._written: Final[Mapping[int, ResolvedNode]] = {
+            instance.uid: node for instance, node in build.running.all if instance.uid is not None and node is not None
+        }
+        self.kinds: Final = self._kinds()
+
+    def open(self, asked: Collection[str] = ()) -> Opened:
+        """The tree, ready to be explored; `asked`: the entries that a question reads.
+
+        Raises:
+            NotExplored: the engine refuses it, or it has something whose effect is not known.
+        """
+        try:
+            return Opened(list(self._documents), self.tree, self.dialect, self.kinds, asked)
+        except EngineError as error:
+            raise NotExplored(f"the engine refuses the tree: {error}") from None
+        except NotModelled as error:
+            raise NotExplored(f"what the tree does is not known: {error}") from None
+
+    def uids(self, path: Path | None) -> frozenset[int]:
+        """The numbers of the nodes that a path names; None: the root.
+
+        Raises:
+            Unasked: it names none.
+        """
+        if path is None:
+            return frozenset({1})
+        names = tuple([name.text for name in path.names])
+        found = frozenset[int]().union(*map(self.uids_of, self.nodes.find(names)))
+        if not found:
+            shown = "/".join(names)
+            likely = near(names[-1], sorted({name for node in self.nodes.all for name in node.names}))
+            raise Unasked(f"no node of the tree {self.tree} is called `{shown}`{did_you_mean(likely)}")
+        return found
+
+    def uids_of(self, target: NodeTarget | MissionRun) -> frozenset[int]:
+        """The numbers of the instances of a node; of the mission, that of the root."""
+        if isinstance(target, MissionRun):
+            return frozenset({1})
+        return frozenset([each.uid for each in self.build.running.instances(target) if each.uid is not None])
+
+    def place(self, uid: int) -> tuple[str, int] | None:
+        """The file and the line of a node, from 1; None: it is not written."""
+        node = self._written.get(uid)
+        if node is None:
+            return None
+        file = self.workspace.files[node.path]
+        span = file.on_disk(file.span_of(node.place))
+        return node.path, file.source_lines.position(span.start).line + 1
+
+    def server(self, node: SimulatedNode) -> str:
+        """The action server that a leaf calls; empty if none is known."""
+        own = node.ports.get("server_name", "")
+        name = SERVERS.get(node.id, "") if self.dialect.nav2 else ""
+        return (own.lstrip("/") or name) if name and key_of(own, "server_name") is None else ""
+
+    def _plain(self) -> Sequence[Document]:
+        """The XML files as they are."""
+        documents = [
+            read(self.workspace.files[path].source).document for path in self.workspace.registered_with(self.path)
+        ]
+        return [document for document in documents if document is not None]
+
+    def _kinds(self) -> Mapping[str, LeafKind]:
+        """What is known of the leaves of the program."""
+        store = self.workspace.store
+        kinds: dict[str, LeafKind] = {}
+        for _, node in self.build.running.all:
+            if node is None or node.children or node.kind is not None or node.id is None or node.is_subtree:
+                continue
+            name = node.id.text
+            declared = {
+                port.name: port
+                for ports in store.ask(lookups.ports_of_models, self.path, Kind.MODEL, name)
+                for port in map(as_kind, ports)
+            }
+            if self.is_nav2_assumed and not declared:
+                declared = {port.name: port for port in ports_in(self.dialect.nav2).get(name, ())}
+            kinds[name] = LeafKind(
+                is_condition=node.category == "Condition",
+                is_action=node.category == "Action" and (is_stated(node) or bool(declared)),
+                reads=tuple([port.name for port in declared.values() if port.direction != "output"]),
+                writes=tuple([(port.name, port.type) for port in declared.values() if port.direction != "input"]),
+                is_declared=node.of_model is not None or bool(declared),
+            )
+        return kinds
+
+
+def is_stated(node: ResolvedNode) -> bool:
+    """Whether a model or the file itself states the category of a node."""
+    return node.of_model is not None or node.node.category is not None
+
+
+def explorable(workspace: Workspace, paths: Sequence[str]) -> Iterator[str]:
+    """The files among some that have a main tree."""
+    return (path for path in paths if workspace.main_tree(path) is not None)
+
+
+_ASSUMED: Final = "jazzy"
+_ASSUMED_OLD: Final = "humble"  # of version 3

@@ -1,0 +1,149 @@
+"""Questions about what can happen, as they are typed: `PutDown starts before Grasp succeeds`.
+
+One invariant: events, conditions and paths are read by the grammar of the language; only the words around them, and
+entries in conditions, are read here.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Final, TypeAlias
+
+from btq_lang.grammar.claims import parse_event
+from btq_lang.grammar.conditions import parse_cond, parse_path
+from btq_lang.grammar.cursor import Cursor
+from btq_lang.lexer import Lexer
+from btq_lang.syntax.tokens import NEWLINE
+from btq_lang.syntax.tree import AnyEvent, Condition, Event, Path
+from btq_lang.util.record import Record
+
+
+class Order(Record):
+    """An event, or one before or after another: before means that the other one has not occurred yet.
+
+    Attributes:
+        word: before or after; empty: no other event.
+    """
+
+    event: Event | AnyEvent
+    word: str = ""
+    other: Event | AnyEvent | None = None
+
+
+class Holds(Record):
+    """A condition."""
+
+    condition: Condition
+
+
+class ReadsUnset(Record):
+    """`Grasp reads {cup_pose} unset`."""
+
+    path: Path
+    key: str
+
+
+class EndlessRun(Record):
+    """`mission does not end`."""
+
+
+Asked: TypeAlias = Order | Holds | ReadsUnset | EndlessRun
+
+
+class Question(Record):
+    """A question.
+
+    Attributes:
+        text: as typed.
+        keys: the entries that it names, by their names in conditions.
+    """
+
+    text: str
+    asked: Asked
+    keys: tuple[tuple[str, str], ...] = ()
+
+
+class NoQuestion(Exception):
+    """A text cannot be read as a question; the message says what is wrong."""
+
+
+def parse_question(text: str) -> Question:
+    """Read a question.
+
+    Raises:
+        NoQuestion: the text cannot be read as one.
+    """
+    if " ".join(text.split()) == "mission does not end":
+        return Question(text, EndlessRun())
+    keys: list[str] = []
+
+    def name(match: re.Match[str]) -> str:
+        keys.append(match[1].strip())
+        return f"{_ENTRY}{len(keys) - 1}"
+
+    cursor = _cursor(_KEY.sub(name, text))
+    named = tuple([(f"{_ENTRY}{number}", key) for number, key in enumerate(keys)])
+    asked = _reads_unset(cursor, dict(named)) or _asked(cursor)
+    if cursor.kind != NEWLINE and not cursor.problems:
+        cursor.expected("`before`, `after` or the end of the question")
+    problems = [*cursor.problems, *cursor.lexer.problems]
+    if problems or asked is None:
+        said = problems[0].message if problems else _FORMS
+        for stands, key in named:
+            said = said.replace(stands, f"{{{key}}}")
+        raise NoQuestion(said if said == _FORMS else f"{said}; {_FORMS}")
+    return Question(text, asked, named)
+
+
+def _cursor(text: str) -> Cursor:
+    lexer = Lexer(" ".join(text.split()))
+    cursor = Cursor(lexer, lambda _: False)
+    lexer.open_line()
+    cursor.scan()
+    return cursor
+
+
+def _reads_unset(cursor: Cursor, keys: dict[str, str]) -> ReadsUnset | None:
+    """ReadsUnset = Path "reads" BRACED "unset" """
+    if "reads" not in cursor.raws or cursor.raws[-2:-1] != ["unset"]:
+        return None
+    path = parse_path(cursor, "a node")
+    if path is None or not cursor.expect_word("reads"):
+        return None
+    key = keys.get(cursor.raw)
+    if key is None:
+        cursor.expected("an entry: `{cup_pose}`")
+        return None
+    cursor.advance()
+    return ReadsUnset(path, key) if cursor.expect_word("unset") else None
+
+
+def _asked(cursor: Cursor) -> Asked | None:
+    """Order | Cond"""
+    if cursor.problems:
+        return None
+    if not _has_event(cursor):
+        condition = parse_cond(cursor)
+        return Holds(condition) if condition is not None else None
+    event = parse_event(cursor)
+    if event is None:
+        return None
+    for word in ("before", "after"):
+        if cursor.accept_word(word):
+            other = parse_event(cursor)
+            return Order(event, word, other) if other is not None else None
+    return Order(event)
+
+
+def _has_event(cursor: Cursor) -> bool:
+    words = cursor.raws
+    return words[0] in ("when", "mission") or (words[0] not in ("node", "not") and not _EVENT_WORDS.isdisjoint(words))
+
+
+_ENTRY: Final = "entry__"
+_KEY: Final = re.compile(r"\{([^{}]*)\}")
+_EVENT_WORDS: Final = frozenset(("starts", "succeeds", "fails", "finishes", "halts", "before", "after"))
+_FORMS: Final = (
+    "a question is an event (`Pick starts`), one `before` or `after` another, a condition "
+    "(`node Pick and {done} == 1`), `Pick reads {pose} unset` or `mission does not end`"
+)

@@ -1,0 +1,141 @@
+"""The standard questions, all answered by one search: what never happens, and what may happen that should not.
+
+One invariant: what never happens is only said when every state was seen.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+from typing import Final
+
+from btq_lang.exploration.answers import full_runs
+from btq_lang.exploration.missions import ExploredMission
+from btq_lang.exploration.opened import Opened
+from btq_lang.exploration.outcomes import THROWN, UNKNOWN
+from btq_lang.exploration.search import Search, SearchBudget
+from btq_lang.exploration.witness import Tick, replay
+from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SUCCESS, SimulatedNode
+from btq_lang.util.record import Record
+
+
+class SurveyFinding(Record):
+    """Something that a mission should perhaps not do.
+
+    Attributes:
+        kind: never-runs, never-ends, reads-unset, shared-server, cannot-succeed, cannot-fail, cannot-end or throws.
+        text: in words.
+        uid: of the node; 0: the whole mission.
+        witness: a shortest run in which it happens; empty for what never does.
+    """
+
+    kind: str
+    text: str
+    uid: int = 0
+    witness: tuple[Tick, ...] = ()
+
+
+class Survey(Record):
+    """The answers to the standard questions.
+
+    Attributes:
+        states: how many were seen.
+        is_closed: all.
+        unknown: what is not known of the tree, so that not all was seen.
+    """
+
+    states: int
+    is_closed: bool
+    findings: tuple[SurveyFinding, ...]
+    unknown: tuple[str, ...] = ()
+
+
+def surveyed(mission: ExploredMission, budget: SearchBudget) -> Survey:
+    """Answer the standard questions.
+
+    Raises:
+        NotExplored: the tree cannot be explored.
+    """
+    opened = mission.open()
+    watch = _Watch()
+    running = full_runs(opened)
+    opened.begin(watch, running)
+    search = Search(opened.snapshots, budget).run()
+    findings = [*_thrown(opened, search, running), *_unset(opened, watch), *_shared(mission, opened, search)]
+    if search.is_closed:
+        never = [finding for finding in _never(opened, watch) if mission.place(finding.uid) is not None]
+        findings += [*_missing_ends(search), *never]  # without nodes that only enforce requirements
+    unknown = tuple([end.message for end in search.ends if end.result == UNKNOWN])
+    return Survey(search.states, search.is_closed, tuple(findings), unknown)
+
+
+class _Watch:
+    """Writes down what happens, wherever in a search."""
+
+    def __init__(self) -> None:
+        self.ran: Final[set[int]] = set()
+        self.ended: Final[set[int]] = set()
+        self.unset: Final[dict[tuple[int, str], None]] = {}
+
+    def begin(self) -> object:
+        return None
+
+    def changed(self, node: SimulatedNode, before: int, after: int) -> None:
+        if after != IDLE:
+            self.ran.add(node.uid)
+            if after != RUNNING:
+                self.ended.add(node.uid)
+
+    def unset_read(self, node: SimulatedNode, key: str) -> None:
+        self.unset[node.uid, key] = None
+
+
+def _thrown(opened: Opened, search: Search, running: frozenset[int]) -> Iterator[SurveyFinding]:
+    """Exceptions of the engine."""
+    for end, ways in list(search.ends.items()):
+        if end.result == THROWN:
+            yield SurveyFinding(
+                "throws", f"the engine can throw: {end.message}", 0, replay(opened, None, running, ways)
+            )
+
+
+def _unset(opened: Opened, watch: _Watch) -> Iterator[SurveyFinding]:
+    paths = {node.uid: node.path for node in opened.machine.nodes}
+    for uid, key in sorted(watch.unset):
+        yield SurveyFinding("reads-unset", f"{paths[uid]} can read {{{key}}} before it has a value", uid)
+
+
+def _shared(mission: ExploredMission, opened: Opened, search: Search) -> Iterator[SurveyFinding]:
+    """Two leaves that call one action server at once."""
+    callers: dict[str, list[tuple[int, SimulatedNode]]] = defaultdict(list)
+    for position, node in enumerate(opened.machine.nodes):
+        if server := mission.server(node):
+            callers[server].append((position, node))
+    for server, nodes in callers.items():
+        for index, (first, node) in enumerate(nodes):
+            for second, other in nodes[index + 1 :]:
+                if search.are_together(first, second):
+                    text = f"{node.path} and {other.path} can call the server `{server}` at the same time"
+                    yield SurveyFinding("shared-server", text, other.uid)
+
+
+def _missing_ends(search: Search) -> Iterator[SurveyFinding]:
+    results = {end.result for end in search.ends}
+    for result, kind, word in ((SUCCESS, "cannot-succeed", "succeed"), (FAILURE, "cannot-fail", "fail")):
+        if result not in results and results & {SUCCESS, FAILURE}:
+            yield SurveyFinding(kind, f"the mission cannot {word}")
+    if not results & {SUCCESS, FAILURE}:
+        yield SurveyFinding("cannot-end", "the mission cannot end")
+
+
+def _never(opened: Opened, watch: _Watch) -> Iterator[SurveyFinding]:
+    """Nodes that never run, the topmost ones only, and nodes that never end."""
+    stack = [opened.machine.root]
+    while stack:
+        node = stack.pop()
+        if node.uid not in watch.ran:
+            yield SurveyFinding("never-runs", f"{node.path} never runs", node.uid)
+            continue
+        if node.uid not in watch.ended and node is not opened.machine.root:
+            yield SurveyFinding("never-ends", f"{node.path} never ends", node.uid)
+        stack += reversed(node.children)

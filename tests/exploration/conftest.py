@@ -1,0 +1,3 @@
+"""The fixture of these tests."""
+
+from exploring import explore as explore

@@ -1,0 +1,218 @@
+"""What `btq explore` answers."""
+
+from __future__ import annotations
+
+from exploring import Exploring
+
+FETCH = """
+<Sequence>
+  <DetectCup cup="{cup}"/>
+  <Grasp cup="{cup}"/>
+  <ForceSuccess><PutDown/></ForceSuccess>
+</Sequence>"""
+MISSION = """
+Condition Ready
+Action DetectCup
+    output cup : int
+Action Grasp
+    input cup : int
+Action Wait
+
+BehaviorTree Fetch
+    R->
+        Ready
+        ->
+            ?
+                DetectCup (cup = {cup})
+                Wait
+            ScriptCondition (code = "cup > 3")
+            Grasp (cup = {cup})
+"""
+
+
+def test_an_order_of_events_with_its_witness(explore: Exploring) -> None:
+    explore.tree(FETCH)
+    assert explore.can("Grasp starts before DetectCup succeeds") == (
+        1,
+        "  can Grasp starts before DetectCup succeeds: no, in all 1 state\n",
+    )
+    assert explore.can("PutDown fails after Grasp succeeds") == (
+        0,
+        "  can PutDown fails after Grasp succeeds: yes, in 1 tick\n"
+        "    tick 1\n"
+        "      DetectCup::2 succeeds  (tree.xml:5)\n"
+        "      Grasp::3 succeeds  (tree.xml:6)\n"
+        "      PutDown::5 fails  (tree.xml:7)\n",
+    )
+
+
+def test_a_node_that_is_halted_needs_leaves_that_run_on(explore: Exploring) -> None:
+    explore.mission(MISSION)
+    assert explore.can("Grasp halts") == (
+        0,
+        "  can Grasp halts: yes, in 2 ticks\n"
+        "    tick 1\n"
+        "      Ready::2 succeeds  (mission.btq:11)\n"
+        "      DetectCup::5 succeeds  (mission.btq:14)\n"
+        "      Grasp::8 runs  (mission.btq:17)\n"
+        "      {cup} >= 4\n"
+        "    tick 2\n"
+        "      Ready::2 fails  (mission.btq:11)\n"
+        "      Grasp::8 is halted  (mission.btq:17)\n",
+    )
+
+
+def test_entries_that_are_read_unset(explore: Exploring) -> None:
+    explore.mission(MISSION.replace('            ScriptCondition (code = "cup > 3")\n', ""))
+    assert explore.can("Grasp reads {cup} unset") == (
+        0,
+        "  can Grasp reads {cup} unset: yes, in 1 tick\n"
+        "    tick 1\n"
+        "      Ready::2 succeeds  (mission.btq:11)\n"
+        "      DetectCup::5 fails  (mission.btq:14)\n"
+        "      Wait::6 succeeds  (mission.btq:15)\n",
+    )
+
+
+def test_one_script_over_the_same_entries_has_one_value(explore: Exploring) -> None:
+    explore.tree(
+        '<Fallback><Sequence><ScriptCondition code="x &gt; 3"/><A/><ScriptCondition name="again" code="x &gt; 3"/>'
+        '<ScriptCondition name="other" code="x &lt; 3"/></Sequence><B/></Fallback>'
+    )
+    assert explore.can("again fails")[0] == 1
+    assert explore.can("other succeeds")[0] == 1
+    assert explore.can("B starts after when {x} > 3")[0] == 0
+
+
+def test_conditions_of_nodes_that_run_together(explore: Exploring) -> None:
+    explore.tree('<ParallelAll><A name="a"/><Sequence><B name="b"/><C name="c"/></Sequence></ParallelAll>')
+    assert explore.can("node a and node b")[0] == 0
+    assert explore.can("node b and node c")[0] == 1
+    assert explore.can("not node a")[0] == 0
+
+
+def test_missions_that_need_not_end(explore: Exploring) -> None:
+    explore.tree("<KeepRunningUntilFailure><A/></KeepRunningUntilFailure>")
+    assert (
+        explore.can("mission does not end")
+        == (
+            0,
+            "  can mission does not end: yes, in 1 tick\n"
+            "    and from here again and again:\n"
+            "    tick 1\n"
+            "      A::2 succeeds  (tree.xml:3)\n",
+        )
+        or explore.can("mission does not end")[0] == 0
+    )
+    explore.tree('<Sequence><A/><Repeat num_cycles="3"><B/></Repeat></Sequence>')
+    assert explore.can("mission does not end")[0] == 1
+
+
+def test_two_actions_that_interrupt_each_other_for_ever(explore: Exploring) -> None:
+    explore.tree("<ReactiveSequence><Action ID='A'/><Action ID='B'/></ReactiveSequence>")
+    assert explore.can("mission does not end")[0] == 0
+
+
+def test_codes(explore: Exploring) -> None:
+    explore.tree("<Fallback><A/><B/></Fallback>")
+    assert explore("--can", "B starts")[0] == 0
+    assert explore("--never", "B starts")[0] == 1
+    assert explore("--never", "B starts before A starts")[0] == 0
+    assert explore("--can", "B starts before A starts")[0] == 1
+
+
+def test_what_is_not_found_before_the_budget_is_spent(explore: Exploring) -> None:
+    explore.tree('<Repeat num_cycles="90"><Sequence><A/><A/></Sequence></Repeat>')
+    assert explore.can("mission succeeds", "--states", "10") == (
+        1,
+        "  can mission succeeds: not found in 10 states\n",
+    )
+    assert explore("--never", "mission succeeds", "--states", "10")[0] == 0
+    assert explore("--never", "mission succeeds", "--states", "10", "--strict")[0] == 1
+    assert explore("--never", "mission succeeds")[0] == 1
+
+
+def test_the_standard_questions(explore: Exploring) -> None:
+    explore.mission(
+        """
+Action Go
+    input to : int
+Action Look
+    output place : int
+
+BehaviorTree Main
+    ?
+        ->
+            Fallback Find
+                Look (place = {place})
+                AlwaysSuccess
+            Go (to = {place})
+            AlwaysFailure
+            Go Never (to = {place})
+        KeepRunningUntilFailure Loop
+            AlwaysSuccess
+"""
+    )
+    code, out, _ = explore()
+    assert code == 1
+    assert out.splitlines()[1:] == [
+        "  all 3 states seen",
+        "  reads-unset: Go::6 can read {place} before it has a value  (mission.btq:13)",
+        "  cannot-end: the mission cannot end",
+        "  never-runs: Never never runs  (mission.btq:15)",
+        "  never-ends: Loop never ends  (mission.btq:16)",
+    ]
+
+
+def test_exceptions_of_the_engine(explore: Exploring) -> None:
+    explore.tree('<Sequence><A name="a" out="{x}"/><ScriptCondition code="x &gt; 3"/></Sequence>')
+    code, out, _ = explore()
+    assert code == 1
+    assert "throws: the engine can throw: Exception in node 'ScriptCondition::3' [ScriptCondition]" in out
+
+
+def test_two_callers_of_a_server(explore: Exploring) -> None:
+    (explore.folder / "btq.toml").write_text('nodes = ["nav2-jazzy"]\n')
+    explore.tree(
+        '<ParallelAll><FollowPath path="{path}"/><Sequence><Wait/><FollowPath name="again" path="{path}"/></Sequence>'
+        "</ParallelAll>"
+    )
+    _, out, _ = explore()
+    assert "shared-server: FollowPath::2 and again can call the server `follow_path` at the same time" in out
+
+
+def test_questions_that_are_none(explore: Exploring) -> None:
+    explore.tree("<Fallback><A/><B/></Fallback>")
+    for question, message in (
+        ("B start", "btq explore: `B start`: "),
+        ("", "btq explore: ``: "),
+        ("Grap starts", "btq explore: tree.xml: no node of the tree Main is called `Grap`"),
+        ("{x", "btq explore: `{x`: "),
+        (
+            "battery < 3 %",
+            "btq explore: tree.xml: the values of signals are not known here; write {battery}",
+        ),
+    ):
+        code, out, err = explore("--can", question)
+        assert (code, out) == (2, "")
+        assert err.startswith(message)
+
+
+def test_the_same_bytes_again(explore: Exploring) -> None:
+    explore.mission(MISSION)
+    first = explore("--format", "json", "--can", "Grasp halts", "--never", "mission fails")
+    assert explore("--format", "json", "--can", "Grasp halts", "--never", "mission fails") == first
+
+
+def test_nodes_of_nav2_without_its_distribution(explore: Exploring) -> None:
+    explore.tree(
+        '<RecoveryNode number_of_retries="2"><ComputePathToPose goal="{goal}" path="{path}"/><Wait/></RecoveryNode>'
+    )
+    code, out, _ = explore("--can", "Wait starts before ComputePathToPose fails", "--can", "Wait starts")
+    assert code == 1
+    assert out.splitlines()[:4] == [
+        'tree.xml: tree Main, BehaviorTree.CPP 4.10, Nav2 Jazzy (assumed; name it: nodes = ["nav2-jazzy"])',
+        "  can Wait starts before ComputePathToPose fails: no, in all 1 state",
+        "  can Wait starts: yes, in 1 tick",
+        "    tick 1",
+    ]
