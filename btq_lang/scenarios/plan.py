@@ -9,7 +9,6 @@ from typing import TypeAlias
 
 from btq_lang.requirements.applied import Applied
 from btq_lang.requirements.model import Condition, ResolvedRequirement, ResolvedSignal
-from btq_lang.simulator.blackboard import Value
 from btq_lang.simulator.skills import GivenSkill
 from btq_lang.util.record import Record
 
@@ -25,7 +24,7 @@ class Set(Record):
 
     signal: str
     key: str
-    value: Value | bool
+    value: float | int | str | bool
 
 
 class Halt(Record):

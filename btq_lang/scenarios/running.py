@@ -19,7 +19,7 @@ from btq_lang.requirements.model import Condition, NodeTarget
 from btq_lang.scenarios.mission import ScenarioMission
 from btq_lang.scenarios.plan import ExpectedValues, Plan, PlannedChange, Set, WatchedEvent
 from btq_lang.scenarios.unknown_entries import unknown_entry
-from btq_lang.simulator.blackboard import BOOL, Board, Value, type_of
+from btq_lang.simulator.blackboard import BOOL, Board, Unknown, Value, type_of
 from btq_lang.simulator.drivers import halt_tree, tick_while_running
 from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.loading import load
@@ -281,7 +281,9 @@ class _Running:
         time = START + self._machine.now * 1000
         for key, value in self._values():
             series = self._entries.get(key)
-            if value is not None and (series is None or series.values[-1] != value):
+            if value is None or isinstance(value, Unknown):
+                continue
+            if series is None or series.values[-1] != value:
                 self._entries.setdefault(key, SampleSeries()).add(time, value)
 
     def _values(self) -> list[tuple[str, Value | None]]:
