@@ -20,7 +20,7 @@ def open_workspace(*paths: str, factory: str | None = None) -> Workspace:
         >>> from btq_lang import open_workspace
         >>> workspace = open_workspace("examples/laboratory")
         >>> [path.rpartition("/")[2] for path in workspace.files]
-        ['mission.btq']
+        ['mission.btq', 'scenarios.btq']
 
     Args:
         paths: files, and folders for all missions below them, .btq files and the engine's XML; without any, the current

@@ -121,6 +121,8 @@ def test_it_says_what_the_build_has_described() -> None:
     compared = 0
     for example in EXAMPLES:
         files = build(open_workspace(str(example)), str(example)).files
+        if not files:
+            continue  # scenarios, of which nothing is built
         xml = files[str(example.with_suffix(".xml"))]
         side = files.get(str(example.with_suffix(".qreq.json")))
         said = descriptions_from(side, xml, ()).lines if side is not None else {}

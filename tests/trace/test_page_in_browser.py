@@ -57,7 +57,8 @@ def overview_of(example: str) -> Overview:
     if example == "200 nodes":
         return collect([(Workspace.of({"big.btq": mission(200, 3, "short")}), ("big.btq",))])
     workspace = open_workspace(str(ROOT / "examples" / example))
-    return collect([(workspace, tuple(workspace.files))], built_ways, lambda path: os.path.relpath(path, ROOT))
+    missions = tuple(path for path, file in workspace.files.items() if not file.has_only_scenarios)
+    return collect([(workspace, missions)], built_ways, lambda path: os.path.relpath(path, ROOT))
 
 
 @pytest.fixture
