@@ -247,6 +247,7 @@ def _add_trace(parser: SuggestingParser) -> None:
     "examples:\n  btq test                           all scenarios below this folder\n"
     "  btq test tests/deliver.btq --show  and how each run went\n"
     "  btq test -k station                those with `station` in their titles\n"
+    "  btq test --coverage --mutants      what they do not test\n"
     "  btq test --format junit -o scenarios.xml\n",
 )
 def _add_test(parser: SuggestingParser) -> None:
@@ -257,6 +258,15 @@ def _add_test(parser: SuggestingParser) -> None:
     parser.add("--target", choices=targets(), help="the engine's version; default: the project's newest")
     parser.flag("--no-enforce", "run the tree as btq build --no-enforce writes it")
     parser.flag("--show", "draw the run of each scenario, and not only of those that fail")
+    parser.flag("--coverage", "say which outcomes of nodes no scenario has met")
+    parser.add(
+        "--mutants",
+        nargs="?",
+        type=int,
+        const=0,
+        metavar="N",
+        help="change the tree in many ways, and say which changes no scenario notices; N: only so many of them",
+    )
     parser.add("--jobs", type=int, default=0, metavar="N", help="run them in N processes; default: by their number")
     parser.add("--format", choices=SCENARIO_FORMATS, help="default: as the file of -o ends, else text")
     parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Sequence
+from functools import partial
 
 from btq_lang import scenarios
 from btq_lang.commands.output import form_of, form_problem, is_coloured, write_output
@@ -12,9 +13,9 @@ from btq_lang.projects.building import for_target
 from btq_lang.projects.files import STDIN, Files, usage_problem
 from btq_lang.projects.messages import CommandOutput
 from btq_lang.projects.options import refuse
-from btq_lang.scenarios.parallel import results
+from btq_lang.scenarios.parallel import result_of, results
 from btq_lang.scenarios.results import ScenarioReport
-from btq_lang.scenarios.suite import Suite
+from btq_lang.scenarios.suite import ScenarioPlace, Suite
 from btq_lang.util.record import Record
 from btq_lang.workspace.file import SUFFIXES, XML_SUFFIXES
 
@@ -28,6 +29,8 @@ class ScenarioOptions(Record):
         target: the version of the engine; None: the newest of the project.
         no_enforce: without the nodes that enforce requirements.
         show: draw the runs of all scenarios.
+        coverage: say what no scenario has met.
+        mutants: say which changes of the tree no scenario notices: of so many; 0: of all; None: no.
         jobs: the number of processes; 0: as many as there are processors, if there are many scenarios.
     """
 
@@ -37,6 +40,8 @@ class ScenarioOptions(Record):
     target: str | None
     no_enforce: bool
     show: bool
+    coverage: bool
+    mutants: int | None
     jobs: int
     format: str | None
     output: str | None
@@ -62,6 +67,8 @@ def _usage_problem(options: ScenarioOptions) -> str | None:
         return "--watch cannot watch standard input"
     if options.jobs < 0:
         return f"--jobs {options.jobs}: expected a number of processes, or 0 to let btq choose"
+    if options.mutants is not None and options.mutants < 0:
+        return f"--mutants {options.mutants}: expected how many at most, or no number for all"
     return usage_problem(options.paths) or form_problem(options.format, options.output, scenarios.FORMATS)
 
 
@@ -85,13 +92,24 @@ def _run(options: ScenarioOptions, files: Files, messages: CommandOutput) -> tup
         messages.remark("btq test: no scenario" + (f" whose title contains `{options.title}`" if options.title else ""))
         return 2, watched
     jobs = options.jobs or (os.cpu_count() or 1 if len(wanted) >= _MANY else 1)
-    report = ScenarioReport(tuple(results(suites, wanted, options.show, jobs)))
+    report = _report(suites, wanted, options, jobs)
     form = form_of(options.format, options.output, scenarios.FORMATS)
     colour = form == "text" and options.output in (None, "-") and is_coloured(options.color, sys.stdout.isatty())
     write_output(messages, options.output, scenarios.write(report, form, colour=colour), form)
     if problems or report.count("error"):
         return 2, watched
     return int(report.count("passed") < len(report.scenarios)), watched
+
+
+def _report(
+    suites: Sequence[Suite], wanted: Sequence[tuple[int, ScenarioPlace]], options: ScenarioOptions, jobs: int
+) -> ScenarioReport:
+    if not options.coverage and options.mutants is None:
+        return ScenarioReport(tuple(results(suites, partial(result_of, options.show), wanted, jobs)))
+    from btq_lang.scenarios.thoroughness import thorough_report
+
+    all_jobs = options.jobs or os.cpu_count() or 1
+    return thorough_report(suites, wanted, options.show, options.coverage, options.mutants, all_jobs)
 
 
 _MANY = 50  # scenarios; for fewer, starting processes takes longer

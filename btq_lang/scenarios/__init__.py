@@ -14,6 +14,13 @@ scenario, and a value that is needed and not given makes it unknown; actions tha
     results.py     what came of scenarios, as data
     suite.py       the scenarios of files, run one by one
     parallel.py    the same in several processes
+    outcomes.py    what can happen to nodes, and what of it happened in a run
+    coverage.py    what scenarios have met of that
+    mutants.py     changes of a tree, as mistakes could have made them
+    mutating.py    a loaded tree with a change in it
+    mutation_testing.py   which changes no scenario notices
+    thoroughness.py   both for all scenarios
+    thoroughness_text.py   its lines
     text.py, json_document.py, junit.py   the writers
 """
 

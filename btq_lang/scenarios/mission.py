@@ -138,10 +138,16 @@ def _dialect(workspace: Workspace) -> Dialect:
 
 def line_of(workspace: Workspace, path: str, item: object, offset: int) -> tuple[str, int]:
     """The file and the line on the disk of an offset in an item."""
+    return position_of(workspace, path, item, offset)[:2]
+
+
+def position_of(workspace: Workspace, path: str, item: object, offset: int) -> tuple[str, int, int]:
+    """The file, the line and the column on the disk of an offset in an item; both from 1."""
     file = workspace.files[path]
     start = next((entry.start for entry in file.parsed.entries if entry.item is item), 0)
     at = file.on_disk(Span(start + offset, start + offset)).start
-    return workspace.project.shown(path), file.source.count("\n", 0, at) + 1
+    line = file.source.count("\n", 0, at) + 1
+    return workspace.project.shown(path), line, at - file.source.rfind("\n", 0, at)
 
 
 def main_tree(workspace: Workspace, path: str) -> str:

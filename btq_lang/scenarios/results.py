@@ -75,10 +75,69 @@ class ScenarioResult(Record):
     drawing: tuple[str, ...]
 
 
+class OutcomePlace(Record):
+    """A written node, or a guard at one; line and column: from 1."""
+
+    file: str
+    line: int
+    column: int
+    node: str
+
+
+class CoveredOutcome(Record):
+    """An outcome that a node may have; `scenarios`: how many have met it."""
+
+    outcome: str
+    scenarios: int
+
+
+class CoveredNode(Record):
+    """What scenarios have met at a node."""
+
+    place: OutcomePlace
+    outcomes: tuple[CoveredOutcome, ...]
+
+    @property
+    def unmet(self) -> tuple[str, ...]:
+        """The outcomes that no scenario has met."""
+        return tuple(each.outcome for each in self.outcomes if not each.scenarios)
+
+
+class CoverageReport(Record):
+    """What scenarios have met; `unused`: the trees that none of them runs, with their places."""
+
+    nodes: tuple[CoveredNode, ...]
+    unused: tuple[OutcomePlace, ...]
+
+
+class MutantResult(Record):
+    """What came of a mutant.
+
+    Attributes:
+        what: was changed at the node.
+        is_reached: the node began in a scenario that is as expected without the change.
+        noticed_by: the title of the first scenario that is no more as expected; empty if there is none.
+    """
+
+    place: OutcomePlace
+    what: str
+    is_reached: bool
+    noticed_by: str
+
+
+class MutantReport(Record):
+    """What came of mutants; `number`: of those that there are, of which these are an even sample."""
+
+    number: int
+    mutants: tuple[MutantResult, ...]
+
+
 class ScenarioReport(Record):
-    """All scenarios that ran."""
+    """All scenarios that ran; coverage, mutants: if they were wanted."""
 
     scenarios: tuple[ScenarioResult, ...]
+    coverage: CoverageReport | None = None
+    mutants: MutantReport | None = None
 
     def count(self, outcome: Outcome) -> int:
         """How many have an outcome."""

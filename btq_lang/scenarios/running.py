@@ -17,6 +17,7 @@ from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.signals import Signals
 from btq_lang.requirements.model import Condition, NodeTarget
 from btq_lang.scenarios.mission import ScenarioMission
+from btq_lang.scenarios.mutating import Mutant, mutated
 from btq_lang.scenarios.plan import ExpectedValues, Plan, PlannedChange, Set, WatchedEvent
 from btq_lang.scenarios.unknown_entries import unknown_entry
 from btq_lang.simulator.blackboard import BOOL, Board, Unknown, Value, type_of
@@ -59,6 +60,7 @@ class ScenarioRun(Record):
         signals: samples by signal.
         entries: samples by entry.
         assumed: the actions of which nothing was given, by path.
+        skipped: the nodes that were skipped at some time.
     """
 
     end: End
@@ -69,6 +71,7 @@ class ScenarioRun(Record):
     signals: dict[str, SampleSeries]
     entries: dict[str, SampleSeries]
     assumed: tuple[str, ...]
+    skipped: frozenset[int]
 
     def session(self, mission: ScenarioMission) -> LogSession:
         """The run as a log would hold it, with the begin of each node in a row of its own."""
@@ -76,17 +79,18 @@ class ScenarioRun(Record):
         return LogSession(mission.tree, rows, dict(self.entries), signals=self.signals)
 
 
-def run(mission: ScenarioMission, plan: Plan) -> ScenarioRun:
-    """Run a scenario."""
-    return _Running(mission, plan).run()
+def run(mission: ScenarioMission, plan: Plan, mutant: Mutant | None = None) -> ScenarioRun:
+    """Run a scenario; `mutant`: what is changed in the tree before."""
+    return _Running(mission, plan, mutant).run()
 
 
 class _Running:
     """A run while it goes on; it is the program that has the custom leaves."""
 
-    def __init__(self, mission: ScenarioMission, plan: Plan) -> None:
+    def __init__(self, mission: ScenarioMission, plan: Plan, mutant: Mutant | None) -> None:
         self._mission: Final = mission
         self._plan: Final = plan
+        self._mutant: Final = mutant
         self._watched: Final = _watched(plan)
         self._skills: Final = Skills(plan.givens, mission.conditions)
         self._board: Final = Board(is_old=mission.dialect.is_old)
@@ -150,6 +154,8 @@ class _Running:
     def _loaded(self) -> Machine:
         arguments = self._mission.name, self._mission.dialect, self, self._changed, self._board, self._mission.actions
         machine = load(self._mission.documents, *arguments)
+        if self._mutant is not None:
+            machine = mutated(machine, self._mutant)
         self._nodes = _NodesNow(machine, self._mission)
         return machine
 
@@ -168,7 +174,8 @@ class _Running:
         now = self._machine.now if self._machine is not None else 0
         self._renew(now)
         assumed = tuple(sorted(self._skills.assumed))
-        return ScenarioRun(end, why, now, self._rows, self._starts, self._signals, self._entries, assumed)
+        skipped = frozenset(self._machine.skipped if self._machine is not None else ())
+        return ScenarioRun(end, why, now, self._rows, self._starts, self._signals, self._entries, assumed, skipped)
 
     def _is_over(self) -> bool:
         """Let the world change as planned; whether the program ticks no more."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Final
+from typing import Final, TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import check
@@ -11,12 +11,16 @@ from btq_lang.diagnostics.rules import Severity
 from btq_lang.scenarios.drawing import drawing
 from btq_lang.scenarios.judging import judged
 from btq_lang.scenarios.mission import NotRunnable, ScenarioMission, as_program, line_of, main_tree, with_named_tree
+from btq_lang.scenarios.mutating import Mutant
+from btq_lang.scenarios.plan import Plan
 from btq_lang.scenarios.reading import ScenarioMistake, ScenarioMistakes, plan_of
 from btq_lang.scenarios.results import ExpectationResult, Outcome, ScenarioResult
 from btq_lang.scenarios.running import ScenarioRun, run
 from btq_lang.syntax.tree import Entry, Given, Scenario
 from btq_lang.util.record import Record
 from btq_lang.workspace.workspace import Workspace
+
+_Head: TypeAlias = tuple[str, str, int, str, tuple[str, ...]]  # of a result
 
 
 class ScenarioPlace(Record):
@@ -36,6 +40,7 @@ class Suite:
         self._named: Final[dict[str, Workspace]] = {}
         self._programs: Final[dict[tuple[str, str], _Program]] = {}
         self._missions: Final[dict[tuple[str, str], ScenarioMission]] = {}
+        self._prepared: Final[dict[ScenarioPlace, ScenarioResult | tuple[_Head, ScenarioMission, Plan]]] = {}
 
     def places(self, path: str) -> Iterator[tuple[ScenarioPlace, str]]:
         """The scenarios of a file, each with its title."""
@@ -45,6 +50,39 @@ class Suite:
 
     def result(self, place: ScenarioPlace, is_drawn: bool) -> ScenarioResult:
         """Run a scenario; `is_drawn`: its run is drawn, also if all is as expected."""
+        return self.ran(place, is_drawn).result
+
+    def ran(self, place: ScenarioPlace, is_drawn: bool, mutant: Mutant | None = None) -> Ran:
+        """Run a scenario.
+
+        Args:
+            is_drawn: its run is drawn, also if all is as expected.
+            mutant: what is changed in the tree before.
+        """
+        if place not in self._prepared:
+            self._prepared[place] = self._prepare(place)
+        prepared = self._prepared[place]
+        if isinstance(prepared, ScenarioResult):
+            return Ran(prepared, None, None)
+        head, mission, plan = prepared
+        ran = run(mission, plan, mutant)
+        outcome, why = _of_end(ran)
+        expectations = judged(mission, plan, ran) if outcome == "passed" else ()
+        outcome = _worst(expectations) if outcome == "passed" else outcome
+        drawn = drawing(mission, ran) if (is_drawn or outcome != "passed") and mutant is None and ran.rows else ()
+        ended = ran.end if ran.end not in ("unanswered", "unknown") else ""
+        result = ScenarioResult(*head, outcome, ended, ran.now / 1000, why, expectations, ran.assumed, drawn)
+        return Ran(result, mission, ran)
+
+    def mission(self, place: ScenarioPlace) -> ScenarioMission | None:
+        """The tree that a scenario runs; None if it cannot be run."""
+        if place not in self._prepared:
+            self._prepared[place] = self._prepare(place)
+        prepared = self._prepared[place]
+        return None if isinstance(prepared, ScenarioResult) else prepared[1]
+
+    def _prepare(self, place: ScenarioPlace) -> ScenarioResult | tuple[_Head, ScenarioMission, Plan]:
+        """What a scenario says, and the tree that it runs; its result if it cannot be run."""
         entry = self._entries(place.path)[place.number]
         scenario = entry.item
         assert isinstance(scenario, Scenario), "only these are listed"
@@ -70,13 +108,7 @@ class Suite:
             return ScenarioResult(*head, "failed", "is refused", 0.0, str(error), (), (), ())
         except ScenarioMistakes as wrong:
             return _wrong(head, wrong.mistakes)
-        ran = run(mission, plan)
-        outcome, why = _of_end(ran)
-        expectations = judged(mission, plan, ran) if outcome == "passed" else ()
-        outcome = _worst(expectations) if outcome == "passed" else outcome
-        drawn = drawing(mission, ran) if (is_drawn or outcome != "passed") and ran.rows else ()
-        ended = ran.end if ran.end not in ("unanswered", "unknown") else ""
-        return ScenarioResult(*head, outcome, ended, ran.now / 1000, why, expectations, ran.assumed, drawn)
+        return head, mission, plan
 
     def _entries(self, path: str) -> list[Entry]:
         return [entry for entry in self.workspace.files[path].parsed.entries if isinstance(entry.item, Scenario)]
@@ -106,6 +138,14 @@ class Suite:
         if (path, tree) not in self._missions:
             self._missions[path, tree] = ScenarioMission(program.workspace, path, tree, self._is_enforced)
         return self._missions[path, tree]
+
+
+class Ran(Record):
+    """A scenario that has run; mission, run: None if it could not be run."""
+
+    result: ScenarioResult
+    mission: ScenarioMission | None
+    run: ScenarioRun | None
 
 
 class _Program(Record):
@@ -144,7 +184,7 @@ def _title(scenario: Scenario) -> str:
     return scenario.title.text if scenario.title is not None else ""
 
 
-def _wrong(head: tuple[str, str, int, str, tuple[str, ...]], mistakes: Sequence[ScenarioMistake]) -> ScenarioResult:
+def _wrong(head: _Head, mistakes: Sequence[ScenarioMistake]) -> ScenarioResult:
     """A scenario with mistakes."""
     by_line = sorted(mistakes, key=lambda mistake: mistake.line)
     why = "\n".join(f"line {mistake.line}: {mistake.message}" for mistake in by_line)

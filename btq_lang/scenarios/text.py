@@ -9,6 +9,7 @@ from btq_lang.evidence.wording import duration
 from btq_lang.render.cells import printable
 from btq_lang.render.colour import Paint, painter
 from btq_lang.scenarios.results import ExpectationResult, Outcome, ScenarioReport, ScenarioResult, Step
+from btq_lang.scenarios.thoroughness_text import coverage_lines, mutant_lines
 from btq_lang.util.text import counted
 
 
@@ -17,7 +18,10 @@ def render(report: ScenarioReport, colour: bool = False) -> str:
     paint = painter(colour)
     lines = [line for scenario in report.scenarios for line in _scenario(scenario, paint)]
     counts = [f"{number} {word}" for outcome, word in _COUNTED.items() if (number := report.count(outcome))]
-    return "\n".join([*lines, f"{counted(len(report.scenarios), 'scenario')}: {', '.join(counts)}"]) + "\n"
+    lines.append(f"{counted(len(report.scenarios), 'scenario')}: {', '.join(counts)}")
+    lines += coverage_lines(report.coverage) if report.coverage is not None else ()
+    lines += mutant_lines(report.mutants) if report.mutants is not None else ()
+    return "\n".join(lines) + "\n"
 
 
 def _scenario(scenario: ScenarioResult, paint: Paint) -> Iterator[str]:

@@ -36,6 +36,8 @@ def tick_itself(machine: Machine, node: SimulatedNode, goes_on: bool = False) ->
         _run(machine, node, "_post")
     if result != SKIPPED:
         set_status(machine, node, result)
+    else:
+        machine.skipped.add(node.uid)
     if node.rules.is_decorator and node.child.status in (SUCCESS, FAILURE):
         reset_status(machine, node.child)
     return result

@@ -1,0 +1,43 @@
+"""How thorough scenarios are, for people: outcomes that none has met, and changes that none notices, by line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from btq_lang.render.cells import printable
+from btq_lang.scenarios.results import CoverageReport, MutantReport, MutantResult, OutcomePlace
+from btq_lang.util.grouping import grouped
+from btq_lang.util.text import counted
+
+
+def coverage_lines(report: CoverageReport) -> Iterator[str]:
+    """How many outcomes have been met, and which have not."""
+    number = sum(len(node.outcomes) for node in report.nodes)
+    met = number - sum(len(node.unmet) for node in report.nodes)
+    nodes = counted(len(report.nodes), "node or guard", "nodes and guards")
+    yield f"coverage: {met} of {counted(number, 'outcome')} of {nodes}"
+    rows = [(node.place, f"never {', '.join(node.unmet)}") for node in report.nodes if node.unmet]
+    yield from _table([*rows, *((place, "runs in no scenario") for place in report.unused)])
+
+
+def mutant_lines(report: MutantReport) -> Iterator[str]:
+    """How many changes have been noticed, and which have not."""
+    survivors = [mutant for mutant in report.mutants if not mutant.noticed_by]
+    number = len(report.mutants)
+    of_all = f", an even sample of {report.number}" if number < report.number else ""
+    yield f"mutants: {number - len(survivors)} of {number} noticed{of_all}"
+    yield from _table((mutant.place, _what(mutant)) for mutant in survivors)
+
+
+def _what(mutant: MutantResult) -> str:
+    return mutant.what if mutant.is_reached else f"{mutant.what} (not reached)"
+
+
+def _table(rows: Iterable[tuple[OutcomePlace, str]]) -> Iterator[str]:
+    """Rows by file: the line, the node, a text."""
+    for file, of_file in grouped((place.file, (place, text)) for place, text in rows).items():
+        yield printable(file)
+        in_order: Sequence[tuple[OutcomePlace, str]] = sorted(of_file, key=lambda row: (row[0].line, row[0].column))
+        width = max(len(place.node) for place, _ in in_order)
+        for place, text in in_order:
+            yield printable(f"{place.line:>6}  {place.node.ljust(width)}  {text}")
