@@ -59,14 +59,19 @@ def without_station(match: re.Match[str]) -> str:
     return f'{match[1]}{value.removeprefix("Station")}"'
 
 
-def results(xml: str, task: str) -> list[ScenarioResult]:
-    """The results of the scenarios of a task, up to the first that is not passed."""
+def suite_of(xml: str, task: str) -> Suite:
+    """A tree with the scenarios of a task."""
     case = "\n".join(['include "tree.xml"', *scenarios(task)])
     files = {"tree.xml": file_of("tree.xml", PORT.sub(without_station, xml)), "case.btq": File("case.btq", case)}
     robot = Factory(
         "robot", nodes=("robot.cpp",), files=tuple(files), node_files=("robot.cpp",), cpp_files=("robot.cpp",)
     )
-    suite = Suite(Workspace({**files, **robot_sources()}, Project(engines=("4.10",)), robot))
+    return Suite(Workspace({**files, **robot_sources()}, Project(engines=("4.10",)), robot))
+
+
+def results(xml: str, task: str) -> list[ScenarioResult]:
+    """The results of the scenarios of a task, up to the first that is not passed."""
+    suite = suite_of(xml, task)
     ran: list[ScenarioResult] = []
     for place, _ in suite.places("case.btq"):
         ran.append(suite.result(place, False))

@@ -82,8 +82,8 @@ class _Maker:
             first = 1 if node.flow == "choice" else 0
             for index, (left, right) in enumerate(pairwise(children_)):
                 if index >= first and _shape(self._elements[left]) != _shape(self._elements[right]):
-                    names = " and ".join(f"`{self._mission.tree.nodes[child].name}`" for child in (left, right))
-                    yield f"{names} exchanged", Exchange(index, index + 1)
+                    names = f"{self._name(left)}, {self._name(right)}"
+                    yield f"children {index + 1} and {index + 2} ({names}) exchanged", Exchange(index, index + 1)
         if node.category == "Decorator" and len(children_) == 1:
             yield "left out", Omission(0)
         if not children_ and (node.category == "Condition" or (node.kind is not None and node.flow == "answers")):
@@ -96,6 +96,11 @@ class _Maker:
             elif not (name.startswith("_") or name in _NO_PORTS):
                 for other in self._other_values(node, uid, name, value):
                     yield f'{name}="{other}" instead of "{value}"', OtherPort(name, other)
+
+    def _name(self, uid: int) -> str:
+        """The name of a written node, also of one in a guard."""
+        below = range(uid, self._mission.tree.last[uid] + 1)
+        return self._mission.tree.nodes[next((each for each in below if each in self._mission.written), uid)].name
 
     def _other_values(self, node: ResolvedNode, uid: int, port: str, value: str) -> Iterator[str]:
         """Wrong values of a port: numbers that a built-in counts by, entries of the same tree, texts of its like."""

@@ -54,9 +54,11 @@ class Outcomes:
         words: dict[int, set[str]] = {}
         is_cut = run.end == "does not end"  # what runs then is halted only because the simulation ends
         for activation in activations(run.session(self._mission)):
+            uid, outcome = activation.uid, activation.outcome
             is_last = is_cut and activation.end == START + run.now * 1000
-            if activation.outcome in _WORDS and not (activation.outcome == "H" and is_last):
-                words.setdefault(activation.uid, set()).add(_WORDS[activation.outcome])
+            is_skip = activation.begin == activation.end and uid in run.skipped  # its parent makes it idle, too
+            if outcome in _WORDS and not (outcome == "H" and (is_last or is_skip)):
+                words.setdefault(uid, set()).add(_WORDS[outcome])
         for uid in run.skipped:
             words.setdefault(uid, set()).add(_SKIPPED)
         met = {(place, word) for uid, place in self.places.items() for word in self._of_node(uid, words)}
@@ -83,7 +85,8 @@ class Outcomes:
         """Whether a node can be halted while it runs, by more than the program."""
         if uid not in self._is_halted:
             parent = self._parents[uid]
-            by_itself = self.elements[uid].get("_while") is not None
+            below = range(uid, self._mission.tree.last[uid] + 1)  # what runs and is skipped then is halted, too
+            by_itself = any(self.elements[each].get("_while") is not None for each in below)
             self._is_halted[uid] = by_itself or self._halts(parent, uid) or self._may_be_halted(parent)
         return self._is_halted[uid]
 

@@ -14,7 +14,7 @@ def coverage_lines(report: CoverageReport) -> Iterator[str]:
     """How many outcomes have been met, and which have not."""
     number = sum(len(node.outcomes) for node in report.nodes)
     met = number - sum(len(node.unmet) for node in report.nodes)
-    nodes = counted(len(report.nodes), "node or guard", "nodes and guards")
+    nodes = counted(len(report.nodes), "node")
     yield f"coverage: {met} of {counted(number, 'outcome')} of {nodes}"
     rows = [(node.place, f"never {', '.join(node.unmet)}") for node in report.nodes if node.unmet]
     yield from _table([*rows, *((place, "runs in no scenario") for place in report.unused)])

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from btq_lang.simulator.nodes import FAILURE, RUNNING, SUCCESS, Machine
-from btq_lang.simulator.ticking import execute_tick, halt_node, reset_status
+from btq_lang.simulator.ticking import check_rounds, execute_tick, halt_node, reset_status
 from btq_lang.simulator.timers import NEVER, advance, next_due, next_passing
 
 
@@ -30,9 +30,12 @@ def tick_once(machine: Machine) -> int:
 
     Raises:
         EngineError: as in the engine; nothing is reset then.
+        NotModelled: nodes ask very often; the engine may never return.
     """
     result = execute_tick(machine, machine.root)
+    rounds = 0
     while result == RUNNING and machine.is_woken:
+        check_rounds(machine.root, rounds := rounds + 1)
         machine.is_woken = False
         result = execute_tick(machine, machine.root)
     if result in (SUCCESS, FAILURE):

@@ -127,5 +127,5 @@ def halt_children(machine: Machine, node: SimulatedNode) -> None:
         reset_status(machine, node)
 
 
-_MOST_ROUNDS: Final = 100_000
+_MOST_ROUNDS: Final = 10_000
 _DECIDES: Final = {"_failureIf": FAILURE, "_successIf": SUCCESS, "_skipIf": SKIPPED, "_while": SKIPPED}

@@ -6,7 +6,10 @@ import csv
 from collections import Counter
 from pathlib import Path
 
-from generated_trees import results
+from generated_trees import results, suite_of
+
+from btq_lang.scenarios.mutants import mutants
+from btq_lang.scenarios.outcomes import Outcomes
 
 
 def test_what_the_engine_says_of_every_tree(shared: Path) -> None:
@@ -26,3 +29,25 @@ def test_what_the_engine_says_of_every_tree(shared: Path) -> None:
             verdicts[verdict] += 1
     assert different == []
     assert verdicts == {"refused": 226, "right": 120, "wrong": 46}
+
+
+def test_which_changes_of_the_right_trees_their_scenarios_notice(shared: Path) -> None:
+    folder = shared / "corpus" / "generated"
+    noticed: Counter[bool] = Counter()
+    with open(folder / "TRUTH.tsv", encoding="utf-8") as rows:
+        right = [row for row in csv.DictReader(rows, delimiter="\t") if row["task_verdict"] == "right"]
+    for row in right:
+        suite = suite_of((folder / row["file"]).read_text(encoding="utf-8"), row["task"])
+        ran = [suite.ran(place, False) for place, _ in suite.places("case.btq")]
+        places = [place for place, _ in suite.places("case.btq")]
+        mission = ran[0].mission
+        assert mission is not None
+        outcomes = Outcomes(mission)
+        for each in ran:
+            assert each.run is not None
+            assert [
+                (place, word) for place, word in outcomes.met(each.run) if word not in outcomes.possible[place]
+            ] == []
+        for named in mutants(mission, outcomes):
+            noticed[any(suite.ran(place, False, named.mutant).result.outcome != "passed" for place in places)] += 1
+    assert noticed == {True: 946, False: 12}
