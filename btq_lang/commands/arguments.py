@@ -267,6 +267,7 @@ def _add_test(parser: SuggestingParser) -> None:
         metavar="N",
         help="change the tree in many ways, and say which changes no scenario notices; N: only so many of them",
     )
+    parser.add("--rules", metavar="FILE", help="write what a scenario gives as substitution rules of the engine")
     parser.add("--jobs", type=int, default=0, metavar="N", help="run them in N processes; default: by their number")
     parser.add("--format", choices=SCENARIO_FORMATS, help="default: as the file of -o ends, else text")
     parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")

@@ -8,13 +8,13 @@ from collections.abc import Sequence
 from functools import partial
 
 from btq_lang import scenarios
-from btq_lang.commands.output import form_of, form_problem, is_coloured, write_output
+from btq_lang.commands.output import form_of, form_problem, is_coloured, write_file, write_output
 from btq_lang.projects.building import for_target
 from btq_lang.projects.files import STDIN, Files, usage_problem
 from btq_lang.projects.messages import CommandOutput
 from btq_lang.projects.options import refuse
 from btq_lang.scenarios.parallel import result_of, results
-from btq_lang.scenarios.results import ScenarioReport
+from btq_lang.scenarios.results import ScenarioReport, ScenarioResult
 from btq_lang.scenarios.suite import ScenarioPlace, Suite
 from btq_lang.util.record import Record
 from btq_lang.workspace.file import SUFFIXES, XML_SUFFIXES
@@ -31,6 +31,7 @@ class ScenarioOptions(Record):
         show: draw the runs of all scenarios.
         coverage: say what no scenario has met.
         mutants: say which changes of the tree no scenario notices: of so many; 0: of all; None: no.
+        rules: the file for the engine's substitution rules that say what is given; None: the scenario runs.
         jobs: the number of processes; 0: as many as there are processors, if there are many scenarios.
     """
 
@@ -42,6 +43,7 @@ class ScenarioOptions(Record):
     show: bool
     coverage: bool
     mutants: int | None
+    rules: str | None
     jobs: int
     format: str | None
     output: str | None
@@ -91,6 +93,8 @@ def _run(options: ScenarioOptions, files: Files, messages: CommandOutput) -> tup
     if not wanted:
         messages.remark("btq test: no scenario" + (f" whose title contains `{options.title}`" if options.title else ""))
         return 2, watched
+    if options.rules is not None:
+        return _write_rules(suites, wanted, options.rules, messages), watched
     jobs = options.jobs or (os.cpu_count() or 1 if len(wanted) >= _MANY else 1)
     report = _report(suites, wanted, options, jobs)
     form = form_of(options.format, options.output, scenarios.FORMATS)
@@ -99,6 +103,33 @@ def _run(options: ScenarioOptions, files: Files, messages: CommandOutput) -> tup
     if problems or report.count("error"):
         return 2, watched
     return int(report.count("passed") < len(report.scenarios)), watched
+
+
+def _write_rules(
+    suites: Sequence[Suite], wanted: Sequence[tuple[int, ScenarioPlace]], path: str, messages: CommandOutput
+) -> int:
+    """Write the rules of the only scenario; returns the exit code."""
+    from btq_lang.scenarios.rules import NoRules, substitution_rules
+
+    if len(wanted) > 1:
+        refuse(f"--rules {path}: {len(wanted)} scenarios; choose one with -k")
+    ((index, place),) = wanted
+    planned = suites[index].planned(place)
+    if isinstance(planned, ScenarioResult):
+        refuse(f"--rules {path}: {planned.why}")
+        return 2
+    try:
+        rules = substitution_rules(*planned[1:])
+    except NoRules as reason:
+        refuse(f"--rules {path}: {reason}")
+        return 2
+    write_file(path, rules.text)
+    messages.result(f"wrote {path}")
+    for entry in rules.entries:
+        messages.remark(f"set the entry {entry} before the first tick")
+    for node in rules.without:
+        messages.remark(f"no rule for {node}: nothing says what it answers")
+    return 0
 
 
 def _report(

@@ -21,6 +21,7 @@ scenario, and a value that is needed and not given makes it unknown; actions tha
     mutation_testing.py   which changes no scenario notices
     thoroughness.py   both for all scenarios
     thoroughness_text.py   its lines
+    rules.py       a scenario as substitution rules of the engine
     text.py, json_document.py, junit.py   the writers
 """
 

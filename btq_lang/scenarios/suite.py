@@ -59,12 +59,10 @@ class Suite:
             is_drawn: its run is drawn, also if all is as expected.
             mutant: what is changed in the tree before.
         """
-        if place not in self._prepared:
-            self._prepared[place] = self._prepare(place)
-        prepared = self._prepared[place]
-        if isinstance(prepared, ScenarioResult):
-            return Ran(prepared, None, None)
-        head, mission, plan = prepared
+        planned = self.planned(place)
+        if isinstance(planned, ScenarioResult):
+            return Ran(planned, None, None)
+        head, mission, plan = planned
         ran = run(mission, plan, mutant)
         outcome, why = _of_end(ran)
         expectations = judged(mission, plan, ran) if outcome == "passed" else ()
@@ -74,12 +72,16 @@ class Suite:
         result = ScenarioResult(*head, outcome, ended, ran.now / 1000, why, expectations, ran.assumed, drawn)
         return Ran(result, mission, ran)
 
-    def mission(self, place: ScenarioPlace) -> ScenarioMission | None:
-        """The tree that a scenario runs; None if it cannot be run."""
+    def planned(self, place: ScenarioPlace) -> ScenarioResult | tuple[_Head, ScenarioMission, Plan]:
+        """What its result begins with, the tree that a scenario runs, and what it says; its result if it cannot run."""
         if place not in self._prepared:
             self._prepared[place] = self._prepare(place)
-        prepared = self._prepared[place]
-        return None if isinstance(prepared, ScenarioResult) else prepared[1]
+        return self._prepared[place]
+
+    def mission(self, place: ScenarioPlace) -> ScenarioMission | None:
+        """The tree that a scenario runs; None if it cannot be run."""
+        planned = self.planned(place)
+        return None if isinstance(planned, ScenarioResult) else planned[1]
 
     def _prepare(self, place: ScenarioPlace) -> ScenarioResult | tuple[_Head, ScenarioMission, Plan]:
         """What a scenario says, and the tree that it runs; its result if it cannot be run."""

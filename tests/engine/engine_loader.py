@@ -182,6 +182,7 @@ def job(
     seconds: int = 10,
     runs: int = 1,
     log: Path | None = None,
+    rules: str | None = None,
 ) -> dict[str, object]:
     """One file to load, as the loader reads it.
 
@@ -200,13 +201,15 @@ def job(
         seconds: after which the engine is said to never return.
         runs: how often the tree is run.
         log: the file in which the engine's FileLogger2 logs the ticks, a .btlog.
+        rules: substitution rules, as JSON.
     """
     asked: dict[str, object] = {"file": str(source)} if isinstance(source, Path) else {"text": source}
     asked["stubs"] = list(stubs_of(source) if stubs is None else stubs)
     asked["parts"] = {name: _activations(said) for name, said in (parts or {}).items()}
     asked |= {"blackboard": dict(blackboard or {}), "ticks": ticks, "tick_ms": tick_ms, "halt": halt}
     asked |= {"every_tree": every_tree, "seconds": seconds, "runs": runs}
-    return asked | ({"log": str(log)} if log is not None else {})
+    asked |= {"log": str(log)} if log is not None else {}
+    return asked | ({"rules": rules} if rules is not None else {})
 
 
 def stubs_of(source: str | Path) -> list[dict[str, Any]]:

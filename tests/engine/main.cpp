@@ -337,6 +337,8 @@ Json answerTo(const Json& job)
       if(factory.builders().count(stub.at("ID")) == 0)
         registerStub(factory, stub, parts);
     }
+    if(job.contains("rules"))
+      factory.loadSubstitutionRuleFromJSON(job.at("rules").get<std::string>());
     auto blackboard = BT::Blackboard::create();
     storeEach(job, "blackboard", [&](const auto& key, const auto& value) { blackboard->set(key, value); });
     std::vector<BT::Tree> trees;
