@@ -22,7 +22,7 @@ scenario, and a value that is needed and not given makes it unknown; actions tha
     thoroughness.py   both for all scenarios
     thoroughness_text.py   its lines
     rules.py       a scenario as substitution rules of the engine
-    text.py, json_document.py, junit.py   the writers
+    text.py, json_document.py, junit.py, page.py   the writers
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ from typing import TYPE_CHECKING, Final
 if TYPE_CHECKING:
     from btq_lang.scenarios.results import ScenarioReport
 
-FORMATS: Final = ("text", "json", "junit")
-_MODULES: Final = {"json": "json_document"}  # named otherwise
+FORMATS: Final = ("text", "json", "junit", "html")
+_MODULES: Final = {"json": "json_document", "html": "page"}  # named otherwise
 
 
 def write(report: ScenarioReport, form: str, *, colour: bool = False) -> str:

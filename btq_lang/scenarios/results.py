@@ -116,7 +116,7 @@ class MutantResult(Record):
     Attributes:
         what: was changed at the node.
         is_reached: the node began in a scenario that is as expected without the change.
-        noticed_by: the title of the first scenario that is no more as expected; empty if there is none.
+        noticed_by: the title of the first scenario that is not as expected with it; empty if there is none.
     """
 
     place: OutcomePlace

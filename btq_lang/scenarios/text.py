@@ -16,15 +16,21 @@ from btq_lang.util.text import counted
 def render(report: ScenarioReport, colour: bool = False) -> str:
     """The results of all scenarios, and how many there are of each."""
     paint = painter(colour)
-    lines = [line for scenario in report.scenarios for line in _scenario(scenario, paint)]
-    counts = [f"{number} {word}" for outcome, word in _COUNTED.items() if (number := report.count(outcome))]
-    lines.append(f"{counted(len(report.scenarios), 'scenario')}: {', '.join(counts)}")
+    lines = [line for scenario in report.scenarios for line in scenario_lines(scenario, paint)]
+    lines.append(counts(report))
     lines += coverage_lines(report.coverage) if report.coverage is not None else ()
     lines += mutant_lines(report.mutants) if report.mutants is not None else ()
     return "\n".join(lines) + "\n"
 
 
-def _scenario(scenario: ScenarioResult, paint: Paint) -> Iterator[str]:
+def counts(report: ScenarioReport) -> str:
+    """How many scenarios there are, and of each outcome."""
+    numbers = [f"{number} {word}" for outcome, word in _COUNTED.items() if (number := report.count(outcome))]
+    return f"{counted(len(report.scenarios), 'scenario')}: {', '.join(numbers)}"
+
+
+def scenario_lines(scenario: ScenarioResult, paint: Paint) -> Iterator[str]:
+    """The result of a scenario: a line, and more if it is not as expected or drawn."""
     mark = paint(_STYLES[scenario.outcome], scenario.outcome.ljust(_WIDTH))
     ended = f": {scenario.ended} after {duration(scenario.seconds)}" if scenario.expectations else ""
     yield f"{mark} {printable(f'{scenario.title} ({scenario.file}:{scenario.line}){ended}')}"

@@ -10,26 +10,36 @@ from btq_lang.util.grouping import grouped
 from btq_lang.util.text import counted
 
 
-def coverage_lines(report: CoverageReport) -> Iterator[str]:
-    """How many outcomes have been met, and which have not."""
+def coverage_summary(report: CoverageReport) -> str:
+    """How many outcomes have been met."""
     number = sum(len(node.outcomes) for node in report.nodes)
     met = number - sum(len(node.unmet) for node in report.nodes)
     nodes = counted(len(report.nodes), "node")
-    yield f"coverage: {met} of {counted(number, 'outcome')} of {nodes}"
+    return f"{met} of {counted(number, 'outcome')} of {nodes}"
+
+
+def coverage_lines(report: CoverageReport) -> Iterator[str]:
+    """How many outcomes have been met, and which have not."""
+    yield f"coverage: {coverage_summary(report)}"
     rows = [(node.place, f"never {', '.join(node.unmet)}") for node in report.nodes if node.unmet]
     yield from _table([*rows, *((place, "runs in no scenario") for place in report.unused)])
 
 
-def mutant_lines(report: MutantReport) -> Iterator[str]:
-    """How many changes have been noticed, and which have not."""
-    survivors = [mutant for mutant in report.mutants if not mutant.noticed_by]
+def mutant_summary(report: MutantReport) -> str:
+    """How many changes have been noticed."""
     number = len(report.mutants)
     of_all = f", an even sample of {report.number}" if number < report.number else ""
-    yield f"mutants: {number - len(survivors)} of {number} noticed{of_all}"
-    yield from _table((mutant.place, _what(mutant)) for mutant in survivors)
+    return f"{sum(bool(mutant.noticed_by) for mutant in report.mutants)} of {number} noticed{of_all}"
 
 
-def _what(mutant: MutantResult) -> str:
+def mutant_lines(report: MutantReport) -> Iterator[str]:
+    """How many changes have been noticed, and which have not."""
+    yield f"mutants: {mutant_summary(report)}"
+    yield from _table((mutant.place, what_changed(mutant)) for mutant in report.mutants if not mutant.noticed_by)
+
+
+def what_changed(mutant: MutantResult) -> str:
+    """The change, and that nothing reaches it."""
     return mutant.what if mutant.is_reached else f"{mutant.what} (not reached)"
 
 

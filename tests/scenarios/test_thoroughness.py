@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import html
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -12,6 +14,8 @@ from json_schema import violations
 SCHEMA = json.loads(
     (Path(__file__).parents[2] / "btq_lang/scenarios/scenarios.schema.json").read_text(encoding="utf-8")
 )
+ROW = re.compile(r"<tr>(.*?)</tr>", re.DOTALL)
+CELL = re.compile(r"<t[hd][^>]*>(.*?)</t[hd]>", re.DOTALL)
 MISSION = """\
 QualityReq swift : performance-efficiency.time-behaviour "Soon there"
     takes at most 10 s
@@ -172,6 +176,35 @@ def test_the_whole_for_programs(folder: Path) -> None:
         (18, 17, "Go", '_skipIf="@floor == 4" instead of "@floor == 3"', True, None),
         (19, 17, "Go", 'to="lift" instead of "B"', False, None),
     ]
+
+
+def test_the_whole_as_a_page(folder: Path) -> None:
+    assert run_btq("test", "--coverage", "--mutants", "-o", "out.html", cwd=folder) == (0, "", "")
+    rows = ROW.findall((folder / "out.html").read_text(encoding="utf-8"))
+    cells = [[html.unescape(cell) for cell in CELL.findall(row)] for row in rows]
+    assert cells[:4] == [
+        ["Scenario", "Where", "Result"],
+        ["By lift", "cases.btq:6", '<span class="verdict satisfied">passed</span>'],
+        ["Door A", "cases.btq:12", '<span class="verdict satisfied">passed</span>'],
+        ["Line", "Node", "No scenario has met", "Met"],
+    ]
+    assert cells[6] == ["13", "IfThenElse", "succeeds, is skipped", "fails, is halted, then, else"]
+    assert cells[14:18] == [
+        ["22", "Leave", "runs in no scenario", ""],
+        ["Line", "Node", "No scenario notices", "Noticed by"],
+        ["11", "ReactiveSequence", "children 1 and 2 (Open, IfThenElse) exchanged", ""],
+        ["12", "Open", "", "inverted: By lift"],
+    ]
+    assert len(cells) == 16 + 15
+
+
+def test_a_page_shows_how_a_scenario_failed(folder: Path) -> None:
+    cases = CASES.replace("Go takes 12 s", "Go takes 2 s")
+    (folder / "cases.btq").write_text(cases, encoding="utf-8")
+    assert run_btq("test", "-k", "lift", "-o", "out.html", cwd=folder) == (1, "", "")
+    page = (folder / "out.html").read_text(encoding="utf-8")
+    assert "<p>1 scenario: 1 failed</p>" in page
+    assert "<pre>line 9: expect mission fails at least 1 per run\n" in page
 
 
 XML = """\
