@@ -6,13 +6,13 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from btq_lang.scenarios.mission import ScenarioMission, position_of
-from btq_lang.scenarios.outcomes import Outcomes
+from btq_lang.scenarios.outcomes import NodeOutcomes
 from btq_lang.scenarios.results import CoverageReport, CoveredNode, CoveredOutcome, OutcomePlace
 from btq_lang.syntax.tree import Tree
 
 
 def coverage(
-    missions: Sequence[tuple[ScenarioMission, Outcomes]], met: Iterable[frozenset[tuple[OutcomePlace, str]]]
+    missions: Sequence[tuple[ScenarioMission, NodeOutcomes]], met: Iterable[frozenset[tuple[OutcomePlace, str]]]
 ) -> CoverageReport:
     """The coverage of missions by scenarios.
 
@@ -31,7 +31,7 @@ def coverage(
     return CoverageReport(tuple(nodes), _unused(missions))
 
 
-def _unused(missions: Sequence[tuple[ScenarioMission, Outcomes]]) -> tuple[OutcomePlace, ...]:
+def _unused(missions: Sequence[tuple[ScenarioMission, NodeOutcomes]]) -> tuple[OutcomePlace, ...]:
     """The trees that no scenario runs."""
     used = {tree for _, outcomes in missions for tree in outcomes.trees}
     places: dict[OutcomePlace, None] = {}

@@ -14,7 +14,7 @@ from btq_lang.btcpp.document import Element
 from btq_lang.btcpp.marks import MARK
 from btq_lang.scenarios.mission import ScenarioMission
 from btq_lang.scenarios.mutating import Change, Exchange, Inversion, Mutant, Omission, OtherPort, OtherScript
-from btq_lang.scenarios.outcomes import Outcomes
+from btq_lang.scenarios.outcomes import NodeOutcomes
 from btq_lang.scenarios.results import OutcomePlace
 from btq_lang.simulator.ports import key_of
 from btq_lang.syntax.script.parser import parse_script
@@ -32,7 +32,7 @@ class NamedMutant(Record):
     mutant: Mutant
 
 
-def mutants(mission: ScenarioMission, outcomes: Outcomes) -> tuple[NamedMutant, ...]:
+def mutants(mission: ScenarioMission, outcomes: NodeOutcomes) -> tuple[NamedMutant, ...]:
     """The mutants of a mission."""
     maker = _Maker(mission, outcomes)
     named = [*maker.of_nodes(), *maker.of_guards()]
@@ -40,7 +40,7 @@ def mutants(mission: ScenarioMission, outcomes: Outcomes) -> tuple[NamedMutant, 
 
 
 class _Maker:
-    def __init__(self, mission: ScenarioMission, outcomes: Outcomes) -> None:
+    def __init__(self, mission: ScenarioMission, outcomes: NodeOutcomes) -> None:
         self._mission: Final = mission
         self._outcomes: Final = outcomes
         self._elements: Final = outcomes.elements

@@ -26,7 +26,7 @@ from btq_lang.simulator.ports import key_of
 from btq_lang.util.grouping import grouped
 
 
-class Outcomes:
+class NodeOutcomes:
     """What can happen in a mission.
 
     Attributes:

@@ -42,6 +42,10 @@ class Suite:
         self._missions: Final[dict[tuple[str, str], ScenarioMission]] = {}
         self._prepared: Final[dict[ScenarioPlace, ScenarioResult | tuple[_Head, ScenarioMission, Plan]]] = {}
 
+    def __reduce__(self) -> tuple[object, ...]:
+        """How a process that does not share memory with this one makes it again: missions know nodes by identity."""
+        return Suite, (self.workspace, self._is_enforced)
+
     def places(self, path: str) -> Iterator[tuple[ScenarioPlace, str]]:
         """The scenarios of a file, each with its title."""
         for number, entry in enumerate(self._entries(path)):

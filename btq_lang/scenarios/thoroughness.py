@@ -9,7 +9,7 @@ from btq_lang.scenarios.coverage import coverage
 from btq_lang.scenarios.mission import ScenarioMission
 from btq_lang.scenarios.mutants import NamedMutant, mutants
 from btq_lang.scenarios.mutation_testing import TestedScenario, tested
-from btq_lang.scenarios.outcomes import Outcomes
+from btq_lang.scenarios.outcomes import NodeOutcomes
 from btq_lang.scenarios.parallel import results
 from btq_lang.scenarios.results import OutcomePlace, ScenarioReport, ScenarioResult
 from btq_lang.scenarios.suite import ScenarioPlace, Suite
@@ -34,7 +34,7 @@ def thorough_report(
         jobs: how many processes.
     """
     runs = [*results(suites, partial(_run, is_drawn), wanted, jobs)]
-    missions: dict[int, tuple[ScenarioMission, Outcomes]] = {}
+    missions: dict[int, tuple[ScenarioMission, NodeOutcomes]] = {}
     of_mission: dict[int, tuple[NamedMutant, ...]] = {}
     scenarios: list[TestedScenario] = []
     for (index, place), run in zip(wanted, runs, strict=True):
@@ -70,4 +70,4 @@ def _run(is_drawn: bool, suites: Sequence[Suite], wanted: tuple[int, ScenarioPla
     return _Thorough(ran.result, _outcomes(ran.mission).met(ran.run), begun)
 
 
-_outcomes = cache(Outcomes)  # of each mission once in a process
+_outcomes = cache(NodeOutcomes)  # of each mission once in a process

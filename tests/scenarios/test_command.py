@@ -188,3 +188,17 @@ def test_which_tree_runs(text: str, why: str | None, folder: Path) -> None:
     (folder / "one.btq").write_text(f'{text}scenario "x"\n    expect mission succeeds\n', encoding="utf-8")
     code, out, _ = run_btq("test", "one.btq", cwd=folder)
     assert (code, out.splitlines()[1] if why else None) == (2 if why else 0, f"        {why}" if why else None)
+
+
+def test_the_engine_would_never_return(folder: Path) -> None:
+    retry = '<RetryUntilSuccessful num_attempts="-1"><Dock place="{place}"/></RetryUntilSuccessful>'
+    (folder / "tree.xml").write_text(TREE.replace('<Dock place="{place}"/>', retry), encoding="utf-8")
+    (folder / "cases.btq").write_text(
+        'include "tree.xml"\n\nscenario "it"\n    given Dock fails\n    expect mission succeeds\n', encoding="utf-8"
+    )
+    code, out, err = run_btq("test", cwd=folder)
+    assert (code, err) == (1, "")
+    assert out.splitlines()[:2] == [
+        "unknown it (cases.btq:3)",
+        "        Sequence::1 goes on without an end in one tick",
+    ]

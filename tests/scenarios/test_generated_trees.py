@@ -9,7 +9,7 @@ from pathlib import Path
 from generated_trees import results, suite_of
 
 from btq_lang.scenarios.mutants import mutants
-from btq_lang.scenarios.outcomes import Outcomes
+from btq_lang.scenarios.outcomes import NodeOutcomes
 
 
 def test_what_the_engine_says_of_every_tree(shared: Path) -> None:
@@ -42,7 +42,7 @@ def test_which_changes_of_the_right_trees_their_scenarios_notice(shared: Path) -
         places = [place for place, _ in suite.places("case.btq")]
         mission = ran[0].mission
         assert mission is not None
-        outcomes = Outcomes(mission)
+        outcomes = NodeOutcomes(mission)
         for each in ran:
             assert each.run is not None
             assert [
