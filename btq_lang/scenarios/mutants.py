@@ -77,16 +77,16 @@ class _Maker:
 
     def _of_node(self, uid: int) -> Iterator[tuple[str, Change]]:
         node = self._mission.written[uid]
-        children_ = self._children.get(uid, ())
+        below = self._children.get(uid, ())
         if node.flow not in _UNORDERED:
             first = 1 if node.flow == "choice" else 0
-            for index, (left, right) in enumerate(pairwise(children_)):
+            for index, (left, right) in enumerate(pairwise(below)):
                 if index >= first and _shape(self._elements[left]) != _shape(self._elements[right]):
                     names = f"{self._name(left)}, {self._name(right)}"
                     yield f"children {index + 1} and {index + 2} ({names}) exchanged", Exchange(index, index + 1)
-        if node.category == "Decorator" and len(children_) == 1:
+        if node.category == "Decorator" and len(below) == 1:
             yield "left out", Omission(0)
-        if not children_ and (node.category == "Condition" or (node.kind is not None and node.flow == "answers")):
+        if not below and (node.category == "Condition" or (node.kind is not None and node.flow == "answers")):
             yield "inverted", Inversion()
         for attribute in self._elements[uid].attributes:
             name, value = attribute.name, attribute.value
@@ -166,19 +166,14 @@ def _other_numbers(code: str) -> Iterator[str]:
 
 def _other_number(raw: str, *, is_positive: bool) -> Iterator[str]:
     """A smaller and a larger number: small whole ones by 1, others half and double."""
-    if _WHOLE.fullmatch(raw) and abs(int(raw)) <= _SMALL:
-        others = [int(raw) - 1, int(raw) + 1] if int(raw) >= 0 else [1]
+    is_whole = _WHOLE.fullmatch(raw) is not None
+    if is_whole and abs(int(raw)) <= _SMALL:
+        others = (int(raw) - 1, int(raw) + 1) if int(raw) >= 0 else (1,)
         yield from (str(other) for other in others if other >= 1 or not is_positive)
+    elif is_whole:
+        yield from (str(int(raw) // 2), str(int(raw) * 2))
     elif _NUMBER.fullmatch(raw):
-        number = float(raw)
-        yield from (
-            (f"{number / 2:g}", f"{number * 2:g}")
-            if not _WHOLE.fullmatch(raw)
-            else (
-                str(int(raw) // 2),
-                str(int(raw) * 2),
-            )
-        )
+        yield from (f"{float(raw) / 2:g}", f"{float(raw) * 2:g}")
 
 
 _UNORDERED: Final = ("", "parallel", "parallel-all", "together", "pause", "recover")  # or each child has its part
