@@ -14,6 +14,7 @@ scenario, and a value that is needed and not given makes it unknown; actions tha
     results.py     what came of scenarios, as data
     suite.py       the scenarios of files, run one by one
     parallel.py    the same in several processes
+    process.py     a process that runs them for an editor
     text.py, json_document.py, junit.py   the writers
 """
 

@@ -15,12 +15,13 @@ from btq_lang.util.text import counted
 def render(report: ScenarioReport, colour: bool = False) -> str:
     """The results of all scenarios, and how many there are of each."""
     paint = painter(colour)
-    lines = [line for scenario in report.scenarios for line in _scenario(scenario, paint)]
+    lines = [line for scenario in report.scenarios for line in scenario_lines(scenario, paint)]
     counts = [f"{number} {word}" for outcome, word in _COUNTED.items() if (number := report.count(outcome))]
     return "\n".join([*lines, f"{counted(len(report.scenarios), 'scenario')}: {', '.join(counts)}"]) + "\n"
 
 
-def _scenario(scenario: ScenarioResult, paint: Paint) -> Iterator[str]:
+def scenario_lines(scenario: ScenarioResult, paint: Paint) -> Iterator[str]:
+    """The result of a scenario in lines."""
     mark = paint(_STYLES[scenario.outcome], scenario.outcome.ljust(_WIDTH))
     ended = f": {scenario.ended} after {duration(scenario.seconds)}" if scenario.expectations else ""
     yield f"{mark} {printable(f'{scenario.title} ({scenario.file}:{scenario.line}){ended}')}"
