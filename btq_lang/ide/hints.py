@@ -13,7 +13,9 @@ from btq_lang.ide.clause_enforcement import MOST_MISSIONS, missions_of
 from btq_lang.ide.meaning import ReferenceAt, Subject, definition, everywhere, home_of, is_main, quality_of, subject
 from btq_lang.ide.outline import requirement_detail
 from btq_lang.ide.ports import port_of
+from btq_lang.ide.scenarios import listed
 from btq_lang.requirements.resolve import requirements
+from btq_lang.syntax.scenarios import Scenario
 from btq_lang.syntax.tree import Entry, Requirement, Root
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span, counted
@@ -38,11 +40,17 @@ class Hint(Record):
 
 
 class Lens(Record):
-    """A remark above a line.  places: what it counts, by file."""
+    """A remark above a line.
+
+    Attributes:
+        places: what it counts, by file.
+        runs: the title of the scenario that it runs.
+    """
 
     span: Span
     title: str
     places: tuple[tuple[str, Span], ...]
+    runs: str = ""
 
 
 def inlay_hints(workspace: Workspace, path: str, within: Span) -> tuple[Hint, ...]:
@@ -75,10 +83,10 @@ def code_lenses(
     workspace: Workspace, path: str, side: str | None = None, evidence: ProjectVerdicts | None = None
 ) -> tuple[Lens, ...]:
     """How many places use a requirement, how many nodes it names itself, how many nodes call a tree; the main tree; and
-    what logs show of a requirement.
+    what logs show of a requirement; and for each scenario, to run it.
 
     As a reader counts: a requirement that is defined at a node is used there, and has a lens only if there are more
-    uses; the `Root` that names the main tree does not call it.
+    uses; neither the `Root` that names the main tree nor a scenario calls it.
     """
     lenses: list[Lens] = []
     for place in workspace.files[path].defined:
@@ -89,7 +97,11 @@ def code_lenses(
         own = place.path, place.span
         mentions = [*everywhere(workspace, Subject(what, place.symbol.name, home_of(place)))]
         others = tuple(
-            (one.path, one.span) for one in mentions if (one.path, one.span) != own and not _is_root(one.entry)
+            (one.path, one.span)
+            for one in mentions
+            if (one.path, one.span) != own
+            and not _is_root(one.entry)
+            and not (kind is Kind.TREE and one.entry is not None and isinstance(one.entry.item, Scenario))
         )
         if kind is Kind.TREE:
             is_top = path not in workspace.included_files and is_main(workspace, path, place.entry)
@@ -113,6 +125,7 @@ def code_lenses(
             titles = [*(titles if uses or not nodes else ()), *holds]
         if uses or nodes or not is_in_place:
             lenses.append(Lens(place.span, ", ".join(titles), tuple(dict.fromkeys((*uses, *nodes)))))
+    lenses += [Lens(each.head, "run", (), each.title) for each in listed(workspace, path) if each.title]
     return (*lenses, *_verdict_lenses(workspace, path, evidence), *_build_lenses(workspace, path, side))
 
 

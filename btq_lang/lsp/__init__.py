@@ -8,7 +8,10 @@ offsets and paths, call `ide`, and convert the result back.  Features are implem
     session.py       the open files, and whose diagnostics an edit may have changed
     editor.py        one client: its session, its capabilities, and what is published
     schedule.py      when files are checked
+    processes.py     processes of Python that work for the server
     logs.py          the process that judges a project's logs, and its summary
+    scenarios.py     the process that runs scenarios, and its results
+    tested.py        what the last runs show, as long as it holds
     progress.py      progress of work on many files
     lifecycle.py, documents.py, navigation.py, hints.py, colours.py, acting.py, commands.py
                      the handlers, most of a few lines
@@ -16,12 +19,12 @@ offsets and paths, call `ide`, and convert the result back.  Features are implem
 
 from __future__ import annotations
 
-from btq_lang.lsp import acting, colours, commands, documents, hints, lifecycle, logs, navigation
+from btq_lang.lsp import acting, colours, commands, documents, hints, lifecycle, logs, navigation, scenarios
 from btq_lang.lsp.editor import Server
 
 
 def register(server: Server) -> None:
     """Register all handlers with pygls."""
-    for group in (lifecycle, documents, navigation, colours, acting, hints, commands, logs):
+    for group in (lifecycle, documents, navigation, colours, acting, hints, commands, logs, scenarios):
         group.handlers.register(server)
     logs.watch_logs(server)

@@ -43,7 +43,7 @@ def path_of_node(server: Server, place: types.TextDocumentPositionParams) -> str
 @handlers.command(XML)
 def xml(server: Server, document: types.TextDocumentIdentifier) -> str:
     """The XML that `btq build` would write for a document in its current state, saved or not."""
-    workspace, path = _mission_at(server, document)
+    workspace, path = mission_at(server, document)
     from btq_lang.btcpp.document import write  # large, and not needed by most sessions
     from btq_lang.btcpp.outputs import as_xml
 
@@ -56,7 +56,7 @@ def xml(server: Server, document: types.TextDocumentIdentifier) -> str:
 @handlers.command(PICTURE)
 def picture(server: Server, document: types.TextDocumentIdentifier, *folded: str) -> dict[str, object]:
     """The trees of a document as SVG, and the range of each node in the text, by the node's key."""
-    workspace, path = _mission_at(server, document, reads=True)
+    workspace, path = mission_at(server, document, reads=True)
     from btq_lang.graph.picture import picture as draw  # as above
 
     evidence = server.session.evidence(workspace)
@@ -73,7 +73,7 @@ def picture(server: Server, document: types.TextDocumentIdentifier, *folded: str
 @handlers.command(OVERVIEW)
 def overview(server: Server, document: types.TextDocumentIdentifier) -> str:
     """The page that `btq trace --format html` writes for a document in its current state, saved or not."""
-    workspace, path = _mission_at(server, document, reads=True)
+    workspace, path = mission_at(server, document, reads=True)
     from btq_lang.trace.judged import judged_runs, together  # as above
     from btq_lang.trace.missions import trace_tables
 
@@ -87,7 +87,7 @@ def overview(server: Server, document: types.TextDocumentIdentifier) -> str:
 @handlers.command(BUILD)
 def build(server: Server, document: types.TextDocumentIdentifier) -> dict[str, object]:
     """Write the XML of a mission as `btq build` does, with the editor's texts of open files."""
-    _, path = _mission_at(server, document)
+    _, path = mission_at(server, document)
     if not document.uri.startswith("file:"):
         raise RequestRefused("save this document to a file first")
     from btq_lang.projects.build_files import BuildOptions, build_files  # as above
@@ -102,7 +102,7 @@ def build(server: Server, document: types.TextDocumentIdentifier) -> dict[str, o
 @handlers.command(IMPORT)
 def import_(server: Server, document: types.TextDocumentIdentifier) -> dict[str, object]:
     """Write the .btq file for XML as `btq import` does, beside it."""
-    workspace, path = _mission_at(server, document, reads=True)
+    workspace, path = mission_at(server, document, reads=True)
     from btq_lang.workspace.loader import read  # as above
 
     file = workspace.files[path]
@@ -130,9 +130,8 @@ def uses(server: Server, places: list[types.Location]) -> None:
     server.window_show_message(types.ShowMessageParams(types.MessageType.Info, "\n".join(named)))
 
 
-def _mission_at(
-    server: Server, document: types.TextDocumentIdentifier, *, reads: bool = False
-) -> tuple[Workspace, str]:
+def mission_at(server: Server, document: types.TextDocumentIdentifier, *, reads: bool = False) -> tuple[Workspace, str]:
+    """The workspace and the path of a document; without any, the request is refused."""
     try:
         return server.at(document, reads=reads)
     except UnknownDocument:

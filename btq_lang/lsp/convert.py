@@ -27,6 +27,7 @@ if TYPE_CHECKING:  # all these import the checks; the server must start fast
     from btq_lang.ide.hover import Hover, Signature
     from btq_lang.ide.outline import Match, Outline
     from btq_lang.ide.refactor import Action
+    from btq_lang.ide.scenarios import ScenarioFailure
     from btq_lang.ide.structure import Fold
     from btq_lang.workspace.findings import FileFindings
     from btq_lang.workspace.loader import LoadProblem
@@ -215,6 +216,18 @@ class Converter:
                 )
             )
         return ", ".join(written), ranges
+
+    def failure(self, workspace: Workspace, path: str, failure: ScenarioFailure) -> str:
+        """What a run of a scenario shows, as a diagnostic in JSON."""
+        members = {"message": failure.message, "severity": 1 if failure.is_error else 2, "source": "btq test"}
+        written = f'{{"range": {self._range_as_json(workspace.files[path].source_lines, failure.span)}'
+        written += f", {json.dumps(members)[1:-1]}"
+        if failure.place is not None:
+            place, line = failure.place
+            range_ = _RANGE % (line - 1, 0, line - 1, 0)
+            location = f'{{"uri": {as_json(self.uri(place))}, "range": {range_}}}'
+            written += f', "relatedInformation": [{{"location": {location}, "message": {as_json(failure.happened)}}}]'
+        return f"{written}}}"
 
     def _range_as_json(self, lines: LineIndex, span: Span) -> str:
         return _RANGE % lines.ends(span, self.encoding)

@@ -30,6 +30,7 @@ from btq_lang import ide as features
 from btq_lang.lsp.convert import Converter
 from btq_lang.lsp.protocol import Json, Messages, OutgoingMessages, Protocol
 from btq_lang.lsp.schedule import CheckSchedule
+from btq_lang.lsp.tested import TestedScenarios
 from btq_lang.projects import failures
 from btq_lang.util.version import __version__
 
@@ -128,6 +129,7 @@ class Server(LanguageServer):
         self.shown: set[str] = set()  # files whose diagnostics a pulling editor may still show
         self.tokens: dict[str, tuple[str, Colours]] = {}
         self.count = 0
+        self.tested = TestedScenarios()
         self.schedule = CheckSchedule(self)
         self._ready: set[str] = set()  # the files prepared for first requests
         self.scanned = asyncio.Event()  # the folders have been read; before, the set of files is unknown
@@ -334,7 +336,11 @@ class Server(LanguageServer):
         workspace = self.session.workspace_of(path)
         if workspace is None or not self.session.knows(path):
             return None
-        return self.convert.findings(workspace, path, self.session.findings(path))
+        items = self.convert.findings(workspace, path, self.session.findings(path))
+        shown = ", ".join(self.tested.diagnostics(workspace, path))
+        if not shown:
+            return items
+        return Json(f"[{shown}]" if items == NO_ITEMS else f"{items[:-1]}, {shown}]")
 
     def announce_changes(self) -> None:
         """Make an editor that pulls diagnostics ask for them again."""

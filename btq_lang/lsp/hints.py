@@ -13,6 +13,7 @@ from btq_lang.lsp.commands import USES
 from btq_lang.lsp.convert import markdown
 from btq_lang.lsp.editor import Handlers, Server
 from btq_lang.lsp.protocol import Json
+from btq_lang.lsp.scenarios import SHOW
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
 
 SHOW_REFERENCES = "btq.showReferences"  # a command of the editor, which opens its own list
+RUN_SCENARIO = "btq.runScenario"  # likewise
 
 
 handlers = Handlers()
@@ -69,7 +71,11 @@ def lenses(server: Server, params: types.CodeLensParams) -> list[types.CodeLens]
     ):
         range_ = server.convert.range(workspace, path, lens.span)
         uses = [server.convert.location(workspace, *use) for use in lens.places]
-        if not uses:
+        if lens.runs:
+            name = RUN_SCENARIO if server.knows_command(RUN_SCENARIO) else SHOW
+            document = types.TextDocumentIdentifier(server.convert.uri(path))
+            command = types.Command(lens.title, name, arguments=[document, lens.runs])
+        elif not uses:
             command = types.Command(lens.title, "")  # a plain title: there is nothing to open
         elif server.knows_command(SHOW_REFERENCES):
             command = types.Command(

@@ -12,8 +12,7 @@ import hashlib
 import json
 import logging
 import os
-import sys
-from asyncio.subprocess import DEVNULL, PIPE, Process
+from asyncio.subprocess import DEVNULL, Process
 from collections.abc import Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Final
@@ -21,6 +20,7 @@ from typing import TYPE_CHECKING, Any, Final
 from lsprotocol import types
 
 from btq_lang.lsp.editor import Handlers, RequestRefused, Server, UnknownDocument
+from btq_lang.lsp.processes import start_python
 from btq_lang.lsp.progress import progress
 from btq_lang.util.version import __version__
 
@@ -215,12 +215,8 @@ class Logs:
 
 
 async def _start_btq(folder: str, words: Sequence[str]) -> Process:
-    """A command of btq in a folder, by the Python and the package that run this server."""
-    paths = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-    program = (sys.executable, "-c", _COMMAND)
-    return await asyncio.create_subprocess_exec(
-        *program, *words, cwd=folder, env=paths, stdin=DEVNULL, stdout=PIPE, stderr=PIPE, limit=_LONGEST
-    )
+    """A command of btq in a folder."""
+    return await start_python(folder, _COMMAND, words, stdin=DEVNULL)
 
 
 def _digest_of_logs(project: Project) -> str:
@@ -269,4 +265,3 @@ PAUSE = 5  # seconds between two looks at the logs
 _COMMAND: Final = "import sys; from btq_lang.cli import main; sys.exit(main())"
 _TROUBLE: Final = 2  # the exit code of an error
 _DIGITS: Final = 24
-_LONGEST: Final = 1 << 20  # bytes of a line of progress

@@ -11,11 +11,17 @@ import logging
 import re
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
+from functools import partial
 from typing import Any, BinaryIO
 
 from cattrs import ClassValidationError, transform_error
 from lsprotocol import types
-from pygls.exceptions import JsonRpcException, JsonRpcInvalidRequest, JsonRpcServerNotInitialized
+from pygls.exceptions import (
+    JsonRpcException,
+    JsonRpcInvalidRequest,
+    JsonRpcRequestCancelled,
+    JsonRpcServerNotInitialized,
+)
 from pygls.io_ import StdoutWriter
 from pygls.protocol import LanguageServerProtocol, lsp_method
 
@@ -41,10 +47,16 @@ class Protocol(LanguageServerProtocol):
     log_failure: Callable[[BaseException], tuple[str, bool]]
 
     def _run_generator(self, future: Future[Any] | None, *, gen: Any, result_future: Future[Any]) -> None:
-        """As in pygls, but without logging handlers that are cancelled because the server ends."""
+        """As in pygls, but without logging handlers that are cancelled because the server ends; a command's handler is
+        cancelled with its request.
+        """
         if future is not None and future.cancelled():
             result_future.cancel()
+        before = {*self._request_futures}
         super()._run_generator(future, gen=gen, result_future=result_future)
+        for key in self._request_futures.keys() - before:  # pygls 2.1 keeps each under a key that no message has
+            handling = self._request_futures.pop(key)
+            result_future.add_done_callback(partial(_cancel_with, handling))
 
     def _check_handler_result(self, future: Future[Any]) -> None:
         kept = {} if future.cancelled() else self._request_futures  # pygls iterates over them when it cancels all
@@ -59,6 +71,10 @@ class Protocol(LanguageServerProtocol):
             self._server.window_show_message(types.ShowMessageParams(types.MessageType.Error, message_text))
 
     def _send_handler_result(self, future: Future[Any], *, msg_id: int | str) -> None:
+        if future.cancelled():  # pygls would forget it while it cancels all, one after the other
+            cancelled = JsonRpcRequestCancelled(f'Request with id "{msg_id}" is canceled')
+            self._send_response(msg_id, error=cancelled.to_response_error())
+            return
         failed = _failure(future)
         if failed is None:
             super()._send_handler_result(future, msg_id=msg_id)
@@ -210,6 +226,12 @@ class OutgoingMessages(StdoutWriter):
             super().write(data)
         except OSError:
             self._at_end()
+
+
+def _cancel_with(handling: Future[Any], asked: Future[Any]) -> None:
+    """Cancel the handler of a request that has ended by being cancelled."""
+    if asked.cancelled():
+        handling.cancel()
 
 
 def _failure(future: Future[Any]) -> BaseException | None:

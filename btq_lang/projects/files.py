@@ -357,7 +357,7 @@ class Files:
         named = dict.fromkeys((*paths, *registered, *project.node_files))
         wanted = tuple(path for path in named if path not in cpp)
         texts = {path: self.overlay[path] for path in wanted if path in self.overlay}
-        loaded = load((path for path in wanted if path not in texts), project, includes_of, texts)
+        loaded = load((path for path in wanted if path not in texts), project, includes_of, texts, self.overlay)
         files = {path: self._file(path, text) for path, text in loaded.texts.items()}
         given = tuple(path for path in paths if path in files)
         files.update(cpp)

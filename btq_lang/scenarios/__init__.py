@@ -14,6 +14,7 @@ scenario, and a value that is needed and not given makes it unknown; actions tha
     results.py     what came of scenarios, as data
     suite.py       the scenarios of files, run one by one
     parallel.py    the same in several processes
+    process.py     a process that runs them for an editor
     outcomes.py    what can happen to nodes, and what of it happened in a run
     coverage.py    what scenarios have met of that
     mutants.py     changes of a tree, as mistakes could have made them

@@ -159,6 +159,7 @@ def load(
     project: Project,
     includes_of: Callable[[str, str], Iterable[str]],
     overlay: Mapping[str, str] | None = None,
+    included: Mapping[str, str] | None = None,
 ) -> LoadedFiles:
     """Read files and folders, and all that the files include, directly or not.
 
@@ -166,6 +167,7 @@ def load(
         paths: as for `collect`.
         includes_of: the include strings of a file, from its path and its text.
         overlay: texts from elsewhere (standard input), by path: they are given files that are not read from the disk.
+        included: texts of files that are not given, but may be included, likewise.
     """
     named, unreachable = collect(paths, project)
     problems = list(unreachable)
@@ -174,7 +176,7 @@ def load(
     absent: dict[str, None] = {}
 
     def add(path: str) -> bool:
-        text, problem = read(path)
+        text, problem = (included[path], None) if included and path in included else read(path)
         problems.extend([problem] if problem else [])
         if text is not None:
             texts[path] = text

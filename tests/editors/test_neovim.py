@@ -630,3 +630,73 @@ def test_other_xml_starts_no_server_until_it_is_the_engines(neovim: Neovim, text
     """
     before, after = neovim.run({"pom.xml": text}, script)
     assert (before, len(after)) == (0, 1)
+
+
+SCENARIOS = """\
+BehaviorTree Deliver
+    ?
+        MoveTo (location = "E")
+        MoveTo (location = "B")
+
+scenario "E is closed"
+    given MoveTo (location = "E") fails
+    expect MoveTo runs "E", "B"
+
+scenario "E is open"
+    expect MoveTo runs "E", "B"
+
+scenario "B is closed"
+    given every MoveTo fails
+    expect mission succeeds
+"""
+
+
+@every_nvim
+def test_scenarios_are_run(neovim: Neovim) -> None:
+    """The nearest one, one at the cursor, one by its code lens, all; an edit takes away what they have shown."""
+    script = """
+    btq.wait(btq.client, 'the server')
+    local seen, said = {}, nil
+    vim.notify = function(text) said = text end
+    local function shown()
+      return vim.tbl_map(function(each) return each.lnum + 1 end, vim.diagnostic.get(0))
+    end
+    local function test(command, count)
+      said = nil
+      vim.cmd(command)
+      btq.wait(function() return said end, 'what is said')
+      btq.wait(function() return #shown() == count end, count .. ' diagnostics')
+      table.insert(seen, { said, shown() })
+    end
+    test('BtqTest nearest', 0)
+    btq.to('expect', 2)
+    test('BtqTest nearest', 1)
+    for _, lens in ipairs(btq.ask('textDocument/codeLens')) do
+      if lens.range.start.line == 12 then
+        said = nil
+        vim.lsp.commands[lens.command.command](lens.command, { client_id = btq.client().id })
+        btq.wait(function() return said end, 'what is said')
+        btq.wait(function() return #shown() == 2 end, 'two diagnostics')
+        table.insert(seen, { lens.command.title .. ': ' .. said, shown() })
+      end
+    end
+    test('BtqTest', 2)
+    local first = vim.diagnostic.get(0)[1]
+    vim.api.nvim_buf_set_lines(0, 10, 10, true, { '    given MoveTo (location = "E") fails' })
+    btq.wait(function() return #shown() == 0 end, 'no diagnostics')
+    test('BtqTest', 1)
+    return { seen, { first.source, first.message }, vim.fn.getcompletion('BtqTest ', 'cmdline') }
+    """
+    seen, first, completed = neovim.run({"main.btq": SCENARIOS}, script)
+    assert seen == [
+        ["btq: scenarios: 1 passed", []],
+        ["btq: scenarios: 1 failed", [11]],
+        ["run: btq: scenarios: 1 failed", [11, 15]],
+        ["btq: scenarios: 1 passed, 2 failed", [11, 15]],
+        ["btq: scenarios: 2 passed, 1 failed", [16]],
+    ]
+    assert first == [
+        "btq test",
+        'after 0 ms Fallback::1 (main.btq:2): the mission succeeds, and the node has not run with it; expected "B"',
+    ]
+    assert completed == ["nearest"]

@@ -249,6 +249,50 @@ def test_a_code_lens_shows_the_uses(code: Workbench) -> None:
     code.keys("Escape")
 
 
+SCENARIOS = """\
+BehaviorTree Deliver
+    ?
+        MoveTo (location = "E")
+        MoveTo (location = "B")
+
+scenario "E is closed"
+    given MoveTo (location = "E") fails
+    expect MoveTo runs "E", "B"
+
+scenario "E is open"
+    expect MoveTo runs "E", "B"
+"""
+
+
+def test_the_test_explorer_lists_and_runs_scenarios(code: Workbench, artifacts: Path) -> None:
+    def see(title: str, state: str) -> None:
+        code.see(f".test-explorer .monaco-list-row:has-text('{title}') .codicon-testing-{state}-icon")
+
+    code.write("cases.btq", SCENARIOS)
+    code.open("cases.btq")
+    code.see(".codelens-decoration a:text-is('run')").click()
+    code.problems()
+    code.command("Testing: Focus on Test Explorer View")
+    code.see(".test-explorer .monaco-list-row:has-text('cases.btq') .monaco-tl-twistie").click()
+    see("E is closed", "passed")
+    see("E is open", "unset")
+    code.command("Test: Run All Tests")
+    see("E is open", "failed")
+    see("E is closed", "passed")
+    expected = 'the mission succeeds, and the node has not run with it; expected "B"'
+    assert code.problems(expected)[0].endswith("btq test [Ln 11, Col 5]")
+    code.shot(artifacts / "vscode-scenarios.png")
+    code.focus()
+    code.cursor(2, 6)
+    code.keys("Backspace")
+    code.type("->")
+    code.problems()
+    code.command("Test: Run All Tests")
+    see("E is open", "passed")
+    see("E is closed", "failed")
+    assert code.problems("the mission fails, and the node has not run with it")[0].endswith("[Ln 8, Col 5]")
+
+
 @pytest.mark.scheduled
 def test_enter_indents_below_what_has_a_block_and_leaves_it_at_the_second(code: Workbench) -> None:
     code.write("typed.btq", "")

@@ -156,3 +156,22 @@ def test_a_library_holds_for_nodes_of_its_missions() -> None:
         """,
         "rq: holds for 2 nodes",
     )
+
+
+def test_each_scenario_has_a_lens_that_runs_it_and_calls_no_tree() -> None:
+    check_lenses(
+        """
+        //- main.btq
+        given Go fails
+        scenario "far" of Main
+            expect Go runs "A"
+        scenario "near"
+            expect Go runs "A"
+        scenario "" of Main
+        BehaviorTree Main
+            Go (place = "A")
+        """,
+        "Main: main tree",
+        '"far": run',
+        '"near": run',
+    )

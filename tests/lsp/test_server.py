@@ -881,6 +881,17 @@ def test_a_build_writes_what_the_command_line_writes(tmp_path: Path) -> None:
     assert editor.close() == ""
 
 
+def test_a_build_has_included_files_as_they_are_in_the_editor(tmp_path: Path) -> None:
+    (tmp_path / "skills.btq").write_text(SKILLS, encoding="utf-8")
+    (tmp_path / "main.btq").write_text(MISSION, encoding="utf-8")
+    editor = Editor(tmp_path)
+    editor.open("skills.btq", f"{SKILLS}Action Unsaved\n")
+    document = editor.document("main.btq")["textDocument"]
+    editor.request("workspace/executeCommand", command="btq.server.build", arguments=[document])
+    assert '"Unsaved"' in (tmp_path / "skills.xml").read_text(encoding="utf-8")
+    assert editor.close() == ""
+
+
 def test_a_build_that_is_not_done_says_why(editor: Editor) -> None:
     editor.open("main.btq", "BehaviorTree Main\n    SubTree Dock\n")
     document = editor.document("main.btq")["textDocument"]

@@ -30,12 +30,17 @@ if executable(s:program[0])
   setlocal errorformat=%f:%l:%c:\ %trror%m,%f:%l:%c:\ %tarning%m,%f:%l:%c:\ %tnfo%m,%f:%l:%c:\ %tint%m,%-G%.%#
 endif
 
+function! s:tests(...)
+  return 'nearest'
+endfunction
+
 if has('nvim')
   command! -buffer -bang BtqPreview lua require('btq.preview').run('<bang>' == '!')
   command! -buffer -nargs=? BtqRun lua require('btq.run').run(tonumber('<args>'))
+  command! -buffer -nargs=? -complete=custom,s:tests BtqTest lua require('btq.test').run('<args>')
 endif
 
 let b:undo_ftplugin = 'setlocal commentstring< comments< formatoptions< expandtab< shiftwidth< softtabstop<'
       \ . ' iskeyword< suffixesadd< include< makeprg< errorformat<'
       \ . (has('nvim-0.11') ? ' completeopt<' : '')
-      \ . (has('nvim') ? ' | delcommand -buffer BtqPreview | delcommand -buffer BtqRun' : '')
+      \ . (has('nvim') ? ' | delcommand -buffer BtqPreview | delcommand -buffer BtqRun | delcommand -buffer BtqTest' : '')

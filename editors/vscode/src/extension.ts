@@ -17,6 +17,7 @@ import { convert } from "./conversion";
 import { isOurs, isTrees, SELECTOR } from "./documents";
 import { OverviewView } from "./overview";
 import { activeInterpreter, onInterpreterChange } from "./pythonExtension";
+import { type AskUntil, Scenarios } from "./scenarios";
 import { findServer, NoPython, type Server } from "./server";
 import { Tasks } from "./tasks";
 import { TreeView } from "./treeView";
@@ -35,14 +36,16 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
   status.command = { command: "btq.showLog", title: "Show Log" };
 
   const line = (): Promise<string[]> => commandLine(context);
-  const ask: Ask = async (command, ...parameters) => {
+  const askUntil: AskUntil = async (token, command, ...parameters) => {
     await turn; // a request during the start gets an answer
     if (!client?.isRunning()) throw new Error("The btq server is not running.");
-    return client.sendRequest(ExecuteCommandRequest.type, { command, arguments: parameters });
+    return client.sendRequest(ExecuteCommandRequest.type, { command, arguments: parameters }, token);
   };
+  const ask: Ask = (...asked) => askUntil(NEVER, ...asked);
   const xml = new XmlView(context, ask);
   const tree = new TreeView(context, ask);
   const overview = new OverviewView(context, ask);
+  const scenarios = new Scenarios(context, ask, askUntil);
   const judged = (): void => {
     tree.soon();
     void overview.draw();
@@ -56,7 +59,9 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
   const restart = (): Promise<void> => {
     isWanted = true;
     waiting += 1;
-    return (turn = turn.then(() => start(context, log, status, judged)));
+    turn = turn.then(() => start(context, log, status, judged));
+    scenarios.soon();
+    return turn;
   };
   const again = async (): Promise<void> => (isWanted ? restart() : undefined);
   // The first document for btq is enough; other XML does not start the server.
@@ -81,6 +86,9 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
       const here = converter.asPosition(at);
       await vscode.commands.executeCommand("editor.action.showReferences", vscode.Uri.parse(uri), here, found);
     }),
+    vscode.commands.registerCommand("btq.runScenario", ({ uri }: { uri: string }, title: string) =>
+      orSay(() => scenarios.runTitle(uri, title))(),
+    ),
     vscode.commands.registerCommand("btq.build", () => tasks.run("build")),
     vscode.commands.registerCommand("btq.showTree", () => tree.show()),
     vscode.commands.registerCommand("btq.showRun", orSay(() => tree.showRun())),
@@ -118,6 +126,9 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
 async function hasMissions(): Promise<boolean> {
   return (await vscode.workspace.findFiles("**/*.{btq,qualitybtcpp}", undefined, 1)).length > 0;
 }
+
+/** Of requests that nobody cancels. */
+const NEVER = new vscode.CancellationTokenSource().token;
 
 let isOffered = false;
 
@@ -184,7 +195,7 @@ async function start(
     );
     client.registerFeature({
       // The server sends clickable lenses only to clients that announce a command for them.
-      fillClientCapabilities: (capabilities) => (capabilities.experimental = { commands: ["btq.showReferences"] }),
+      fillClientCapabilities: (capabilities) => (capabilities.experimental = { commands: ["btq.showReferences", "btq.runScenario"] }),
       initialize: () => undefined,
       getState: () => ({ kind: "static" }),
       clear: () => undefined,

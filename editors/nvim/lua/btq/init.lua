@@ -29,10 +29,10 @@ function M.program()
   return { is_ours == 1 and vim.fn.executable(beside) == 1 and beside or 'btq' }
 end
 
---- What the client can do, and the command that the server's code lenses run.
+--- What the client can do, and the commands that the server's code lenses run.
 local function capabilities()
   local known = vim.lsp.protocol.make_client_capabilities()
-  known.experimental = { commands = { 'btq.showReferences' } }
+  known.experimental = { commands = { 'btq.showReferences', 'btq.runScenario' } }
   return known
 end
 
@@ -46,6 +46,10 @@ function M.setup()
     local places = vim.lsp.util.locations_to_items(command.arguments[3], client.offset_encoding)
     vim.fn.setqflist({}, ' ', { title = command.title, items = places })
     vim.cmd('botright copen')
+  end
+  vim.lsp.commands['btq.runScenario'] = function(command, context)
+    local buffer = vim.uri_to_bufnr(command.arguments[1].uri)
+    require('btq.test').titled(vim.lsp.get_client_by_id(context.client_id), buffer, command.arguments[2])
   end
   local starts_by_itself = vim.lsp.config and vim.lsp.enable -- 0.11 and newer
   if starts_by_itself then
