@@ -176,10 +176,16 @@ class Activation:
 
 
 class SampleSeries:
-    """The samples of one signal, in the order of their times; `unit`: of the values; None: the signal's own."""
+    """The samples of one signal, in the order of their times.
+
+    Attributes:
+        unit: of the values; None: the signal's own.
+        lacking: why there is no value where one is None; empty: the entry was not on the blackboard.
+    """
 
     def __init__(self, unit: Unit | None = None) -> None:
         self.unit: Final = unit
+        self.lacking = ""
         self.times: Final = array("q")
         self.values: Final[list[SampleValue | None]] = []
 

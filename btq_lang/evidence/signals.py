@@ -44,7 +44,7 @@ class Signals:
             return _before_samples(signal, bool(series.times), with_initial)
         sampled, value = last_sample
         if value is None:
-            return UnknownValue(f"`{signal.name}` was not on the blackboard")
+            return UnknownValue(series.lacking or f"`{signal.name}` was not on the blackboard")
         if signal.fresh is not None and time - sampled > round(signal.fresh * 1e6):
             return UnknownValue(f"the last sample of `{signal.name}` is too old")
         last = self._last.get(signal.name)

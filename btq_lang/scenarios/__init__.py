@@ -7,7 +7,6 @@ scenario, and a value that is needed and not given makes it unknown; actions tha
     plan.py        what a scenario says, resolved
     reading.py     the words of a scenario to its plan
     running.py     one run: the tree is ticked, the world changes as planned
-    unknown_entries.py   entries that are read, and were never given a value
     judging.py     whether a run is as expected
     drawing.py     a run as lines of text
     recording.py   a run of a log as a scenario

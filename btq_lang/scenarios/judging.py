@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Final
 
 from btq_lang.evidence.conditions import truth
@@ -25,6 +24,8 @@ from btq_lang.scenarios.plan import (
 )
 from btq_lang.scenarios.results import ExpectationResult, Step
 from btq_lang.scenarios.running import START, ScenarioRun, Start
+from btq_lang.simulator.blackboard import Unknown, Unsaid
+from btq_lang.simulator.errors import NotModelled
 from btq_lang.simulator.skills import is_value
 from btq_lang.util.record import replace
 
@@ -79,7 +80,7 @@ class _Judge:
         elif isinstance(expected, WantedVerdict):
             step, why = self._verdict(self._verdicts[expected.name], expected)
         elif isinstance(expected, ExpectedValues):
-            step = self._values(expected)
+            step, why = self._values(expected)
         elif isinstance(expected, ExpectedEnd):
             step, why = self._end(expected, expectation.text)
         else:
@@ -140,27 +141,53 @@ class _Judge:
 
     # ---- values of ports ----
 
-    def _values(self, expected: ExpectedValues) -> Step | None:
-        starts = [start for start in self._run.starts if start.uid in expected.uids and _has(start, expected.pairs)]
+    def _values(self, expected: ExpectedValues) -> tuple[Step | None, str]:
+        try:
+            return self._other_value(expected), ""
+        except NotModelled as error:
+            return None, str(error)
+
+    def _other_value(self, expected: ExpectedValues) -> Step | None:
+        """The first activation with another value than expected."""
+        starts = [
+            start
+            for start in self._run.starts
+            if start.uid in expected.uids and all(self._is(start, *pair) for pair in expected.pairs)
+        ]
         for start, value in zip(starts, expected.values, strict=False):
-            actual = self._value(start, expected.port)
-            if not is_value(actual, value):
-                return self._other(start, actual, f'"{value}"')
+            if not self._is(start, expected.port, value):
+                return self._other(start, expected.port, f'"{value}"')
         if len(starts) > len(expected.values):
             start = starts[len(expected.values)]
-            return self._other(start, self._value(start, expected.port), "no further activation")
+            return self._other(start, expected.port, "no further activation")
         if len(starts) < len(expected.values):
             value = expected.values[len(starts)]
             step = self._at_end(f'"{value}"')
             return replace(step, happened=f"{step.happened}, and the node has not run with it")
         return None
 
-    def _value(self, start: Start, port: str | None) -> str | None:
+    def _value(self, start: Start, port: str | None) -> str | Unknown | None:
         name = port or self._mission.input_port(start.uid)
         return start.values.get(name) if name is not None else None
 
-    def _other(self, start: Start, actual: str | None, expected: str) -> Step:
-        happened = f'it runs with "{actual}"' if actual is not None else "it runs with no value"
+    def _is(self, start: Start, port: str | None, wanted: str) -> bool:
+        """Whether a node began with a value.
+
+        Raises:
+            NotModelled: nothing says with which it did.
+        """
+        value = self._value(start, port)
+        if isinstance(value, Unsaid):
+            name = port or self._mission.input_port(start.uid)
+            raise NotModelled(f"{self.node(start.uid)[0]} reads its port `{name}`, and {value.why}")
+        return is_value(value, wanted)
+
+    def _other(self, start: Start, port: str | None, expected: str) -> Step:
+        actual = self._value(start, port)
+        if isinstance(actual, Unsaid):
+            happened = f"it runs, and {actual.why}"
+        else:
+            happened = f'it runs with "{actual}"' if actual is not None else "it runs with no value"
         return Step(start.at / 1000, *self.node(start.uid), happened, expected)
 
     # ---- the end ----
@@ -192,10 +219,6 @@ class _NothingRuns(Nearby):
 
 def _series_of(signal: ResolvedSignal, run: ScenarioRun) -> SampleSeries | None:
     return run.signals.get(signal.name) or run.entries.get(signal.entry)
-
-
-def _has(start: Start, pairs: Sequence[tuple[str, str]]) -> bool:
-    return all(is_value(start.values.get(port), value) for port, value in pairs)
 
 
 def _shown(value: object) -> str:

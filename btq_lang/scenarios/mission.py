@@ -13,6 +13,7 @@ from btq_lang.btcpp.opening import with_source
 from btq_lang.btcpp.reader import read
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2 import ENGINES, distribution_among
+from btq_lang.checks.lookups import ports_of_models
 from btq_lang.evidence.identity import Build, Candidate, Joined
 from btq_lang.evidence.model import LoggedTree
 from btq_lang.requirements.model import NodeTarget
@@ -22,6 +23,7 @@ from btq_lang.syntax.tree import Model, Root, Tree
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span
 from btq_lang.workspace.factories import Factory
+from btq_lang.workspace.port_types import as_kind
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
@@ -89,6 +91,19 @@ class ScenarioMission:
         """The names under which it registers other nodes."""
         nodes = self.requirements.nodes.all
         return frozenset(_id(node) for node in nodes if node.kind is None) - self.conditions
+
+    @cached_property
+    def outputs(self) -> dict[str, tuple[str, ...]]:
+        """The ports through which nodes of the program write, by the name under which it registers them, of those of
+        which a model or C++ declares the ports.
+        """
+        outputs: dict[str, tuple[str, ...]] = {}
+        for name in (*self.actions, *self.conditions):
+            models = self.workspace.store.ask(ports_of_models, self.path, Kind.MODEL, name)
+            ports = [port for model in models for port in map(as_kind, model) if port.direction != "input"]
+            if models:
+                outputs[name] = tuple(dict.fromkeys(port.name for port in ports))
+        return outputs
 
     @cached_property
     def joined(self) -> Joined:

@@ -14,19 +14,19 @@ from btq_lang.evidence.conditions import truth
 from btq_lang.evidence.history import History, Nearby
 from btq_lang.evidence.model import ROOT, LogSession, SampleSeries, Transition
 from btq_lang.evidence.observed import Observed
-from btq_lang.evidence.signals import Signals
-from btq_lang.requirements.model import Condition, NodeTarget
+from btq_lang.evidence.signals import Signals, UnknownValue
+from btq_lang.requirements.model import Condition, NodeTarget, signals_in
 from btq_lang.scenarios.mission import ScenarioMission
 from btq_lang.scenarios.mutating import Mutant, mutated
 from btq_lang.scenarios.plan import ExpectedValues, Plan, PlannedChange, Set, WatchedEvent
-from btq_lang.scenarios.unknown_entries import unknown_entry
-from btq_lang.simulator.blackboard import BOOL, Board, Unknown, Value, type_of
+from btq_lang.simulator.blackboard import BOOL, Board, Unknown, Unsaid, Value, type_of
 from btq_lang.simulator.drivers import halt_tree, tick_while_running
 from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.loading import load
 from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Machine, SimulatedNode
-from btq_lang.simulator.ports import read_whole
+from btq_lang.simulator.ports import key_of, read_whole
 from btq_lang.simulator.skills import GivenSkill, Skills, Unanswered, is_value, value_at
+from btq_lang.syntax.script.tree import variables
 from btq_lang.util.record import Record
 
 Known: TypeAlias = Literal["succeeds", "fails", "is skipped", "is halted", "does not end"]
@@ -44,7 +44,7 @@ class Start(Record):
 
     uid: int
     at: int
-    values: dict[str, str | None]
+    values: dict[str, str | Unknown | None]
 
 
 class ScenarioRun(Record):
@@ -92,7 +92,7 @@ class _Running:
         self._plan: Final = plan
         self._mutant: Final = mutant
         self._watched: Final = _watched(plan)
-        self._skills: Final = Skills(plan.givens, mission.conditions)
+        self._skills: Final = Skills(plan.givens, mission.conditions, mission.outputs)
         self._board: Final = Board(is_old=mission.dialect.is_old)
         self._machine: Machine | None = None
         self._nodes: _NodesNow
@@ -142,12 +142,9 @@ class _Running:
             result = tick_while_running(machine, _LONGEST, is_over=self._is_over)
             return self._ended(machine, result)
         except EngineError as error:
-            if self._machine is None:
-                return self._record("is refused", str(error))
-            unknown = unknown_entry(self._machine, {start.uid for start in self._starts}, self._mission.actions)
-            return self._record("unknown", unknown) if unknown else self._record("throws", str(error))
+            return self._record("is refused" if self._machine is None else "throws", str(error))
         except NotModelled as error:
-            return self._record("unknown", str(error))
+            return self._record("unknown", _why(error))
         except Unanswered as error:
             return self._record("unanswered", error.node.path)
 
@@ -232,7 +229,7 @@ class _Running:
         self._starts.append(start)
         self._happen(node, ("starts",), start.values)
 
-    def _happen(self, node: SimulatedNode, words: tuple[str, ...], values: dict[str, str | None]) -> None:
+    def _happen(self, node: SimulatedNode, words: tuple[str, ...], values: dict[str, str | Unknown | None]) -> None:
         for change in self._waiting[:]:
             event = change.trigger
             if not isinstance(event, WatchedEvent) or event.word not in words or node.uid not in event.uids:
@@ -261,11 +258,21 @@ class _Running:
     # ---- the world ----
 
     def holds(self, condition: Condition) -> bool:
-        """Whether a condition holds now; one that is not known does not."""
+        """Whether a condition holds now; before the first value of what it reads it does not.
+
+        Raises:
+            NotModelled: that depends on what a skill has written.
+        """
         assert self._machine is not None, "it is ticked"
         signals = Signals(self._signals, self._entries)
         moment = START + self._machine.now * 1000, 0
-        return truth(condition, Observed(signals, self._nodes, moment, moment), moment) is True
+        holds = truth(condition, Observed(signals, self._nodes, moment, moment), moment)
+        if isinstance(holds, UnknownValue):
+            values = dict(self._values())
+            for signal in signals_in(condition):
+                if isinstance(value := values.get(signal.entry), Unsaid):
+                    raise NotModelled(f"a condition after `when` reads `{signal.name}`, and {value.why}")
+        return holds is True
 
     def _set(self, value: Set) -> None:
         now = self._machine.now if self._machine is not None else 0
@@ -288,10 +295,13 @@ class _Running:
         time = START + self._machine.now * 1000
         for key, value in self._values():
             series = self._entries.get(key)
-            if value is None or isinstance(value, Unknown):
+            sample = None if isinstance(value, Unknown) else value
+            if value is None or (series is not None and series.values[-1] == sample):
                 continue
-            if series is None or series.values[-1] != value:
-                self._entries.setdefault(key, SampleSeries()).add(time, value)
+            series = self._entries.setdefault(key, SampleSeries())
+            series.add(time, sample)
+            if isinstance(value, Unsaid):
+                series.lacking = value.why
 
     def _values(self) -> list[tuple[str, Value | None]]:
         """The entries that are read, on the root blackboard or, if only one other has them, there."""
@@ -356,6 +366,21 @@ def _timeless_memory(node: SimulatedNode, now: int) -> tuple[object, ...]:
     counted = 0 if port is not None and read_whole(node, port.name) == -1 else count
     after = node.due - now if node.due >= 0 else due
     return status, index, counted, skipped, is_on, completed, seen, result, after, *others
+
+
+def _why(error: NotModelled) -> str:
+    """What is not known: of the value of an entry, who reads and who wrote it."""
+    value, reader = error.value, error.reader
+    if not isinstance(value, Unsaid) or reader is None:
+        return str(error)
+    scripts = [*(script for _, script in reader.conditions), *reader.scripts.values()]
+    keys = [variable.name for script in scripts for variable in variables(script)]
+    keys += [key for port, written in reader.ports.items() if (key := key_of(written, port)) is not None]
+    for key in keys:
+        entry = reader.board.entry(key)
+        if entry is not None and entry.value == value:
+            return f"{reader.path} reads {{{key}}}, and {value.why}"
+    return f"{reader.path} reads what {value.writer} writes into {{{value.key}}}, and nothing says what that is"
 
 
 def _watched(plan: Plan) -> frozenset[int]:

@@ -42,7 +42,33 @@ class Unknown:
 
     def needed(self, what: str) -> NotModelled:
         """The exception for something that cannot be done without its value."""
-        return NotModelled(f"an entry whose value is unknown is {what}")
+        return NotModelled(f"an entry whose value is unknown is {what}", self)
+
+
+class Unsaid(Unknown):
+    """What a skill has written, where nothing says what that is.
+
+    Attributes:
+        writer: the path of the skill.
+        key: of the entry, as the skill names it.
+    """
+
+    __slots__ = ("key", "writer")
+
+    def __init__(self, writer: str, key: str) -> None:
+        self.writer: Final = writer
+        self.key: Final = key
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Unsaid) and (other.writer, other.key) == (self.writer, self.key)
+
+    def __hash__(self) -> int:
+        return hash((self.writer, self.key))
+
+    @property
+    def why(self) -> str:
+        """Why it is unknown."""
+        return f"nothing says what {self.writer} writes into {{{self.key}}}"
 
 
 Value: TypeAlias = float | int | str | Unknown

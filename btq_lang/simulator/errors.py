@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from btq_lang.simulator.blackboard import Unknown
+    from btq_lang.simulator.nodes import SimulatedNode
+
 
 class EngineError(Exception):
     """An exception that the engine throws, with its message.
@@ -16,4 +22,14 @@ class EngineError(Exception):
 
 
 class NotModelled(Exception):
-    """The tree has something whose effect is not known here; the message says what."""
+    """The tree has something whose effect is not known here; the message says what.
+
+    Attributes:
+        value: the unknown value that is needed; None: something else is not known.
+        reader: the node that needs it; None: no node, or the tick has not been left yet.
+    """
+
+    def __init__(self, message: str, value: Unknown | None = None) -> None:
+        super().__init__(message)
+        self.value: Final = value
+        self.reader: SimulatedNode | None = None

@@ -5,11 +5,11 @@ One invariant: a condition is never assumed; an action of which nothing is given
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Final
 
-from btq_lang.simulator.blackboard import Value
-from btq_lang.simulator.nodes import FAILURE, RUNNING, SUCCESS, Machine, SimulatedNode
+from btq_lang.simulator.blackboard import UNTYPED, Unknown, Unsaid, Value
+from btq_lang.simulator.nodes import FAILURE, RUNNING, SKIPPED, SUCCESS, Machine, SimulatedNode
 from btq_lang.simulator.ports import key_of, read
 from btq_lang.simulator.scripts import text_of
 from btq_lang.simulator.timers import NEVER
@@ -67,14 +67,22 @@ def has_values(node: SimulatedNode, values: Iterable[tuple[str, str]]) -> bool:
     return all(is_value(value_at(node, port), wanted) for port, wanted in values)
 
 
-def value_at(node: SimulatedNode, port: str) -> str | None:
-    """The value at a port now, as a text; None: there is none."""
+def value_at(node: SimulatedNode, port: str) -> str | Unknown | None:
+    """The value at a port now, as a text if it is known; None: there is none."""
     value = read(node, port)
-    return f"{value:g}" if isinstance(value, float) else None if value is None else text_of(value)
+    if value is None or isinstance(value, Unknown):
+        return value
+    return f"{value:g}" if isinstance(value, float) else text_of(value)
 
 
-def is_value(value: str | None, wanted: str) -> bool:
-    """Whether the value at a port is the wanted one; numbers are compared as such.  None: there is none."""
+def is_value(value: str | Unknown | None, wanted: str) -> bool:
+    """Whether the value at a port is the wanted one; numbers are compared as such.  None: there is none.
+
+    Raises:
+        NotModelled: it is unknown.
+    """
+    if isinstance(value, Unknown):
+        return value.compared("==", wanted)
     if value is None or value == wanted:
         return value == wanted
     try:
@@ -105,12 +113,24 @@ class Skills:
         machine: whose leaves they are; to be set before the first tick.
     """
 
-    def __init__(self, givens: Iterable[GivenSkill], conditions: Iterable[str]) -> None:
-        """Take what is given; `conditions`: the registered names of conditions."""
+    def __init__(
+        self,
+        givens: Iterable[GivenSkill],
+        conditions: Iterable[str],
+        outputs: Mapping[str, tuple[str, ...]] | None = None,
+    ) -> None:
+        """Take what is given.
+
+        Args:
+            conditions: the registered names of conditions.
+            outputs: the ports through which a skill writes, by its registered name, if that is known; without a name
+                here it is taken to write into those of its entries that are empty.
+        """
         self.machine: Machine
         self.assumed: Final[set[str]] = set()
         self._givens: Final = sorted(givens, key=lambda given: -given.rank)
         self._conditions: Final = frozenset(conditions)
+        self._outputs: Final = outputs
         self._starts: Final[dict[int, int]] = {}  # by the identity of what is given
         self._asked: Final[dict[int, int]] = {}
         self._open: Final[dict[int, _Activation]] = {}  # by the number of the node
@@ -127,17 +147,43 @@ class Skills:
             Unanswered: it is a condition without an answer.
         """
         if node.id in self._conditions:
-            return self._answer(node)
+            result = self._answer(node)
+            self._write_unsaid(node, (), only_empty=True)
+            return result
         activation = self._open.get(node.uid) if node.status == RUNNING else None
         if activation is None:
             activation = self._open[node.uid] = self._begun(node)
         if activation.end == NEVER or self.machine.now < activation.end:
+            if not activation.writes:
+                self._write_unsaid(node, (), only_empty=True)
             return RUNNING
         del self._open[node.uid]
-        for write in activation.writes:
-            key = key_of(node.ports.get(write.key, ""), write.key) or write.key
+        keys = [key_of(node.ports.get(write.key, ""), write.key) or write.key for write in activation.writes]
+        if activation.result != SKIPPED:
+            self._write_unsaid(node, keys)
+        for key, write in zip(keys, activation.writes, strict=True):
             node.board.write(key, write.value, write.type)
         return activation.result
+
+    def _write_unsaid(self, node: SimulatedNode, given: Iterable[str], only_empty: bool = False) -> None:
+        """Write unknown values into the entries of outputs of which no value is given.
+
+        Args:
+            given: the entries of which one is.
+            only_empty: entries with a value keep it: the readings that a condition copies are given, and a skill that
+                runs may write later.
+        """
+        if self._outputs is None:
+            return
+        outputs = self._outputs.get(node.id)
+        for port in node.ports if outputs is None else outputs:
+            key = key_of(node.ports.get(port, ""), port)
+            if key is None or key in given:
+                continue
+            entry = node.board.entry(key)
+            is_empty = entry is None or entry.value is None
+            if is_empty or not (only_empty or outputs is None):
+                node.board.write(key, Unsaid(node.path, key), entry.type if entry is not None else UNTYPED)
 
     def halt(self, node: SimulatedNode) -> None:
         """Halt a skill that runs."""

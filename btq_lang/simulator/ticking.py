@@ -23,17 +23,21 @@ def tick_itself(machine: Machine, node: SimulatedNode, goes_on: bool = False) ->
     Args:
         goes_on: its tick has begun and is continued, so that its conditions are not asked.
     """
-    result = _by_condition(machine, node) if node.conditions and not goes_on else IDLE
-    if result == IDLE:
-        try:
-            result = node.rules.flow(machine, node)
-        except EngineError as error:
-            if error.is_wrapped or not machine.dialect.names_thrower:
-                raise
-            raise EngineError(f"Exception in node '{node.path}' [{node.id}]: {error}", is_wrapped=True) from None
-    if node.scripts and result in (SUCCESS, FAILURE):
-        _run(machine, node, "_onSuccess" if result == SUCCESS else "_onFailure")
-        _run(machine, node, "_post")
+    try:
+        result = _by_condition(machine, node) if node.conditions and not goes_on else IDLE
+        if result == IDLE:
+            try:
+                result = node.rules.flow(machine, node)
+            except EngineError as error:
+                if error.is_wrapped or not machine.dialect.names_thrower:
+                    raise
+                raise EngineError(f"Exception in node '{node.path}' [{node.id}]: {error}", is_wrapped=True) from None
+        if node.scripts and result in (SUCCESS, FAILURE):
+            _run(machine, node, "_onSuccess" if result == SUCCESS else "_onFailure")
+            _run(machine, node, "_post")
+    except NotModelled as error:
+        error.reader = error.reader or node
+        raise
     if result != SKIPPED:
         set_status(machine, node, result)
     else:

@@ -1,0 +1,139 @@
+"""Entries that a skill writes while nothing says what: they are passed on, and what needs their value is unknown."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from in_process import run_btq
+
+TREE = """\
+Action Dock
+    output place
+    input speed : double
+Action Adjust
+    inout place
+Action MoveTo
+    input to
+Condition Seen
+    output where : string
+
+BehaviorTree Main
+    ->
+        Dock (place = {place} speed = {speed})
+"""
+UNKNOWN = "nothing says what Dock::2 writes into {place}"
+
+
+def ran(folder: Path, nodes: str, *steps: str) -> tuple[str, str, str]:
+    """How a scenario ends whose tree goes on with these nodes: its outcome, its end, and why."""
+    tree = TREE + "".join(f"        {line}\n" for line in nodes.splitlines())
+    scenario = "".join(f"    {step}\n" for step in steps)
+    (folder / "main.btq").write_text(f'{tree}\nscenario "S"\n{scenario}', encoding="utf-8")
+    _, out, err = run_btq("test", "main.btq", "--format", "json", cwd=folder)
+    assert err == ""
+    (result,) = json.loads(out)["scenarios"]
+    whys = [each["why"] or (each["step"] or {}).get("happened", "") for each in result["expectations"]]
+    return result["outcome"], result["ended"], result["why"] or next(filter(None, whys), "")
+
+
+@pytest.mark.parametrize(
+    ("nodes", "reader"),
+    [
+        (
+            'Switch (variable = {place} case_1 = "A" case_2 = "B")\n    MoveTo\n    MoveTo\n    MoveTo',
+            "Switch2::3 reads {place}",
+        ),
+        ('ScriptCondition (code = "(place == 3)")', "ScriptCondition::3 reads {place}"),
+        ('MoveTo (_skipIf = "(place == 3)" to = "A")', "MoveTo::3 reads {place}"),
+        ('MoveTo (_post = "copy := (place + 1)" to = "A")', "MoveTo::3 reads {place}"),
+        ("Retry (num_attempts = {place})\n    Dock", "RetryUntilSuccessful::3 reads {place}"),
+        (
+            'SetBlackboard (value = {place} output_key = "copy")\nScriptCondition (code = "(copy == 3)")',
+            "ScriptCondition::4 reads {copy}",
+        ),
+    ],
+)
+@pytest.mark.parametrize("given", [[], ["given Dock succeeds after 1 s"], ["given {place} = 5"]])
+def test_what_needs_the_value(tmp_path: Path, nodes: str, reader: str, given: list[str]) -> None:
+    assert ran(tmp_path, nodes, *given, "expect mission succeeds") == ("unknown", "", f"{reader}, and {UNKNOWN}")
+
+
+def test_a_failed_skill_may_have_written(tmp_path: Path) -> None:
+    nodes = 'Fallback\n    Dock Again (place = {place})\n    ScriptCondition (code = "(place == 3)")'
+    steps = "given Again fails", "expect mission succeeds"
+    why = "ScriptCondition::5 reads {place}, and nothing says what Again writes into {place}"
+    assert ran(tmp_path, nodes, *steps) == ("unknown", "", why)
+
+
+def test_an_unknown_value_is_passed_on(tmp_path: Path) -> None:
+    nodes = 'SetBlackboard (value = {place} output_key = "copy")\nMoveTo (to = {copy})\nAdjust (place = {copy})'
+    assert ran(tmp_path, nodes, "expect mission succeeds") == ("passed", "succeeds", "")
+
+
+@pytest.mark.parametrize(
+    ("step", "outcome", "why"),
+    [
+        ("expect MoveTo runs 3", "unknown", f"MoveTo::3 reads its port `to`, and {UNKNOWN}"),
+        ("expect MoveTo runs 3, 4", "unknown", f"MoveTo::3 reads its port `to`, and {UNKNOWN}"),
+        ("expect finally {place} == 3", "unknown", UNKNOWN),
+        ("expect finally not node Dock", "passed", ""),
+    ],
+)
+def test_an_expectation_that_needs_the_value(tmp_path: Path, step: str, outcome: str, why: str) -> None:
+    steps = "given {place} = 3", step
+    assert ran(tmp_path, "MoveTo (to = {place})", *steps) == (outcome, "succeeds", why)
+
+
+@pytest.mark.parametrize(
+    ("step", "reader"),
+    [
+        ("given MoveTo (to = 3) fails", "MoveTo::3 reads {place}"),
+        ("when MoveTo (to = 3) starts: mission halts", "MoveTo::3 reads {place}"),
+        ("when {place} == 3: mission halts", "a condition after `when` reads `{place}`"),
+    ],
+)
+def test_a_step_that_needs_the_value(tmp_path: Path, step: str, reader: str) -> None:
+    steps = step, "given MoveTo takes 1 s", "expect mission succeeds"
+    assert ran(tmp_path, "MoveTo (to = {place})", *steps) == ("unknown", "", f"{reader}, and {UNKNOWN}")
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        "given Dock succeeds and writes place = 3",
+        "given Dock takes 2 s and writes place = 3",
+        "when Dock succeeds: {place} = 3",
+    ],
+)
+def test_a_value_that_is_given(tmp_path: Path, given: str) -> None:
+    nodes = 'ScriptCondition (code = "(place == 3)")'
+    assert ran(tmp_path, nodes, given, "expect finally {place} == 3") == ("passed", "succeeds", "")
+
+
+def test_a_skill_that_runs_may_write(tmp_path: Path) -> None:
+    nodes = '|| (success_count = 1)\n    Dock Other (place = {other})\n    ScriptCondition (code = "(other == 3)")'
+    steps = "given Other takes 1 s", "expect mission succeeds"
+    why = "ScriptCondition::5 reads {other}, and nothing says what Other writes into {other}"
+    assert ran(tmp_path, nodes, *steps) == ("unknown", "", why)
+
+
+@pytest.mark.parametrize(
+    ("given", "result"),
+    [
+        ('given {seen} = "A"', ("passed", "succeeds", "")),
+        (
+            "given Seen answers true",
+            ("unknown", "", "Reads reads {seen}, and nothing says what Seen::3 writes into {seen}"),
+        ),
+    ],
+)
+def test_a_condition_keeps_the_reading_that_is_given(tmp_path: Path, given: str, result: tuple[str, str, str]) -> None:
+    nodes = "Seen (where = {seen})\nScriptCondition Reads (code = \"(seen == 'A')\")"
+    assert ran(tmp_path, nodes, "given Seen answers true", given, "expect mission succeeds") == result
+
+
+def test_an_endless_run_is_noticed(tmp_path: Path) -> None:
+    nodes = "KeepRunningUntilFailure\n    Dock (place = {place})"
+    assert ran(tmp_path, nodes, "expect mission does not end")[:2] == ("passed", "does not end")
