@@ -19,7 +19,7 @@ from btq_lang.requirements.model import Condition, NodeTarget, signals_in
 from btq_lang.scenarios.mission import ScenarioMission
 from btq_lang.scenarios.mutating import Mutant, mutated
 from btq_lang.scenarios.plan import ExpectedValues, Plan, PlannedChange, Set, WatchedEvent
-from btq_lang.simulator.blackboard import BOOL, Board, Unknown, Unsaid, Value, type_of
+from btq_lang.simulator.blackboard import BOOL, Board, Unknown, Unsaid, Value, ValueNeeded, type_of
 from btq_lang.simulator.drivers import halt_tree, tick_while_running
 from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.loading import load
@@ -144,7 +144,7 @@ class _Running:
         except EngineError as error:
             return self._record("is refused" if self._machine is None else "throws", str(error))
         except NotModelled as error:
-            return self._record("unknown", _why(error))
+            return self._record("unknown", self._why(error))
         except Unanswered as error:
             return self._record("unanswered", error.node.path)
 
@@ -173,6 +173,15 @@ class _Running:
         assumed = tuple(sorted(self._skills.assumed))
         skipped = frozenset(self._machine.skipped if self._machine is not None else ())
         return ScenarioRun(end, why, now, self._rows, self._starts, self._signals, self._entries, assumed, skipped)
+
+    def _why(self, error: NotModelled) -> str:
+        """What is not known: of the value of an entry, who reads and who wrote it."""
+        nodes = self._machine.nodes if self._machine is not None else ()
+        reader = next((node for node in nodes if node.uid == error.uid), None)
+        if not isinstance(error, ValueNeeded) or not isinstance(error.value, Unsaid) or reader is None:
+            return str(error)
+        key = _key_read(reader, error.value) or error.value.key
+        return f"{reader.path} reads {{{key}}}, and {error.value.why}"
 
     def _is_over(self) -> bool:
         """Let the world change as planned; whether the program ticks no more."""
@@ -368,19 +377,13 @@ def _timeless_memory(node: SimulatedNode, now: int) -> tuple[object, ...]:
     return status, index, counted, skipped, is_on, completed, seen, result, after, *others
 
 
-def _why(error: NotModelled) -> str:
-    """What is not known: of the value of an entry, who reads and who wrote it."""
-    value, reader = error.value, error.reader
-    if not isinstance(value, Unsaid) or reader is None:
-        return str(error)
-    scripts = [*(script for _, script in reader.conditions), *reader.scripts.values()]
+def _key_read(node: SimulatedNode, value: Unknown) -> str:
+    """The key under which a node reads a value; empty if there is none."""
+    scripts = [*(script for _, script in node.conditions), *node.scripts.values()]
     keys = [variable.name for script in scripts for variable in variables(script)]
-    keys += [key for port, written in reader.ports.items() if (key := key_of(written, port)) is not None]
-    for key in keys:
-        entry = reader.board.entry(key)
-        if entry is not None and entry.value == value:
-            return f"{reader.path} reads {{{key}}}, and {value.why}"
-    return f"{reader.path} reads what {value.writer} writes into {{{value.key}}}, and nothing says what that is"
+    keys += [key for port, written in node.ports.items() if (key := key_of(written, port)) is not None]
+    entries = ((key, node.board.entry(key)) for key in keys)
+    return next((key for key, entry in entries if entry is not None and entry.value == value), "")
 
 
 def _watched(plan: Plan) -> frozenset[int]:

@@ -42,7 +42,19 @@ class Unknown:
 
     def needed(self, what: str) -> NotModelled:
         """The exception for something that cannot be done without its value."""
-        return NotModelled(f"an entry whose value is unknown is {what}", self)
+        return ValueNeeded(what, self)
+
+
+class ValueNeeded(NotModelled):
+    """Something cannot be done without the value of an entry, which is unknown.
+
+    Attributes:
+        value: the unknown value.
+    """
+
+    def __init__(self, what: str, value: Unknown) -> None:
+        super().__init__(f"an entry whose value is unknown is {what}")
+        self.value: Final = value
 
 
 class Unsaid(Unknown):

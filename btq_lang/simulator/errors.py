@@ -2,12 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
-
-if TYPE_CHECKING:
-    from btq_lang.simulator.blackboard import Unknown
-    from btq_lang.simulator.nodes import SimulatedNode
-
 
 class EngineError(Exception):
     """An exception that the engine throws, with its message.
@@ -25,11 +19,9 @@ class NotModelled(Exception):
     """The tree has something whose effect is not known here; the message says what.
 
     Attributes:
-        value: the unknown value that is needed; None: something else is not known.
-        reader: the node that needs it; None: no node, or the tick has not been left yet.
+        uid: the number of the node in whose tick it was raised; 0: in none, or that tick has not been left yet.
     """
 
-    def __init__(self, message: str, value: Unknown | None = None) -> None:
+    def __init__(self, message: str) -> None:
         super().__init__(message)
-        self.value: Final = value
-        self.reader: SimulatedNode | None = None
+        self.uid = 0

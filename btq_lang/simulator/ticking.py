@@ -36,7 +36,7 @@ def tick_itself(machine: Machine, node: SimulatedNode, goes_on: bool = False) ->
             _run(machine, node, "_onSuccess" if result == SUCCESS else "_onFailure")
             _run(machine, node, "_post")
     except NotModelled as error:
-        error.reader = error.reader or node
+        error.uid = error.uid or node.uid
         raise
     if result != SKIPPED:
         set_status(machine, node, result)
