@@ -131,7 +131,14 @@ BUILT_IN_LEAVES = (
 STEPS = (
     *("given charge = 80 %", "given {@n} = 3", "when 30 s have passed: door = false", "when hurried: charge = 90 %"),
     *("when {n} > 3 or not door: mission halts", "expect mission succeeds within 2 min", "expect quick violated"),
-    *("expect finally {word} == 'a'", "expect mission does not end", "expect watched never exercised", "expect quick"),
+    *(
+        "expect finally {word} == 'a'",
+        "expect mission does not end",
+        "expect mission fails",
+        "expect mission halts",
+        "expect watched never exercised",
+        "expect quick",
+    ),
 )
 BEHAVIORS = ("fails", "fails twice, then succeeds after 3 s", "takes 3 s", "does not end", "succeeds and writes n = 2")
 ANSWERS = ("answers true", "answers false, true")

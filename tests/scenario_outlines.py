@@ -12,6 +12,7 @@ from btq_lang.syntax.scenarios import (
     Elapsed,
     EventTrigger,
     Expect,
+    ExpectedOutcome,
     ExpectedRuns,
     ExpectedVerdict,
     Finally,
@@ -96,4 +97,6 @@ def show_expectation(step: Expect) -> str:
         return f"finally {show_condition(expectation.condition)}"
     if isinstance(expectation, ExpectedVerdict):
         return words("verdict", show(expectation.name), *map(show, expectation.words))
+    if isinstance(expectation, ExpectedOutcome):
+        return words("ends", show(expectation.word))
     return "no end" if isinstance(expectation, NeverEnds) else MISSING

@@ -251,6 +251,8 @@ expectation
         the values of a port in all activations, in order, no more and no less
     finally | expect finally {{done}} == true | at the end | a condition at the end of the run
     mission does not end | expect mission does not end | no end | the run goes on forever
+    mission fails | expect mission fails | how it ends | the run ends with FAILURE
+    mission halts | expect mission halts | how it ends | the program halts the tree, and the run is over
     satisfied | expect rq1 satisfied | a verdict | the requirement is satisfied; `expect rq1` means the same
     violated | expect rq1 violated | a verdict | the requirement is violated
     unknown | expect rq1 unknown | a verdict | what the requirement needs is not measured

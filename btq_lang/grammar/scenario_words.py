@@ -11,6 +11,7 @@ BEHAVIOR_WORDS: Final = (*RESULTS, *DURATIONS)
 ANSWERS: Final = ("true", "false")
 TIMES: Final = ("once", "twice")
 ORDINALS: Final = ("first", "second", "third")
+OUTCOMES: Final = (("fails",), ("halts",))  # `mission succeeds` is a claim
 VERDICTS: Final = (
     *(("satisfied",), ("violated",), ("unknown",), ("undecided",)),
     *(("never", "exercised"), ("not", "applicable")),

@@ -26,7 +26,7 @@ from btq_lang.grammar.scenario_slips import (
     step_meant,
     verdict_meant,
 )
-from btq_lang.grammar.scenario_words import ANSWERS, DURATIONS, ORDINALS, RESULTS, STEPS, TIMES, VERDICTS
+from btq_lang.grammar.scenario_words import ANSWERS, DURATIONS, ORDINALS, OUTCOMES, RESULTS, STEPS, TIMES, VERDICTS
 from btq_lang.syntax.scan import number_end
 from btq_lang.syntax.scenarios import (
     Aspect,
@@ -35,6 +35,7 @@ from btq_lang.syntax.scenarios import (
     Elapsed,
     EventTrigger,
     Expect,
+    ExpectedOutcome,
     ExpectedRuns,
     ExpectedVerdict,
     Finally,
@@ -107,13 +108,15 @@ def parse_when(cursor: Cursor) -> When:
 
 
 def parse_expect(cursor: Cursor) -> Expect:
-    """ "expect" ( Claim | Runs | Finally | "mission" "does" "not" "end" | Verdict )"""
+    """ "expect" ( Claim | Runs | Finally | "mission" ( "does" "not" "end" | "fails" | "halts" ) | Verdict )"""
     start = cursor.take().start
     cursor.skip_glued_colon()
-    expectation: Claim | ExpectedRuns | Finally | NeverEnds | ExpectedVerdict | None
+    expectation: Claim | ExpectedRuns | Finally | NeverEnds | ExpectedOutcome | ExpectedVerdict | None
     if cursor.kind == NEWLINE:
         expectation = None
         no_expectation(cursor)
+    elif is_outcome(cursor):
+        expectation = outcome(cursor)
     elif is_verdict(cursor) or verdict_meant(cursor):
         expectation = parse_verdict(cursor)
     elif cursor.kind == BRACED or (cursor.at_word("finally") and cursor.raws[cursor.index + 1] not in VERB_WORDS):
@@ -447,6 +450,11 @@ def is_runs(cursor: Cursor) -> bool:
     return not (following == "every" or following in TIMES or bound_follows(cursor, index + 1))
 
 
+def is_outcome(cursor: Cursor) -> bool:
+    """Whether `mission` and how it ends are all that is left of the line, which is no claim."""
+    return cursor.at_word("mission") and tuple(cursor.raws[cursor.index + 1 : -1]) in OUTCOMES
+
+
 def is_verdict(cursor: Cursor) -> bool:
     """Whether a requirement and its verdict are all that is left of the line; a quoted name before `never exercised`
     is a node.
@@ -478,6 +486,13 @@ def never_ends(cursor: Cursor) -> NeverEnds:
     if cursor.expect_word("not"):
         cursor.expect_word("end", ("finish", "stop"))
     return NeverEnds(start, cursor.last_end())
+
+
+def outcome(cursor: Cursor) -> ExpectedOutcome:
+    """ "mission" ( "fails" | "halts" )"""
+    start = cursor.take().start
+    word = cursor.take()
+    return ExpectedOutcome(start, cursor.last_end(), word)
 
 
 def elapsed(cursor: Cursor) -> Elapsed:

@@ -155,7 +155,7 @@ def _in_trigger(words: Sequence[Token]) -> ExpectedStep:
 
 def _in_expectation(words: Sequence[Token]) -> ExpectedStep:
     if not words:
-        heads = ("mission", "mission does not end", "never node", "every", "finally")
+        heads = ("mission", "mission fails", "mission halts", "mission does not end", "never node", "every", "finally")
         return ExpectedStep(heads, requirements=True, nodes=True, clause=())
     texts = [word.text for word in words]
     if texts[0] == "finally":

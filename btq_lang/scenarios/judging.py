@@ -17,7 +17,7 @@ from btq_lang.scenarios.plan import (
     Expectation,
     ExpectedClaims,
     ExpectedEnd,
-    ExpectedEndless,
+    ExpectedOutcome,
     ExpectedValues,
     Plan,
     WantedVerdict,
@@ -35,7 +35,7 @@ def judged(mission: ScenarioMission, plan: Plan, run: ScenarioRun) -> tuple[Expe
     verdicts = _verdicts(mission, plan, run)
     judge = _Judge(mission, run, verdicts)
     results = [judge.result(expectation) for expectation in plan.expectations]
-    is_expected = any(isinstance(each.expected, ExpectedEndless) for each in plan.expectations)
+    is_expected = any(each.expected == ExpectedOutcome("does not end") for each in plan.expectations)
     if run.end == "does not end" and not is_expected:
         step = Step(run.now / 1000, *judge.node(ROOT), "it goes on for ever", "an end")
         results.append(ExpectationResult("mission ends", 0, "failed", "", step))
@@ -84,7 +84,7 @@ class _Judge:
         elif isinstance(expected, ExpectedEnd):
             step, why = self._end(expected, expectation.text)
         else:
-            step = None if self._run.end == "does not end" else self._at_end("it goes on for ever")
+            step = None if self._run.end == expected.end else self._at_end(_EXPECTED[expected.end])
         outcome = "failed" if step is not None else "unknown" if why else "passed"
         return ExpectationResult(expectation.text, expectation.line, outcome, why, step)  # type: ignore[arg-type]
 
@@ -219,6 +219,13 @@ class _NothingRuns(Nearby):
 
 def _series_of(signal: ResolvedSignal, run: ScenarioRun) -> SampleSeries | None:
     return run.signals.get(signal.name) or run.entries.get(signal.entry)
+
+
+_EXPECTED: Final = {
+    "fails": "the mission fails",
+    "is halted": "the mission is halted",
+    "does not end": "it goes on for ever",
+}
 
 
 def _shown(value: object) -> str:

@@ -80,8 +80,10 @@ class ExpectedEnd(Record):
     condition: Condition
 
 
-class ExpectedEndless(Record):
-    """The run does not end."""
+class ExpectedOutcome(Record):
+    """How the run ends: `fails`, `is halted` or `does not end`."""
+
+    end: str
 
 
 class WantedVerdict(Record):
@@ -91,7 +93,7 @@ class WantedVerdict(Record):
     verdict: str
 
 
-Expected: TypeAlias = ExpectedClaims | ExpectedValues | ExpectedEnd | ExpectedEndless | WantedVerdict
+Expected: TypeAlias = ExpectedClaims | ExpectedValues | ExpectedEnd | ExpectedOutcome | WantedVerdict
 
 
 class Expectation(Record):

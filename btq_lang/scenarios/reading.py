@@ -296,7 +296,9 @@ class _ItemReader:
                 self._complain(written_one.start, f"unknown requirement `{name}`")
                 return None
             return plan.WantedVerdict(name, " ".join(word.raw for word in written_one.words) or "satisfied")
-        return plan.ExpectedEndless() if written_one is not None else None
+        if isinstance(written_one, written.ExpectedOutcome):
+            return plan.ExpectedOutcome(_ENDS[written_one.word.raw])
+        return plan.ExpectedOutcome("does not end") if written_one is not None else None
 
     def _claim(self, claim: Claim) -> plan.ExpectedClaims | None:
         resolved = claim_of(self._reader, claim)
@@ -329,4 +331,5 @@ _PATH: Final = 2
 _OF_FILE: Final = -4  # less than anything in the scenario
 _LATER: Final = 8  # more than anything that was given at the start
 _RESULTS: Final = {"succeeds": SUCCESS, "fails": FAILURE, "skips": SKIPPED, "does": RUNNING}
+_ENDS: Final = {"fails": "fails", "halts": "is halted"}
 _TIMES: Final = {"once": 1, "twice": 2}

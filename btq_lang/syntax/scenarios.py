@@ -138,6 +138,12 @@ class NeverEnds(Part):
     """`mission does not end`."""
 
 
+class ExpectedOutcome(Part):
+    """`mission fails`, `mission halts`: how the run ends."""
+
+    word: Word
+
+
 class ExpectedVerdict(Part):
     """`in_time violated`: the verdict of a requirement; words: empty for `satisfied`."""
 
@@ -148,7 +154,7 @@ class ExpectedVerdict(Part):
 class Expect(Part):
     """`expect never node Grasp`."""
 
-    expectation: Claim | ExpectedRuns | Finally | NeverEnds | ExpectedVerdict | None
+    expectation: Claim | ExpectedRuns | Finally | NeverEnds | ExpectedOutcome | ExpectedVerdict | None
 
 
 Step: TypeAlias = Given | When | Expect

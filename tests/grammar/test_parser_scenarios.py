@@ -108,6 +108,9 @@ def test_expectations() -> None:
             expect Deliver/MoveTo (speed = 1) runs "A"
             expect finally {done} == true or not near
             expect mission does not end
+            expect mission fails
+            expect mission halts
+            expect mission fails at most 1 per run
             expect in_time
             expect "REQ 1"
             expect in_time satisfied
@@ -132,6 +135,9 @@ def test_expectations() -> None:
           expect runs Deliver/MoveTo (speed=1): "A"
           expect finally (or ({done} == true) (not near))
           expect no end
+          expect ends fails
+          expect ends halts
+          expect claim <mission> fails <= 1 per run
           expect verdict in_time
           expect verdict "REQ 1"
           expect verdict in_time satisfied
@@ -272,10 +278,10 @@ def test_expectations() -> None:
             "expect mission succeeds within 3 min",
         ),
         (
-            "expect mission fails",
+            "expect Dock fails",
             "this claim is written `fails at least 1 per run`",
             "Write `fails at least 1 per run`",
-            "expect mission fails at least 1 per run",
+            "expect Dock fails at least 1 per run",
         ),
         (
             "expect Dock runs twice",

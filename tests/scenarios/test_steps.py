@@ -166,6 +166,8 @@ def test_changes_one_after_the_other(tmp_path: Path) -> None:
         ('finally {goal} == "B" and not node Dock', ""),
         ("finally {nothing} == 1", "nothing gives `{nothing}` a value"),
         ("mission does not end", "46 s Sequence::1:19 the mission succeeds"),
+        ("mission fails", "46 s Sequence::1:19 the mission succeeds"),
+        ("mission halts", "46 s Sequence::1:19 the mission succeeds"),
         ("calm", ""),
         ("calm satisfied", ""),
         ("quick violated", ""),
@@ -182,6 +184,18 @@ def test_what_is_expected(tmp_path: Path, expect: str, why: str) -> None:
     ]
     scenario = result(tmp_path, *givens, f"expect {expect}")
     assert reasons(scenario) == ([why] if why else [])
+
+
+@pytest.mark.parametrize(
+    ("steps", "outcome"),
+    [
+        (["given Dock fails"], "mission fails"),
+        (["given Dock takes 9 s", "when Dock starts: mission halts"], "mission halts"),
+    ],
+)
+def test_how_a_run_is_expected_to_end(tmp_path: Path, steps: list[str], outcome: str) -> None:
+    scenario = result(tmp_path, *QUIET, *steps, f"expect {outcome}")
+    assert (scenario["outcome"], reasons(scenario)) == ("passed", [])
 
 
 def test_the_failure_of_a_mission_is_shown_where_it_began(tmp_path: Path) -> None:
