@@ -68,7 +68,27 @@ BehaviorTree Mission
             satisfies in_time, way_home
 """
 
-FILES = {"btq.toml": _PROJECT, "skills.btq": _SKILLS, "mission.btq": _MISSION}
+_SCENARIOS = """\
+include "mission.btq"
+
+given battery = 80 %
+given MoveBase takes 20 s
+
+# What should happen in cases that are rare on the robot: `btq test` runs it.
+scenario "The battery is low" verifies in_time
+    given BatteryGood answers false
+    expect mission succeeds
+    expect MoveBase runs "charger", "bench"
+    expect in_time
+
+scenario "The bench cannot be reached"
+    given BatteryGood answers true
+    given MoveBase (station = "bench") fails
+    expect mission fails
+    expect never node Charge
+"""
+
+FILES = {"btq.toml": _PROJECT, "skills.btq": _SKILLS, "mission.btq": _MISSION, "scenarios.btq": _SCENARIOS}
 
 
 class InitOptions(Record):

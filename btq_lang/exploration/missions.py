@@ -11,7 +11,7 @@ from typing import Final
 from btq_lang.btcpp.document import Document
 from btq_lang.btcpp.reader import read
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nav2 import ENGINES, distribution_among
+from btq_lang.catalog.nav2 import ENGINES, assumed_distribution, distribution_among
 from btq_lang.catalog.nav2.creation import SERVERS
 from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks import lookups
@@ -74,7 +74,7 @@ class ExploredMission:
         nodes = [node for _, node in build.running.all if node is not None]
         has_nav2 = any(node.children and node.id is not None and is_of_nav2(node.id.text) for node in nodes)
         self.is_nav2_assumed: Final = distribution is None and has_nav2
-        nav2 = distribution or ((_ASSUMED_OLD if is_old else _ASSUMED) if has_nav2 else "")
+        nav2 = distribution or (assumed_distribution(is_old) if has_nav2 else "")
         self.dialect: Final = Dialect(ENGINES[nav2] if is_old and nav2 else version, nav2)
         if file.is_xml:
             self._documents: Sequence[Document] = self._plain()
@@ -175,7 +175,3 @@ def is_stated(node: ResolvedNode) -> bool:
 def explorable(workspace: Workspace, paths: Sequence[str]) -> Iterator[str]:
     """The files among some that have a main tree."""
     return (path for path in paths if workspace.main_tree(path) is not None)
-
-
-_ASSUMED: Final = "jazzy"
-_ASSUMED_OLD: Final = "humble"  # of version 3

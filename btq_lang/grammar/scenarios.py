@@ -116,7 +116,8 @@ def parse_expect(cursor: Cursor) -> Expect:
         expectation = None
         no_expectation(cursor)
     elif is_outcome(cursor):
-        expectation = outcome(cursor)
+        mission, word = cursor.take(), cursor.take()
+        expectation = ExpectedOutcome(mission.start, word.end, word)
     elif is_verdict(cursor) or verdict_meant(cursor):
         expectation = parse_verdict(cursor)
     elif cursor.kind == BRACED or (cursor.at_word("finally") and cursor.raws[cursor.index + 1] not in VERB_WORDS):
@@ -451,7 +452,7 @@ def is_runs(cursor: Cursor) -> bool:
 
 
 def is_outcome(cursor: Cursor) -> bool:
-    """Whether `mission` and how it ends are all that is left of the line, which is no claim."""
+    """Whether only `mission` and how it ends are left of the line."""
     return cursor.at_word("mission") and tuple(cursor.raws[cursor.index + 1 : -1]) in OUTCOMES
 
 
@@ -486,13 +487,6 @@ def never_ends(cursor: Cursor) -> NeverEnds:
     if cursor.expect_word("not"):
         cursor.expect_word("end", ("finish", "stop"))
     return NeverEnds(start, cursor.last_end())
-
-
-def outcome(cursor: Cursor) -> ExpectedOutcome:
-    """ "mission" ( "fails" | "halts" )"""
-    start = cursor.take().start
-    word = cursor.take()
-    return ExpectedOutcome(start, cursor.last_end(), word)
 
 
 def elapsed(cursor: Cursor) -> Elapsed:

@@ -17,9 +17,9 @@ from btq_lang.scenarios.plan import (
     Expectation,
     ExpectedClaims,
     ExpectedEnd,
-    ExpectedOutcome,
     ExpectedValues,
     Plan,
+    WantedEnd,
     WantedVerdict,
 )
 from btq_lang.scenarios.results import ExpectationResult, Step
@@ -35,7 +35,7 @@ def judged(mission: ScenarioMission, plan: Plan, run: ScenarioRun) -> tuple[Expe
     verdicts = _verdicts(mission, plan, run)
     judge = _Judge(mission, run, verdicts)
     results = [judge.result(expectation) for expectation in plan.expectations]
-    is_expected = any(each.expected == ExpectedOutcome("does not end") for each in plan.expectations)
+    is_expected = any(each.expected == WantedEnd("does not end") for each in plan.expectations)
     if run.end == "does not end" and not is_expected:
         step = Step(run.now / 1000, *judge.node(ROOT), "it goes on for ever", "an end")
         results.append(ExpectationResult("mission ends", 0, "failed", "", step))

@@ -12,12 +12,14 @@ from btq_lang.btcpp.document import Document
 from btq_lang.btcpp.opening import with_source
 from btq_lang.btcpp.reader import read
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nav2 import ENGINES, distribution_among
+from btq_lang.catalog.nav2 import ENGINES, assumed_distribution, distribution_among
+from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks.lookups import ports_of_models
 from btq_lang.evidence.identity import Build, Candidate, Joined
 from btq_lang.evidence.model import LoggedTree
 from btq_lang.requirements.model import NodeTarget
 from btq_lang.requirements.resolve import Requirements
+from btq_lang.simulator.kinds import is_of_nav2
 from btq_lang.simulator.versions import Dialect
 from btq_lang.syntax.tree import Model, Root, Tree
 from btq_lang.util.record import replace
@@ -63,7 +65,7 @@ class ScenarioMission:
             raise NotRunnable(f"the tree `{tree}` cannot be built; run btq check")
         self.build: Final[Build] = replace(build, is_main=True)
         self.tree: Final[LoggedTree] = self.build.tree(shows_begins=True)
-        self.dialect: Final = _dialect(self.workspace)
+        self.dialect: Final = _dialect(self.workspace, self.build)
 
     @cached_property
     def documents(self) -> list[Document]:
@@ -143,12 +145,16 @@ class ScenarioMission:
         return line_of(self.workspace, node.path, node.item, node.node.head.start)
 
 
-def _dialect(workspace: Workspace) -> Dialect:
+def _dialect(workspace: Workspace, build: Build) -> Dialect:
     """The engine of a program: that of its distribution of Nav2, unless the project names its versions."""
     project = workspace.project
     node_files = (*project.node_files, *(workspace.factory.node_files if workspace.factory is not None else ()))
     distribution = distribution_among(node_files) or ""
-    return Dialect(project.target if project.pinned else ENGINES.get(distribution, project.target), distribution)
+    version = project.target if project.pinned else ENGINES.get(distribution, project.target)
+    nodes = (node for _, node in build.running.all if node is not None)
+    if not distribution and any(node.children and is_of_nav2(_id(node)) for node in nodes):
+        distribution = assumed_distribution(is_before_4(version))
+    return Dialect(version, distribution)
 
 
 def line_of(workspace: Workspace, path: str, item: object, offset: int) -> tuple[str, int]:

@@ -80,7 +80,7 @@ class ExpectedEnd(Record):
     condition: Condition
 
 
-class ExpectedOutcome(Record):
+class WantedEnd(Record):
     """How the run ends: `fails`, `is halted` or `does not end`."""
 
     end: str
@@ -93,7 +93,7 @@ class WantedVerdict(Record):
     verdict: str
 
 
-Expected: TypeAlias = ExpectedClaims | ExpectedValues | ExpectedEnd | ExpectedOutcome | WantedVerdict
+Expected: TypeAlias = ExpectedClaims | ExpectedValues | ExpectedEnd | WantedEnd | WantedVerdict
 
 
 class Expectation(Record):

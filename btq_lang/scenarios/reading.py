@@ -297,8 +297,8 @@ class _ItemReader:
                 return None
             return plan.WantedVerdict(name, " ".join(word.raw for word in written_one.words) or "satisfied")
         if isinstance(written_one, written.ExpectedOutcome):
-            return plan.ExpectedOutcome(_ENDS[written_one.word.raw])
-        return plan.ExpectedOutcome("does not end") if written_one is not None else None
+            return plan.WantedEnd(_ENDS[written_one.word.raw])
+        return plan.WantedEnd("does not end") if written_one is not None else None
 
     def _claim(self, claim: Claim) -> plan.ExpectedClaims | None:
         resolved = claim_of(self._reader, claim)

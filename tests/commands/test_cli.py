@@ -679,8 +679,11 @@ def test_explain_knows_every_sign(btq: Run, sign: str) -> None:
 
 def test_init_makes_a_project_that_checks_clean_and_is_formatted(btq: Run, tmp_path: Path) -> None:
     assert btq("init", "robot").returncode == 0
-    assert sorted(path.name for path in (tmp_path / "robot").iterdir()) == ["btq.toml", "mission.btq", "skills.btq"]
-    assert btq("check", "robot").stdout == "No problems found in 2 files\n"
+    files = sorted(path.name for path in (tmp_path / "robot").iterdir())
+    assert files == ["btq.toml", "mission.btq", "scenarios.btq", "skills.btq"]
+    assert btq("check", "robot").stdout == "No problems found in 3 files\n"
+    tested = btq("test", "robot")
+    assert (tested.returncode, tested.stdout.splitlines()[-1]) == (0, "2 scenarios: 2 passed")
     assert btq("format", "--check", "robot").returncode == 0
     again = btq("init", "robot")
     assert (again.returncode, "nothing was written" in again.stderr) == (2, True)

@@ -5,10 +5,13 @@ The files are found, not listed: a new example is tested by being there.
 
 from __future__ import annotations
 
+import json
 import re
+from collections import Counter
 from pathlib import Path
 
 import pytest
+from in_process import run_btq
 
 from btq_lang.checks import check
 from btq_lang.diagnostics.rules import Severity
@@ -25,6 +28,7 @@ PAGES = sorted([*(ROOT / "docs").glob("*.md"), *(ROOT / "examples").rglob("*.md"
 README = ROOT / "README.md"
 FOLDERS = sorted(path for path in (ROOT / "examples").iterdir() if path.is_dir())
 
+_MISSIONS = {"hospital": 2, "published": 3}  # others have one
 _BLOCK = re.compile(r"^```btq\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 
 
@@ -87,6 +91,18 @@ def test_checks_clean(folder: Path) -> None:
 
 def includes(path: str, text: str) -> list[str]:
     return [include.path.text for include in File(path, text).includes if include.path]
+
+
+@pytest.mark.parametrize("folder", FOLDERS, ids=lambda folder: folder.name)
+def test_scenarios_pass(folder: Path) -> None:
+    """Each mission of a folder has two to five scenarios."""
+    code, out, err = run_btq("test", str(folder), "--format", "json", cwd=folder)
+    assert (code, err) == (0, "")
+    results = json.loads(out)["scenarios"]
+    assert [each["title"] for each in results if each["outcome"] != "passed"] == []
+    numbers = Counter(each["file"] for each in results)
+    assert len(numbers) == _MISSIONS.get(folder.name, 1)
+    assert all(2 <= number <= 5 for number in numbers.values())
 
 
 @pytest.mark.parametrize("text", [pytest.param(text, id=place) for place, text in blocks([*PAGES, README])])

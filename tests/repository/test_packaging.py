@@ -59,7 +59,7 @@ def test_the_installed_commands_work_elsewhere(wheel: Path, tmp_path: Path) -> N
     assert Path(where.strip()).is_relative_to(tmp_path)
     btq = python.with_name("btq")
     run(btq, "init", "robot", cwd=tmp_path)
-    assert run(btq, "check", "robot", cwd=tmp_path) == "No problems found in 2 files\n"
+    assert run(btq, "check", "robot", cwd=tmp_path) == "No problems found in 3 files\n"
     run(btq, "build", "robot", cwd=tmp_path)
     assert "<root BTCPP_format=" in (tmp_path / "robot" / "mission.xml").read_text(encoding="utf-8")
     assert run(btq, "explain", "missing-port", cwd=tmp_path).startswith("# missing-port\n")

@@ -48,10 +48,15 @@ scenario "The controller fails again and again"
 
 @pytest.mark.parametrize(
     ("nodes", "version", "sequence"),
-    [("humble", "", "SequenceStar"), ("jazzy", 'BTCPP_format="4" ', "SequenceWithMemory")],
+    [
+        ("humble", "", "SequenceStar"),
+        ("jazzy", 'BTCPP_format="4" ', "SequenceWithMemory"),
+        ("", 'BTCPP_format="4" ', "SequenceWithMemory"),
+    ],
 )
 def test_recoveries(nodes: str, version: str, sequence: str, tmp_path: Path) -> None:
-    (tmp_path / "btq.toml").write_text(f'nodes = ["nav2-{nodes}"]\n', encoding="utf-8")
+    if nodes:
+        (tmp_path / "btq.toml").write_text(f'nodes = ["nav2-{nodes}"]\n', encoding="utf-8")
     (tmp_path / "navigate.xml").write_text(TREE.format(version=version, sequence=sequence), encoding="utf-8")
     (tmp_path / "cases.btq").write_text(CASES, encoding="utf-8")
     code, out, err = run_btq("test", "cases.btq", cwd=tmp_path)

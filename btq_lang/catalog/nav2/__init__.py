@@ -45,3 +45,8 @@ def ports_of(node: str) -> frozenset[str] | None:
 def distribution_among(paths: Container[str]) -> str | None:
     """The distribution whose file is among some."""
     return next((name for name, path in FILES.items() if path in paths), None)
+
+
+def assumed_distribution(is_old: bool) -> str:
+    """The distribution whose nodes are meant where none is named; `is_old`: the engine is that of version 3."""
+    return "humble" if is_old else "jazzy"
