@@ -380,6 +380,7 @@ def _add_graph(parser: SuggestingParser) -> None:
     "findings; 1 otherwise; 2 usage or I/O\n\n"
     "examples:\n  btq explore mission.btq --can 'Grasp starts before DetectCup succeeds'\n"
     "  btq explore mission.btq --never 'mission fails'\n"
+    "  btq explore mission.btq --never 'Grasp halts' -o case.btq\n"
     "  btq explore                        what never runs, never ends, is read unset\n",
 )
 def _add_explore(parser: SuggestingParser) -> None:

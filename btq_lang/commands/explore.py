@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from btq_lang.commands.explored_scenarios import SCENARIO_SUFFIXES, write_scenarios
 from btq_lang.commands.output import write_output
 from btq_lang.exploration.answers import Answer, answered
 from btq_lang.exploration.clauses import clause_answers
@@ -78,7 +79,11 @@ def run(options: ExploreOptions, messages: CommandOutput) -> int:
     if not explored and not code:
         raise Refused("no mission has a main tree; choose one with --tree")
     if explored:
-        write_output(messages, options.output, (as_json if options.format == "json" else as_text)(explored))
+        is_run = options.output is not None and options.output.endswith(SCENARIO_SUFFIXES)
+        output = None if is_run else options.output
+        write_output(messages, output, (as_json if options.format == "json" else as_text)(explored))
+        if is_run and options.output is not None:
+            write_scenarios(explored, options.output, messages)
     return code
 
 
