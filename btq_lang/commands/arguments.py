@@ -391,8 +391,12 @@ def _add_explore(parser: SuggestingParser) -> None:
     parser.add("--states", type=int, default=100_000, metavar="N", help="how many states to search; default: 100000")
     parser.add("--seconds", type=float, metavar="S", help="how much processor time to use; default: any")
     parser.flag("--strict", "exit 1 where a search was cut off")
+    parser.flag("--show", "draw the runs that were found")
     parser.add("--format", choices=("text", "json"), default="text", help="default: text")
-    parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
+    help_text = (
+        "where to write; default: standard output; FILE.btq: the runs as scenarios; FILE.btlog: the run as a log"
+    )
+    parser.add("-o", "--output", metavar="FILE", help=help_text)
     _add_config(parser)
 
 

@@ -9,14 +9,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btq_lang.exploration.questions import Asked, EndlessRun, Holds, Order, Question
-from btq_lang.scenarios.witnessed import Expected
+from btq_lang.scenarios.witnessed import PossibleExpectation
 from btq_lang.syntax.tree import AnyEvent, Event, written
 
-ENDS = Expected("mission finishes at least 1 per run", holds=False)
-ENDLESS = Expected("mission does not end")
+ENDS = PossibleExpectation("mission finishes at least 1 per run", holds=False)
+ENDLESS = PossibleExpectation("mission does not end")
 
 
-def expectations(question: Question, is_wanted: bool, number: int) -> Iterator[Expected]:
+def expectations(question: Question, is_wanted: bool, number: int) -> Iterator[PossibleExpectation]:
     """What a scenario may expect, the plainest first.
 
     Args:
@@ -27,18 +27,18 @@ def expectations(question: Question, is_wanted: bool, number: int) -> Iterator[E
     claims = [*_claims(text, asked)]
     if is_wanted:
         name = "asked" if number == 1 else f"asked_{number}"
-        yield from map(Expected, _happens(asked))
+        yield from map(PossibleExpectation, _happens(asked))
         for claim in claims:
-            yield Expected(f"{name} violated", claim)
+            yield PossibleExpectation(f"{name} violated", claim)
         if isinstance(asked, Holds):
-            yield Expected(f"finally {text}")
-        yield Expected("")
+            yield PossibleExpectation(f"finally {text}")
+        yield PossibleExpectation("")
         return
-    yield from (Expected(claim[0], holds=False) for claim in claims if len(claim) == 1)
-    yield from (Expected(f"asked_{number}", claim, holds=False) for claim in claims)
+    yield from (PossibleExpectation(claim[0], holds=False) for claim in claims if len(claim) == 1)
+    yield from (PossibleExpectation(f"asked_{number}", claim, holds=False) for claim in claims)
     if isinstance(asked, EndlessRun):
         yield ENDS
-    yield Expected("", note="no claim says that this must not happen: the scenario passes while it can")
+    yield PossibleExpectation("", note="no claim says that this must not happen: the scenario passes while it can")
 
 
 def is_start(question: Question) -> bool:

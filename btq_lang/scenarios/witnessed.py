@@ -25,7 +25,7 @@ from btq_lang.util.record import Record, replace
 from btq_lang.workspace.workspace import Workspace
 
 
-class Expected(Record):
+class PossibleExpectation(Record):
     """What a scenario may expect.
 
     Attributes:
@@ -56,7 +56,7 @@ class Witness(Record):
     title: str
     ticks: tuple[Tick, ...]
     is_endless: bool
-    expected: tuple[Expected, ...]
+    expected: tuple[PossibleExpectation, ...]
     verifies: str = ""
     is_start: bool = False
 
@@ -70,6 +70,7 @@ class WitnessedScenario(Record):
         drawing: the run in lines.
     """
 
+    title: str
     requirement: str
     text: str
     mission: ScenarioMission
@@ -127,11 +128,11 @@ class _Writer:
                         result = Suite(scenario.workspace).result(ScenarioPlace(self._path, 0), True)
                         if (result.outcome == "passed") != expected.holds or result.ended == "is refused":
                             continue
-                        parts = scenario.requirement, scenario.text, scenario.mission, scenario.run
+                        parts = self._witness.title, scenario.requirement, scenario.text, scenario.mission, scenario.run
                         return WitnessedScenario(*parts, result.drawing)
         return None
 
-    def _named(self, expected: Expected) -> Expected:
+    def _named(self, expected: PossibleExpectation) -> PossibleExpectation:
         """With a line."""
         if expected.line:
             return expected
@@ -164,14 +165,14 @@ class _Writer:
         uids = {node.path: uid for uid, node in self._tree.nodes.items()}
         asked: set[str] = set()
         while True:
-            tried = self._tried(lines, Expected("mission finishes at least 1 per run"), True)
+            tried = self._tried(lines, PossibleExpectation("mission finishes at least 1 per run"), True)
             if tried is None or tried.run.end != "unanswered" or tried.run.why in asked:
                 return tried
             asked.add(tried.run.why)
             kind = self._tree.nodes[uids[tried.run.why]].kind
             lines.append(f"given every {written(kind)} answers true")
 
-    def _tried(self, lines: Sequence[str], expected: Expected, is_halted: bool) -> _Tried | None:
+    def _tried(self, lines: Sequence[str], expected: PossibleExpectation, is_halted: bool) -> _Tried | None:
         """The run of a scenario; None: it has a mistake."""
         steps = [*lines, *(self._halt() if is_halted else ()), f"expect {expected.line}"]
         verifies = f" verifies {written(self._witness.verifies)}" if self._witness.verifies else ""

@@ -7,6 +7,7 @@ from random import Random
 
 import pytest
 from drawn_trees import drawn
+from evidence_logs import logged
 from exploring import Exploring
 from in_process import run_btq
 from seeds import seeds
@@ -17,7 +18,7 @@ from btq_lang.exploration.search import Search, SearchBudget
 from btq_lang.exploration.witness import Tick, replay
 from btq_lang.projects.opening import open_workspace
 from btq_lang.scenarios.running import ScenarioRun
-from btq_lang.scenarios.witnessed import Expected, Witness, as_scenario
+from btq_lang.scenarios.witnessed import PossibleExpectation, Witness, as_scenario
 
 MODELS = """
 <TreeNodesModel>
@@ -84,7 +85,9 @@ def test_runs_of_drawn_trees_happen_again(seed: int, tmp_path: Path) -> None:
             ticks = replay(opened, None, leaves, ways)
             if ticks[-1].result not in ("succeeds", "fails"):
                 continue  # a scenario that needs a value which nobody gives is unknown, and so is one of a skipped root
-            scenario = as_scenario(mission, Witness("a run", ticks, False, (Expected(""),)), str(case), "tree.xml")
+            scenario = as_scenario(
+                mission, Witness("a run", ticks, False, (PossibleExpectation(""),)), str(case), "tree.xml"
+            )
             if scenario is None:  # times of timers that contradict each other, or types of entries that do
                 has_timers = any(deed.what == "goes off" for tick in ticks for deed in tick.deeds)
                 assert has_timers or run_btq("check", "tree.xml", cwd=tmp_path)[0] == 1
@@ -185,3 +188,39 @@ def test_nothing_is_written_where_nothing_happens(explore: Exploring) -> None:
     code, _, err = explore("--can", "mission fails before A fails", "-o", "case.btq")
     assert (code, err) == (1, "btq explore: there is no run to write to case.btq\n")
     assert not (explore.folder / "case.btq").exists()
+
+
+def test_a_run_as_a_drawing_and_as_a_log(explore: Exploring) -> None:
+    explore.mission(
+        MISSION
+        + "        SubTree Charge\n\nBehaviorTree Charge\n    Retry (num_attempts = 2)\n        Dock\n\nAction Dock\n"
+    )
+    code, out, err = explore("--can", "Dock fails after Grasp succeeds", "--show", "-o", "run.btlog")
+    assert (code, err) == (0, "")
+    drawn_run = out.partition("\n\n")[2].splitlines()
+    assert drawn_run[0] == "can Dock fails after Grasp succeeds"
+    assert [line.replace(" ", "") for line in drawn_run[2:]] == [
+        "ReactiveSequence|F|failed",
+        "Ready|S|succeeded2",  # again after the first attempt to dock
+        "Sequence|S|succeeded",
+        "Fallback|S|succeeded",
+        "DetectCup|S|succeeded",
+        "ScriptCondition|S|succeeded",
+        "Grasp|S|succeeded",
+        "Charge|F|failed",
+        "RetryUntilSuccessful|F|failed",
+        "Dock|F|failed2",
+    ]
+    code, out, err = run_btq("verify", "run.btlog", "--mission", "mission.btq", cwd=explore.folder)
+    assert (code, err) == (0, "")
+    assert "(as built now, 11 of 11 nodes)" in out
+    assert "satisfied        calm  Grasp succeeds" in out
+    assert logged(explore.folder / "run.btlog")[2][:3] == [(0, 1, 1), (0, 2, 2), (0, 3, 1)]
+
+
+def test_a_log_has_one_run(explore: Exploring) -> None:
+    explore.mission(MISSION)
+    code, _, err = explore("--can", "mission fails", "--can", "mission succeeds", "-o", "run.btlog")
+    assert (code, err) == (2, "btq explore: -o run.btlog takes one run, and there are 2; ask one question\n")
+    code, _, err = explore("--show", "--format", "json")
+    assert (code, err) == (2, "btq explore: --show draws runs as text, and --format json has none\n")
