@@ -25,8 +25,8 @@ def expectations(question: Question, is_wanted: bool, number: int) -> Iterator[P
     """
     text, asked = " ".join(question.text.split()), question.asked
     claims = [*_claims(text, asked)]
+    name = "asked" if number == 1 else f"asked_{number}"
     if is_wanted:
-        name = "asked" if number == 1 else f"asked_{number}"
         yield from map(PossibleExpectation, _happens(asked))
         for claim in claims:
             yield PossibleExpectation(f"{name} violated", claim)
@@ -35,7 +35,7 @@ def expectations(question: Question, is_wanted: bool, number: int) -> Iterator[P
         yield PossibleExpectation("")
         return
     yield from (PossibleExpectation(claim[0], holds=False) for claim in claims if len(claim) == 1)
-    yield from (PossibleExpectation(f"asked_{number}", claim, holds=False) for claim in claims)
+    yield from (PossibleExpectation(name, claim, holds=False) for claim in claims)
     if isinstance(asked, EndlessRun):
         yield ENDS
     yield PossibleExpectation("", note="no claim says that this must not happen: the scenario passes while it can")
@@ -75,8 +75,6 @@ def _claims(text: str, asked: Asked) -> Iterator[tuple[str, ...]]:
         claim = f"{_subject(event)} {event.happening} at most 0 per run"
     if not asked.word:
         yield (claim,)
-    elif asked.word == "before" and event.happening == "starts" and event.path is not None:
-        yield (f"{_subject(event)} follows {other}",)
     elif claim.startswith("never "):
         begin, end = ("mission starts", other) if asked.word == "before" else (other, "mission finishes")
         yield f"mission {claim}", f"from {begin} until {end}"

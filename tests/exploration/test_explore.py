@@ -234,3 +234,13 @@ def test_nodes_of_nav2_without_its_distribution(explore: Exploring) -> None:
         "  can Wait starts: yes, in 1 tick",
         "    tick 1",
     ]
+
+
+def test_entries_that_bt_navigator_sets_have_a_value(explore: Exploring) -> None:
+    (explore.folder / "btq.toml").write_text('nodes = ["nav2-jazzy"]\n', encoding="utf-8")
+    explore.tree(
+        '<Sequence><RemovePassedGoals input_goals="{goals}" output_goals="{goals}" radius="0.7"/>'
+        '<FollowPath path="{path}"/><ComputePathToPose goal="{goal}" path="{path}" planner_id="GridBased"/></Sequence>'
+    )
+    findings = explore.json()["missions"][0]["survey"]["findings"]
+    assert [finding["text"] for finding in findings] == ["FollowPath::3 can read {path} before it has a value"]
