@@ -380,6 +380,7 @@ def _add_graph(parser: SuggestingParser) -> None:
     "findings; 1 otherwise; 2 usage or I/O\n\n"
     "examples:\n  btq explore mission.btq --can 'Grasp starts before DetectCup succeeds'\n"
     "  btq explore mission.btq --never 'mission fails'\n"
+    "  btq explore mission.btq --never 'Grasp halts' -o case.btq\n"
     "  btq explore                        what never runs, never ends, is read unset\n",
 )
 def _add_explore(parser: SuggestingParser) -> None:
@@ -390,8 +391,12 @@ def _add_explore(parser: SuggestingParser) -> None:
     parser.add("--states", type=int, default=100_000, metavar="N", help="how many states to search; default: 100000")
     parser.add("--seconds", type=float, metavar="S", help="how much processor time to use; default: any")
     parser.flag("--strict", "exit 1 where a search was cut off")
+    parser.flag("--show", "draw the runs that were found")
     parser.add("--format", choices=("text", "json"), default="text", help="default: text")
-    parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
+    help_text = (
+        "where to write; default: standard output; FILE.btq: the runs as scenarios; FILE.btlog: the run as a log"
+    )
+    parser.add("-o", "--output", metavar="FILE", help=help_text)
     _add_config(parser)
 
 

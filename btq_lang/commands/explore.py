@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from btq_lang.commands.explored_scenarios import RUN_SUFFIXES, drawn_runs, write_runs
 from btq_lang.commands.output import write_output
 from btq_lang.exploration.answers import Answer, answered
 from btq_lang.exploration.clauses import clause_answers
@@ -29,6 +30,7 @@ class ExploreOptions(Record):
         states: how many states are searched for each question.
         seconds: how much processor time, likewise; None: any.
         strict: what was not found in a search that was cut off may happen.
+        show: draw the runs.
     """
 
     paths: Sequence[str]
@@ -39,6 +41,7 @@ class ExploreOptions(Record):
     states: int
     seconds: float | None
     strict: bool
+    show: bool
     format: str
     output: str | None
 
@@ -46,6 +49,8 @@ class ExploreOptions(Record):
 def run(options: ExploreOptions, messages: CommandOutput) -> int:
     """Answer the questions for each mission, or the standard ones."""
     refuse(usage_problem(options.paths))
+    if options.show and options.format == "json":
+        raise Refused("--show draws runs as text, and --format json has none")
     questions = [(_question(text), is_wanted) for is_wanted, text in _texts(options)]
     groups, problems = Files().groups(options.paths, options.stdin_filename, with_xml=True)
     messages.problems(problems)
@@ -78,7 +83,13 @@ def run(options: ExploreOptions, messages: CommandOutput) -> int:
     if not explored and not code:
         raise Refused("no mission has a main tree; choose one with --tree")
     if explored:
-        write_output(messages, options.output, (as_json if options.format == "json" else as_text)(explored))
+        text = as_json(explored) if options.format == "json" else as_text(explored)
+        text += drawn_runs(explored, messages) if options.show else ""
+        if options.output is not None and options.output.endswith(RUN_SUFFIXES):
+            write_output(messages, None, text)
+            write_runs(explored, options.output, messages)
+        else:
+            write_output(messages, options.output, text)
     return code
 
 

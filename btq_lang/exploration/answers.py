@@ -49,7 +49,7 @@ def answered(mission: ExploredMission, question: Question, budget: SearchBudget)
         NotExplored: the tree cannot be explored.
         Unasked: the question names what the tree does not have.
     """
-    opened = mission.open([key for _, key in question.keys])
+    opened = mission.open(question.keys)
     asking = Asking(question, opened.snapshots, mission.uids)
     opened.snapshots.tracked = tuple(asking.tracked.values())
     return answered_by(opened, asking, asking.tracked, budget, isinstance(question.asked, EndlessRun))

@@ -13,6 +13,7 @@ from btq_lang.btcpp.reader import read
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2 import ENGINES, assumed_distribution, distribution_among
 from btq_lang.catalog.nav2.creation import SERVERS
+from btq_lang.catalog.nav2.navigator import ENTRIES
 from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks import lookups
 from btq_lang.evidence.identity import Build, Candidate
@@ -91,8 +92,9 @@ class ExploredMission:
         Raises:
             NotExplored: the engine refuses it, or it has something whose effect is not known.
         """
+        preset = [key for key, letters in ENTRIES.items() if self.dialect.nav2[:1] in letters and self.dialect.nav2]
         try:
-            return Opened(list(self._documents), self.tree, self.dialect, self.kinds, asked)
+            return Opened(list(self._documents), self.tree, self.dialect, self.kinds, asked, preset)
         except EngineError as error:
             raise NotExplored(f"the engine refuses the tree: {error}") from None
         except NotModelled as error:

@@ -1,7 +1,7 @@
 """A tree whose leaves are free, ready to be explored.
 
-One invariant: an entry that nothing in the tree writes is one that the program sets before: it has a value, which
-is unknown.  All others begin without one.
+One invariant: an entry that nothing in the tree writes, or that bt_navigator sets, is one that the program sets before:
+it has a value, which is unknown.  All others begin without one.
 """
 
 from __future__ import annotations
@@ -53,12 +53,14 @@ class Opened:
         dialect: Dialect,
         kinds: Mapping[str, LeafKind],
         asked: Collection[str] = (),
+        preset: Collection[str] = (),
     ) -> None:
         """Load the tree `main`.
 
         Args:
             kinds: of the leaves of the program, by name.
             asked: the entries of the root blackboard that a question reads.
+            preset: those that the program sets before, also if the tree writes them.
 
         Raises:
             EngineError: the engine refuses the tree.
@@ -75,7 +77,7 @@ class Opened:
         self.leaves.snapshots = world.snapshots = self.snapshots
         self.leaves.unset_read = self._unset_read
         self.custom: Final = [node for node in self.machine.nodes if node.rules.flow is tick_custom]
-        self._set_entries(asked)
+        self._set_entries(asked, preset)
         for node in self.machine.nodes:
             set_free(node, self.snapshots)
         self.start: Final[tuple[Memories, Shared]] = (
@@ -104,12 +106,13 @@ class Opened:
 
     # ---- entries ----
 
-    def _set_entries(self, asked: Collection[str]) -> None:
+    def _set_entries(self, asked: Collection[str], preset: Collection[str]) -> None:
         """Give a value to the entries that only the program writes, and find out whose values matter."""
         root = self.machine.root.board.root
         read = {home for node in self.machine.nodes for home in self._read(node)}
         read |= {(id(root), name) for name in asked}
         written = {home for node in self.machine.nodes for home in self._written(node)}
+        written -= {(id(root), name) for name in preset}
         for board, name in sorted(read - written, key=lambda home: home[1]):
             if board == id(root):
                 entry = root.create(name)

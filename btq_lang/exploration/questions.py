@@ -1,20 +1,21 @@
 """Questions about what can happen, as they are typed: `PutDown starts before Grasp succeeds`.
 
-One invariant: events, conditions and paths are read by the grammar of the language; only the words around them, and
-entries in conditions, are read here.
+One invariant: events, conditions and paths are read by the grammar of the language, entries in conditions as in
+scenarios; only the words around them are read here.
 """
 
 from __future__ import annotations
 
-import re
+from collections.abc import Iterator
 from typing import Final, TypeAlias
 
 from btq_lang.grammar.claims import parse_event
 from btq_lang.grammar.conditions import parse_cond, parse_path
 from btq_lang.grammar.cursor import Cursor
 from btq_lang.lexer import Lexer
-from btq_lang.syntax.tokens import NEWLINE
-from btq_lang.syntax.tree import AnyEvent, Condition, Event, Path
+from btq_lang.requirements.entries import key_of
+from btq_lang.syntax.tokens import BRACED, NEWLINE
+from btq_lang.syntax.tree import AnyEvent, Condition, Event, Path, Word
 from btq_lang.util.record import Record
 
 
@@ -55,12 +56,12 @@ class Question(Record):
 
     Attributes:
         text: as typed.
-        keys: the entries that it names, by their names in conditions.
+        keys: the entries that it names.
     """
 
     text: str
     asked: Asked
-    keys: tuple[tuple[str, str], ...] = ()
+    keys: tuple[str, ...] = ()
 
 
 class NoQuestion(Exception):
@@ -75,46 +76,44 @@ def parse_question(text: str) -> Question:
     """
     if " ".join(text.split()) == "mission does not end":
         return Question(text, EndlessRun())
-    keys: list[str] = []
-
-    def name(match: re.Match[str]) -> str:
-        keys.append(match[1].strip())
-        return f"{_ENTRY}{len(keys) - 1}"
-
-    cursor = _cursor(_KEY.sub(name, text))
-    named = tuple([(f"{_ENTRY}{number}", key) for number, key in enumerate(keys)])
-    asked = _reads_unset(cursor, dict(named)) or _asked(cursor)
+    cursor = _cursor(text)
+    asked = _reads_unset(cursor) or _asked(cursor)
     if cursor.kind != NEWLINE and not cursor.problems:
         cursor.expected("`before`, `after` or the end of the question")
     problems = [*cursor.problems, *cursor.lexer.problems]
     if problems or asked is None:
-        said = problems[0].message if problems else _FORMS
-        for stands, key in named:
-            said = said.replace(stands, f"{{{key}}}")
-        raise NoQuestion(said if said == _FORMS else f"{said}; {_FORMS}")
-    return Question(text, asked, named)
+        raise NoQuestion(f"{problems[0].message}; {_FORMS}" if problems else _FORMS)
+    return Question(text, asked, tuple(dict.fromkeys(key_of(word) for word in _entries(cursor))))
+
+
+def _entries(cursor: Cursor) -> Iterator[Word]:
+    cursor.go_to(0)
+    while cursor.kind != NEWLINE:
+        word = cursor.take()
+        if word.kind == BRACED:
+            yield word
 
 
 def _cursor(text: str) -> Cursor:
     lexer = Lexer(" ".join(text.split()))
     cursor = Cursor(lexer, lambda _: False)
     lexer.open_line()
+    cursor.in_scenario = True
     cursor.scan()
     return cursor
 
 
-def _reads_unset(cursor: Cursor, keys: dict[str, str]) -> ReadsUnset | None:
+def _reads_unset(cursor: Cursor) -> ReadsUnset | None:
     """ReadsUnset = Path "reads" BRACED "unset" """
     if "reads" not in cursor.raws or cursor.raws[-2:-1] != ["unset"]:
         return None
     path = parse_path(cursor, "a node")
     if path is None or not cursor.expect_word("reads"):
         return None
-    key = keys.get(cursor.raw)
-    if key is None:
+    if cursor.kind != BRACED:
         cursor.expected("an entry: `{cup_pose}`")
         return None
-    cursor.advance()
+    key = key_of(cursor.take())
     return ReadsUnset(path, key) if cursor.expect_word("unset") else None
 
 
@@ -140,8 +139,6 @@ def _has_event(cursor: Cursor) -> bool:
     return words[0] in ("when", "mission") or (words[0] not in ("node", "not") and not _EVENT_WORDS.isdisjoint(words))
 
 
-_ENTRY: Final = "entry__"
-_KEY: Final = re.compile(r"\{([^{}]*)\}")
 _EVENT_WORDS: Final = frozenset(("starts", "succeeds", "fails", "finishes", "halts", "before", "after"))
 _FORMS: Final = (
     "a question is an event (`Pick starts`), one `before` or `after` another, a condition "

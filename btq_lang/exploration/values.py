@@ -6,10 +6,11 @@ value.  It does not know sums of such values: what needs one ends with `NotModel
 
 from __future__ import annotations
 
+from itertools import count
 from math import ceil, floor, inf
 from typing import Final, Protocol, TypeAlias
 
-from btq_lang.simulator.blackboard import LIMITS, Unknown, Value
+from btq_lang.simulator.blackboard import LIMITS, STRING, Unknown, Value
 from btq_lang.simulator.errors import NotModelled
 from btq_lang.simulator.scripts import NUMBER, compared
 from btq_lang.util.record import Record, replace
@@ -131,6 +132,18 @@ def domain_of(type_: str) -> Domain:
     """What a value of a type of C++ may be."""
     low, high = LIMITS.get(type_, (-inf, inf))
     return Domain(low, high, is_whole=type_ in LIMITS)
+
+
+def sample(domain: Domain, type_: str) -> float | int | str:
+    """A value that a domain has; `type_`: of the entry."""
+    if domain.fixed is not None:
+        return domain.fixed
+    if type_ == STRING or any(isinstance(value, str) for value in domain.excluded):
+        return next(text for number in count(1) if (text := f"text {number}") not in domain.excluded)
+    middle = (domain.low + domain.high) / 2
+    near = [limit + step for limit in (0, domain.low, domain.high) if abs(limit) < inf for step in (0, 1, -1)]
+    values = [*near, *([middle] if abs(middle) < inf else []), *range(2, len(domain.excluded) + 3)]
+    return next((_as_in(domain, value) for value in values if _has(domain, value)), middle)
 
 
 def _rest(domain: Domain, operator: str, answer: bool, other: float | str) -> Domain | None:

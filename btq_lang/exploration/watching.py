@@ -6,17 +6,18 @@ Conditions are looked at whenever a status changes.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection
 from typing import Final
 
 from btq_lang.exploration.outcomes import Happened
 from btq_lang.exploration.questions import Asked, Holds, Order, Question, ReadsUnset
 from btq_lang.exploration.snapshots import Snapshots
+from btq_lang.requirements.entries import key_of
 from btq_lang.simulator.blackboard import Unknown, Value
 from btq_lang.simulator.errors import EngineError
 from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SUCCESS, SimulatedNode
 from btq_lang.simulator.scripts import as_number, compared
-from btq_lang.syntax.tokens import NAME, STRING
+from btq_lang.syntax.tokens import BRACED, NAME, STRING
 from btq_lang.syntax.tree import (
     AnyEvent,
     Binary,
@@ -54,7 +55,6 @@ class Asking:
             Unasked: it names what the tree does not have.
         """
         self._snapshots: Final = snapshots
-        self._keys: Final[Mapping[str, str]] = dict(question.keys)
         self._uids: Final = uids
         self._asked: Final[Asked] = question.asked
         self._nodes: Final = {node.uid: node for node in snapshots.machine.nodes}
@@ -137,8 +137,8 @@ class Asking:
         if not isinstance(operand, Operand):
             raise Unasked("a question compares entries with values, and does not calculate")
         word = operand.word
-        if word.kind == NAME and word.raw in self._keys:
-            key = self._keys[word.raw]
+        if word.kind == BRACED:
+            key = key_of(word)
             root = self._snapshots.machine.root.board.root
             return lambda: entry.value if (entry := root.entry(key)) is not None else None
         if word.kind == STRING:

@@ -6,17 +6,32 @@ One invariant: nothing is remembered here; a witness is what the model does when
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from typing import Final
+from typing import Final, TypeAlias
 
 from btq_lang.exploration.choices import Choices
 from btq_lang.exploration.opened import Opened, Watch
 from btq_lang.exploration.outcomes import Happened
 from btq_lang.exploration.search import fire_timers
-from btq_lang.exploration.values import Domain, FreeValue
+from btq_lang.exploration.values import Domain, FreeValue, domain_of, sample
 from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, SimulatedNode
+from btq_lang.simulator.ports import key_of
 from btq_lang.simulator.ticking import execute_tick
-from btq_lang.util.record import Record
+from btq_lang.util.record import Record, replace
+
+
+class Written(Record):
+    """A value that the program or a leaf writes.
+
+    Attributes:
+        name: of the entry, or of the port that names it.
+        value: one of those that it may be.
+        is_needed: the run has compared it with something.
+    """
+
+    name: str
+    value: float | int | str
+    is_needed: bool
 
 
 class Deed(Record):
@@ -26,11 +41,13 @@ class Deed(Record):
         uid: the number of the node.
         path: its path.
         what: succeeds, fails, runs, is halted or goes off.
+        writes: of a leaf that ends, by port.
     """
 
     uid: int
     path: str
     what: str
+    writes: tuple[Written, ...] = ()
 
 
 class Tick(Record):
@@ -42,12 +59,18 @@ class Tick(Record):
         result: of the root: runs, succeeds, fails, is skipped, throws or is not known; empty: the tick is not finished,
             for what was asked has happened.
         message: of what was thrown, or why it is not known.
+        at: when the program ticks, in milliseconds, if it does so every 10 ms and whenever a node wakes it up.
+        given: the entries that the program sets before, in the first tick.
+        changes: the leaves that have other statuses, by number, and their statuses; without those that are reset.
     """
 
     deeds: tuple[Deed, ...]
     entries: tuple[tuple[str, str], ...]
     result: str
     message: str = ""
+    at: int = 0
+    given: tuple[Written, ...] = ()
+    changes: tuple[tuple[int, int], ...] = ()
 
 
 class NotReplayed(Exception):
@@ -70,9 +93,10 @@ def replay(
     opened.begin(recorder, may_run)
     opened.leaves.done = recorder.done
     try:
-        return tuple([recorder.tick(way) for way in ways])
+        return recorder.with_values([recorder.tick(way) for way in ways])
     finally:
         opened.leaves.done = None
+        opened.machine.now = 0
 
 
 class _Recorder:
@@ -84,13 +108,22 @@ class _Recorder:
         self._custom: Final = {node.uid for node in opened.custom}
         self._deeds: list[Deed] = []
         self._entries: dict[str, str] = {}
+        self._changes: list[tuple[int, int]] = []
+        self._next = 0  # when the next tick is, if no timer goes off before
+        self._given: Final[list[_Value]] = []
+        self._written: Final[dict[int, list[_Value]]] = {}  # by the identity of the deed
 
     def begin(self) -> object:
+        for key, entry in sorted(self._opened.machine.root.board.root.entries.items()):
+            if isinstance(entry.value, FreeValue):
+                self._given.append((key, entry.value.number, entry.type))
         return self._watch.begin() if self._watch is not None else None
 
     def changed(self, node: SimulatedNode, before: int, after: int) -> None:
-        if before == RUNNING and after == IDLE and node.uid in self._custom:
-            self._deeds.append(Deed(node.uid, node.path, "is halted"))
+        if node.uid in self._custom and (after != IDLE or before == RUNNING):
+            self._changes.append((node.uid, after))
+            if after == IDLE:
+                self._deeds.append(Deed(node.uid, node.path, "is halted"))
         if self._watch is not None:
             self._watch.changed(node, before, after)
 
@@ -100,7 +133,16 @@ class _Recorder:
 
     def done(self, node: SimulatedNode, result: int, written: Sequence[str]) -> None:
         """A leaf has come to something."""
-        self._deeds.append(Deed(node.uid, node.path, _WORDS[result]))
+        deed = Deed(node.uid, node.path, _WORDS[result])
+        self._deeds.append(deed)
+        ports = {key_of(text, port): port for port, text in node.ports.items()}
+        types = dict(self._opened.leaves.kind(node).writes)
+        for key in written:
+            entry = node.board.entry(key)
+            if entry is not None and isinstance(entry.value, FreeValue):
+                self._written.setdefault(id(deed), []).append(
+                    (ports[key], entry.value.number, entry.type or types.get(ports[key], ""))
+                )
 
     def tick(self, way: Sequence[int]) -> Tick:
         """One tick with these choices."""
@@ -108,9 +150,13 @@ class _Recorder:
         self._deeds = []
         snapshots.choices = choices = Choices(way)
         result, message = "", ""
+        self._changes = []
+        now = self._next
+        dues = {node.uid: node.due for node in opened.machine.timed}
         try:
-            for node in fire_timers(snapshots):
-                self._deeds.append(Deed(node.uid, node.path, "goes off"))
+            fired = fire_timers(snapshots)
+            self._deeds += [Deed(node.uid, node.path, "goes off") for node in fired]
+            now = opened.machine.now = max([dues[node.uid] for node in fired], default=now)
             result = _WORDS[execute_tick(opened.machine, opened.machine.root)]
         except Happened:
             pass
@@ -120,7 +166,27 @@ class _Recorder:
             result, message = "is not known", str(error)
         if choices.log != list(way):
             raise NotReplayed
-        return Tick(tuple(self._deeds), self._changed_entries(), result, message)
+        self._next = now if opened.machine.is_woken else now + _PERIOD
+        return Tick(tuple(self._deeds), self._changed_entries(), result, message, now, changes=tuple(self._changes))
+
+    def with_values(self, ticks: Sequence[Tick]) -> tuple[Tick, ...]:
+        """The ticks with values of entries that are as the run has compared them."""
+        domains = self._opened.snapshots.domains
+
+        def written(values: Sequence[_Value]) -> tuple[Written, ...]:
+            return tuple(
+                [
+                    Written(name, sample(domains[number], type_), domains[number] != domain_of(type_))
+                    for name, number, type_ in values
+                ]
+            )
+
+        def with_values(tick: Tick) -> Tick:
+            deeds = [replace(deed, writes=written(self._written.get(id(deed), ()))) for deed in tick.deeds]
+            return replace(tick, deeds=tuple(deeds))
+
+        first, *others = map(with_values, ticks)
+        return replace(first, given=written(self._given)), *others
 
     def _changed_entries(self) -> tuple[tuple[str, str], ...]:
         before = self._entries
@@ -155,6 +221,8 @@ def described(domain: Domain) -> str:
     return " and ".join(parts) if parts else "has a value"
 
 
+_Value: TypeAlias = tuple[str, int, str]  # the entry or port, the number of the value, and the type of the entry
+_PERIOD: Final = 10  # ms
 _LIMIT: Final = 2.0**31 - 1  # beyond it, a limit is that of a type
 _WORDS: Final = {
     SUCCESS: "succeeds",

@@ -10,6 +10,9 @@ scenario, and a value that is needed and not given makes it unknown; actions tha
     judging.py     whether a run is as expected
     drawing.py     a run as lines of text
     recording.py   a run of a log as a scenario
+    witnessed.py   a run of `btq explore` as a scenario
+    asked.py       what was asked there as expectations
+    btlog.py       a run as a log
     results.py     what came of scenarios, as data
     suite.py       the scenarios of files, run one by one
     parallel.py    the same in several processes

@@ -84,6 +84,24 @@ def test_one_script_over_the_same_entries_has_one_value(explore: Exploring) -> N
     assert explore.can("B starts after when {x} > 3")[0] == 0
 
 
+def test_entries_in_questions_are_those_of_scenarios(explore: Exploring) -> None:
+    explore.tree("<Sequence><A/></Sequence>")
+    assert explore.can("{@limit} == 3 and {name} == 'three'") == (
+        0,
+        "  can {@limit} == 3 and {name} == 'three': yes, in 1 tick\n"
+        "    tick 1\n"
+        "      {limit} = 3\n"
+        "      {name} = 'three'\n",
+    )
+    code, _, err = explore("--can", "{} == 3 and")
+    assert (code, err.splitlines()[0]) == (
+        2,
+        "btq explore: `{} == 3 and`: expected a condition: a signal, a context, a value, …, found the end of the line; "
+        "a question is an event (`Pick starts`), one `before` or `after` another, a condition "
+        "(`node Pick and {done} == 1`), `Pick reads {pose} unset` or `mission does not end`",
+    )
+
+
 def test_conditions_of_nodes_that_run_together(explore: Exploring) -> None:
     explore.tree('<ParallelAll><A name="a"/><Sequence><B name="b"/><C name="c"/></Sequence></ParallelAll>')
     assert explore.can("node a and node b")[0] == 0
@@ -216,3 +234,13 @@ def test_nodes_of_nav2_without_its_distribution(explore: Exploring) -> None:
         "  can Wait starts: yes, in 1 tick",
         "    tick 1",
     ]
+
+
+def test_entries_that_bt_navigator_sets_have_a_value(explore: Exploring) -> None:
+    (explore.folder / "btq.toml").write_text('nodes = ["nav2-jazzy"]\n', encoding="utf-8")
+    explore.tree(
+        '<Sequence><RemovePassedGoals input_goals="{goals}" output_goals="{goals}" radius="0.7"/>'
+        '<FollowPath path="{path}"/><ComputePathToPose goal="{goal}" path="{path}" planner_id="GridBased"/></Sequence>'
+    )
+    findings = explore.json()["missions"][0]["survey"]["findings"]
+    assert [finding["text"] for finding in findings] == ["FollowPath::3 can read {path} before it has a value"]

@@ -60,6 +60,8 @@ RUN_BY = {
     "editors.md sh": "editors/test_neovim.py",
     "python": "test_the_python_of_a_page",
     "btq scenario": "scenarios/test_scenario_page.py",
+    "what-can-happen.md xml": "exploration/test_explore_page.py",
+    "what-can-happen.md console": "exploration/test_explore_page.py",
     "test-a-mission.md xml": "scenarios/test_scenario_page.py",
     "test-a-mission.md console": "scenarios/test_scenario_page.py",
     "yaml": "test_ci_knows_its_names",
