@@ -13,6 +13,7 @@ from typing import Final, TypeAlias
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import a_dimension, to_si
 from btq_lang.diagnostics.model import Fix, replace_fix, write_fix
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements import model
 from btq_lang.requirements.contexts import IN_CIRCLE, context_depth, contexts_by_word, contexts_in, written_context
 from btq_lang.requirements.paths import PathReader, Problem
@@ -362,10 +363,23 @@ class Reader(PathReader):
             self._no_condition(term)
             return None
         if word.kind == STRING or self.find((name,)):
-            return self._running(syntax.Path((word,)))
+            running = self._running(syntax.Path((word,)))
+            if running is not None:
+                self._bare_node(word)
+            return running
         if not self._is_subtraction(word):
             self.unknown(word, ("parameters", "signals", "contexts", "nodes"), "bool")
         return None
+
+    def _bare_node(self, word: syntax.Word) -> None:
+        """Report a node's name as a condition: it holds while the node runs, and may be meant as what it comes to."""
+        fixes = (replace_fix(f"Write `node {word.raw}`: while it runs", word.span, f"node {word.raw}"),)
+        if self.text(0, word.start).endswith("followed by"):
+            succeeds = f"{word.raw} succeeds"
+            fixes = (replace_fix(f"Write `{succeeds}`", word.span, succeeds), *fixes)
+        meant = f"btq reads `node {word.raw}`, which is true while it runs"
+        message = f"`{word.text}` is no signal or context but a node: {meant}"
+        self.complain("unknown-signal", word.span, message, fixes=fixes, severity=Severity.WARNING)
 
     def _no_condition(self, term: Term) -> None:
         if term.sort == "number" and term.dimension is None:
