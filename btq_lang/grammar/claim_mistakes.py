@@ -39,7 +39,7 @@ def written_instead(cursor: Cursor, span: Span, clauses: tuple[str, ...], note: 
         cursor.complain(span, note)
         return
     fixes = [write_fix(clause, span) for clause in clauses if not _OPEN.search(clause)]
-    message = " or ".join(f"`{shown(clause)}`" for clause in clauses)
+    message = " or ".join(f"`{shown(clause, most=120)}`" for clause in clauses)
     cursor.complain(span, f"this clause is written {message}", *fixes, notes=(note,) if note else ())
 
 
@@ -328,7 +328,8 @@ MEANT: Final = {  # by the word that is read as a node before a verb
     "after": "write `follows Look succeeds`, `starts within 2 s after Look succeeds`, or "
     "`each Look succeeds is followed by Pick starts`",
     **dict.fromkeys(("whenever", "once"), "write `each Pick fails is followed by Recover starts within 5 s`"),
-    "before": "write `from Pick starts to Place succeeds takes at most 45 s`, or `Place follows Pick succeeds`",
+    "before": "write `from Pick starts to Place succeeds takes at most 45 s`, or "
+    "`mission never node Place from mission starts until Pick succeeds`",
     "between": "a range is written `keeps 0 N <= force <= 3 N`",
     "always": "write `keeps battery >= 15 %`",
     "not": "write `never lamp_on`, or `keeps not lamp_on`",

@@ -111,7 +111,7 @@ _FAILURE: Final = "`succeeds within` is violated by a failure too, `takes at mos
 _SIGNAL: Final = "a name alone is a signal or context: `signal latency : s from {latency}`"
 _USED: Final = "a signal whose use is limited is a `counter` or a `level`: `signal energy : Wh from {energy} counter`"
 _BEFORE: Final = "what happens before an event is the time from one event to another"
-_AT_THE_OTHER: Final = "`follows` goes to the node that runs second, with the event that it waits for"
+_EACH_TIME: Final = "`Place follows Pick succeeds` asks for another success of Pick before each start of Place"
 # Patterns, in which a word in capitals is a piece of above; what is written instead; a note.
 _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
     # how long
@@ -253,8 +253,8 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
     # in which order
     (
         f"SUBJECT(?:{_any(*_GOES)} )?not (?:{_any(*_GOES)} )?before OTHER EVENT",
-        ("{subject}follows {other} {event}",),
-        "",
+        ("mission never node {node} from mission starts until {other} {event}", "{subject}follows {other} {event}"),
+        _EACH_TIME,
     ),
     (
         "SUBJECTstarts within TIME before OTHER EVENT",
@@ -268,18 +268,18 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
     ),
     (
         f"SUBJECT(?P<event>starts|succeeds|fails) (?:only )?before OTHER{_STARTS}",
-        ("{other} follows {node} {event}",),
-        _AT_THE_OTHER,
+        ("mission never node {other} from mission starts until {node} {event}",),
+        _EACH_TIME,
     ),
     (
         f"SUBJECT(?:ends|finishes|stops|completes|is done) (?:only )?before OTHER{_STARTS}",
-        ("{other} follows {node} finishes",),
-        _AT_THE_OTHER,
+        ("mission never node {other} from mission starts until {node} finishes",),
+        _EACH_TIME,
     ),
     (
         f"(?!before)SUBJECT(?:{_MODAL} )?(?:{_any(*_GOES)} )?(?:only )?(?:before|precedes?|then|->) OTHER{_STARTS}",
-        ("{other} follows {node} succeeds",),
-        _AT_THE_OTHER,
+        ("mission never node {other} from mission starts until {node} succeeds",),
+        _EACH_TIME,
     ),
     (f"(?!mission)SUBJECT{_any(*_GOES)} (?:only )?after OTHER EVENT", ("{subject}follows {other} {event}",), ""),
     (
