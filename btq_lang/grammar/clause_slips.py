@@ -106,7 +106,14 @@ _FEATURE: Final = (
 )
 _IF_THEN: Final = r"(?:[Ww]hen|[Ii]f) (?P<condition>[^,]+?),? then"
 _COMPARISON: Final = r"[^,]+?(?:[<>]=?|[=!]=)[^,]+?"
+_NO_VERB: Final = rf"(?!.*\b{_any('keeps', 'never', 'needs', 'leaves', 'is')}\b)"
 _ANSWER: Final = rf"{_COMPARISON}|{_PATH} {_any('starts', 'succeeds', 'fails', 'finishes', 'halts')}"
+_NIGHT: Final = ("night", "day", "hour", "shift", "week", "month", "season", "year")
+SEASONS: Final = frozenset((*_NIGHT, *(f"{word}s" for word in _NIGHT)))
+OF_SEASONS: Final = (
+    "a share of nights or of all hours cannot be said: `keeps <signal> in at least 98 % of time` is a share of each "
+    "run, `in at least 98 % of runs` counts the runs that keep a claim"
+)
 _FAILURE: Final = "`succeeds within` is violated by a failure too, `takes at most` is not"
 _SIGNAL: Final = "a name alone is a signal or context: `signal latency : s from {latency}`"
 _USED: Final = "a signal whose use is limited is a `counter` or a `level`: `signal energy : Wh from {energy} counter`"
@@ -192,6 +199,11 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
         ("{subject}keeps <signal> in at least {share} of time",),
         "the signal is true while it is available, and the share is that of each run",
     ),
+    (
+        rf"SUBJECT(?:is )?available (?:in )?(?:>=|at least) SHARE of (?:all |the )?{_any(*sorted(SEASONS))}",
+        (),
+        OF_SEASONS,
+    ),
     ("SUBJECTsatisfies OTHER", (), f"`satisfies` goes after a node in its tree; {OF_MISSION}"),
     # of which activations
     (
@@ -214,6 +226,14 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
             "",
         )
         for within, deadline in ((" (?:within|in) TIME", " within {time}"), ("", ""))
+    ),
+    *(
+        (
+            rf"(?:mission )?(?:keeps )?{_NO_VERB}(?P<answer>{_COMPARISON}) within TIME after (?:when )?{after}",
+            (f"each {event} is followed by {{answer}} within {{time}}",),
+            "",
+        )
+        for after, event in (("OTHER EVENT", "{other} {event}"), ("(?P<condition>.+?)", "when {condition}"))
     ),
     # what holds, or happens, in a situation
     (
@@ -288,6 +308,12 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
         "`finishes` is a success or a failure",
     ),
     # how much of what
+    (
+        "SUBJECT(?:keeps )?OTHER *BOUNDVALUE on average",
+        ("{subject}uses {bound} {value} of {other} on average",),
+        "what is used is the change of a counter or a level; a signal has no mean over runs",
+    ),
+    (r"SUBJECT(?:keeps )?OTHER *\+/?- *VALUE", ("{subject}keeps -{value} <= {other} <= {value}",), ""),
     (f"{_USES} BOUNDVALUE (?:(?:of|from) )?OTHER", ("{subject}uses {bound} {value} of {other}",), ""),
     (f"{_USES} BOUNDVALUE(?: of)?", ("{subject}uses {bound} {value} of <signal>",), _USED),
     (f"{_USES} BOUNDNUMBER(?: of)?", ("{subject}uses {bound} {number} of <signal>",), _USED),

@@ -315,7 +315,7 @@ class Reader(PathReader):
         if isinstance(written, syntax.Operand):
             return self._lone(written)
         if isinstance(written, syntax.NodeRuns):
-            return self._running(written.path)
+            return self._running(written.path, Span(written.start, written.end))
         if isinstance(written, syntax.Not):
             operand = self.condition(written.operand)
             return model.Negation(operand) if operand is not None else None
@@ -324,15 +324,15 @@ class Reader(PathReader):
         if isinstance(written, syntax.Comparison):
             return self._compare(written)
         if isinstance(written, syntax.Binary) and (path := self._as_path(written)) is not None:
-            return self._running(path)
+            return self._running(path, Span(written.start, written.end))
         if written is not None:
             term = self._expression(written)
             if term is not None:
                 self._no_condition(term)
         return None
 
-    def _running(self, path: syntax.Path) -> model.Condition | None:
-        target = self.target(path)
+    def _running(self, path: syntax.Path, asked: Span) -> model.Condition | None:
+        target = self.target(path, asked=asked)
         return model.Running(target) if target is not None else None
 
     def _joined(self, written: syntax.Binary) -> model.Condition | None:
@@ -363,7 +363,7 @@ class Reader(PathReader):
             self._no_condition(term)
             return None
         if word.kind == STRING or self.find((name,)):
-            running = self._running(syntax.Path((word,)))
+            running = self._running(syntax.Path((word,)), word.span)
             if running is not None:
                 self._bare_node(word)
             return running
