@@ -373,12 +373,14 @@ class Reader(PathReader):
 
     def _bare_node(self, word: syntax.Word) -> None:
         """Report a node's name as a condition: it holds while the node runs, and may be meant as what it comes to."""
-        fixes = (replace_fix(f"Write `node {word.raw}`: while it runs", word.span, f"node {word.raw}"),)
+        fixes: tuple[Fix, ...] = (
+            replace_fix(f"Write `node {word.raw}`: while it runs", word.span, f"node {word.raw}"),
+        )
         if self.text(0, word.start).endswith("followed by"):
             succeeds = f"{word.raw} succeeds"
             fixes = (replace_fix(f"Write `{succeeds}`", word.span, succeeds), *fixes)
         meant = f"btq reads `node {word.raw}`, which is true while it runs"
-        message = f"`{word.text}` is no signal or context but a node: {meant}"
+        message = f"`{word.text}` is a node, not a signal or a context: {meant}"
         self.complain("unknown-signal", word.span, message, fixes=fixes, severity=Severity.WARNING)
 
     def _no_condition(self, term: Term) -> None:

@@ -67,7 +67,7 @@ def render(overview: Overview, missions: Sequence[MissionVerdicts] = ()) -> str:
         by_build=list(overview.by_build),
         qualities=_qualities(overview),
         gaps=_gaps(overview),
-        totals_heading=TOTALS,
+        totals_heading=("Characteristic", *TOTALS),
         edition=overview.edition,
         totals=[
             (total.name, [number or "–" for number in total.numbers], "" if any(total.numbers) else "empty")
