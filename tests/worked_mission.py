@@ -33,7 +33,7 @@ QualityReq fetch : time-behaviour
     GoToFridge takes at most 20 s if not humans_near else 30 s
 QualityReq replan : time-behaviour
     ComputePathToPose runs at least 1 per 1 s
-    while FollowPath
+    while node FollowPath
 QualityReq order : safety
     Place follows CheckClear succeeds
     on violation fail

@@ -14,7 +14,7 @@ from btq_lang.requirements.applied import Applied
 from btq_lang.requirements.budget_parts import Budget, port_seconds
 from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.durations import DurationTerm, Range, together
-from btq_lang.requirements.model import MissionRun, Quantity, ResolvedClaim, ResolvedRequirement
+from btq_lang.requirements.model import MissionRun, Quantity, ResolvedClaim, ResolvedRequirement, time_for_one
 from btq_lang.workspace.resolved import ResolvedNode
 
 
@@ -104,11 +104,29 @@ def window_without_hours(requirement: ResolvedRequirement) -> Iterator[PlacedDia
             continue
         message = (
             f"`{window.text}` cannot show at most {most[1]} per {per.text} with a confidence of "
-            f"{_percent(confidence)}: this requires {_rounded_up(from_si(needed, per.unit))} {per.unit.symbol} "
-            "without a failure"
+            f"{_percent(confidence)}: this requires {_time(needed, per)} without a failure"
         )
         related = (Related(claim.place, "failure rate"),)
         yield diagnostic_at(window.place, "window-too-small", message, related=related)
+
+
+def rate_without_confidence(requirement: ResolvedRequirement) -> Iterator[PlacedDiagnostic]:
+    """A failure rate that hours without a failure satisfy, however few they are beside what would show it."""
+    if requirement.confidence is not None:
+        return
+    for claim in requirement.claims:
+        most, per = claim.highest, claim.per
+        if claim.verb != "fails per time" or most is None or most[0] <= 0 or not isinstance(per, Quantity):
+            continue
+        enough = _time(time_for_one(most[0], per.si), per)
+        message = f"without `confidence` this failure rate is judged only by its value, once {enough} were observed"
+        notes = (f"`confidence 95 %` asks for {_time(-log(0.05) / most[0] * per.si, per)} without a failure",)
+        yield diagnostic_at(claim.place, "rate-without-confidence", message, notes=notes)
+
+
+def _time(seconds: float, per: Quantity) -> str:
+    """A time in the unit of another one, rounded up."""
+    return f"{_rounded_up(from_si(seconds, per.unit))} {per.unit.symbol}"
 
 
 def _rounded_up(number: float) -> str:

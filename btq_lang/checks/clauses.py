@@ -5,6 +5,7 @@ twice: a requirement, a quality, a tag, nodes.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Final
 
 from btq_lang.catalog.verbs import POOLED
 from btq_lang.checks import lookups
@@ -79,7 +80,8 @@ def odds_of_what(view: View) -> Iterator[Diagnostic]:
             else:
                 continue
             fix = replace_fix(f"Replace `{word.raw}` with `{meant}`", word.span, meant)
-            yield Diagnostic("impossible-odds", word.span, message, fixes=(fix,))
+            notes = (_OF_SPANS,) if any(isinstance(subject, syntax.Between) for subject in subjects) else ()
+            yield Diagnostic("impossible-odds", word.span, message, notes=notes, fixes=(fix,))
 
 
 def unused_parameter(view: View) -> Iterator[Diagnostic]:
@@ -226,3 +228,9 @@ def _removal(clause: syntax.NodeClause, places: list[Span], index: int, text: st
     return replace_fix(
         f"Remove `{' '.join(text[removed.start : removed.end].strip(' ,').split())}`", removed, "", safe=True
     )
+
+
+_OF_SPANS: Final = (
+    "of `from … to …`, `of activations` counts each time from a first event to its last one, `of runs` the runs in "
+    "which all of them keep the bound"
+)

@@ -103,7 +103,7 @@ def _of_requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple
     if resolved is None:
         return ()
     findings = [*limits.goal_beyond_bound(view, resolved), *budgets.window_too_small(resolved)]
-    findings += budgets.window_without_hours(resolved)
+    findings += [*budgets.window_without_hours(resolved), *budgets.rate_without_confidence(resolved)]
     if resolved.demands_enforcement:
         findings += enforcement.not_enforced_between(view, name)
     return _in_file(viewpoint, findings)

@@ -5,7 +5,7 @@ contexts to which nothing refers.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.verbs import VERBS
@@ -26,7 +26,7 @@ from btq_lang.checks.view import (
 )
 from btq_lang.diagnostics.model import Diagnostic, Related, Tag, replace_fix
 from btq_lang.grammar.clause_slips import OF_MISSION
-from btq_lang.syntax.tree import Claim, Context, OnViolation, Requirement, Signal, Tree, written
+from btq_lang.syntax.tree import Claim, Context, How, OnViolation, Requirement, Signal, Tree, written
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts
@@ -107,10 +107,19 @@ def unused_requirement(view: View) -> Iterator[Diagnostic]:
     if not view.is_read or view.ask(lookups.names_unknown_requirements):
         return  # its user may be on a line that could not be read, or misspell it
     message = f"unused requirement `{name}`: no `satisfies` or `apply` attaches it to a node"
-    is_prose = not any(isinstance(clause, Claim) for clause in requirement.clauses)
-    attach = f"attach it to a node with `satisfies {written(name)}` or `apply`"
-    notes = (attach, OF_MISSION) if is_prose else (attach,)
+    notes = (f"attach it to a node with `satisfies {written(name)}` or `apply`", *_unused_notes(requirement))
     yield Diagnostic("unused-requirement", requirement.name.span, message, notes=notes, tags=(Tag.UNNECESSARY,))
+
+
+def _unused_notes(requirement: Requirement) -> Iterator[str]:
+    """How to attach a requirement that is about no node."""
+    if not any(isinstance(clause, Claim) for clause in requirement.clauses):
+        yield OF_MISSION
+        return
+    yield CLAIMS_OF_MISSION
+    ways = {way.method.raw for clause in requirement.clauses if isinstance(clause, How) for way in clause.ways}
+    if ways and "monitor" not in ways:
+        yield AS_PROSE
 
 
 def requirement_without_text(view: View) -> Iterator[Diagnostic]:
@@ -276,3 +285,7 @@ def _is_attached(store: Store[Workspace], viewpoint: str, name: str) -> bool:
 
 
 _MOST_COMPARED = 200_000  # pairs of names: some tenths of a second
+CLAIMS_OF_MISSION: Final = (
+    "at the root node of the main tree its claims are about the whole mission, as with `mission` before the verb"
+)
+AS_PROSE: Final = "what people verify needs no claim: without it, what the requirement demands is prose in its title"

@@ -8,6 +8,7 @@ from btq_lang.evidence.amounts import Amounts
 from btq_lang.evidence.poisson import lower_number, upper_number
 from btq_lang.evidence.verdicts import SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, Pooled, Verdict
 from btq_lang.evidence.wording import measured, share
+from btq_lang.requirements.model import time_for_one
 
 if TYPE_CHECKING:
     from btq_lang.catalog.units import Unit
@@ -27,6 +28,11 @@ class PoolBound(NamedTuple):
     upper: float | None
     seconds: float
     unit: Unit
+
+    @property
+    def enough(self) -> float:
+        """The time in seconds from which on the rate is compared by its value: before, not even one failure fits in."""
+        return time_for_one(self.value if self.upper is None else self.upper, self.seconds)
 
     @property
     def columns(self) -> tuple[float | None, ...]:
@@ -86,7 +92,8 @@ class Rate:
         """The verdict on a number in an exposure in µs."""
         demanded, exposed = self.demanded, exposure / 1e6 / self.demanded.seconds if self.demanded.seconds else 0.0
         if self._confidence is None:
-            return UNKNOWN if exposed < 1 else SATISFIED if self._is_kept(number, number, exposed) else VIOLATED
+            is_enough = exposure / 1e6 >= demanded.enough
+            return UNKNOWN if not is_enough else SATISFIED if self._is_kept(number, number, exposed) else VIOLATED
         low, high = lower_number(number, self._confidence), upper_number(number, self._confidence)
         if self._is_kept(low, high, exposed):
             return SATISFIED
@@ -120,7 +127,7 @@ class Rate:
         """How much longer, in seconds, decides it if it does not happen again; None: no time does, or none is known."""
         demanded, exposed = self.demanded, self.amounts.exposure / 1e6
         if self._confidence is None:
-            return max(demanded.seconds - exposed, 0.0) or None
+            return max(demanded.enough - exposed, 0.0) or None
         if demanded.relation not in ("<=", "<") or demanded.value <= 0:
             return None
         return max(upper_number(self.amounts.most, self._confidence) / demanded.value * demanded.seconds - exposed, 0.0)

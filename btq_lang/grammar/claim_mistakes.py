@@ -8,9 +8,17 @@ from typing import Final
 from btq_lang.catalog.units import dimension_name, parse_unit
 from btq_lang.catalog.verbs import words
 from btq_lang.diagnostics.model import Fix, replace_fix, write_fix
-from btq_lang.grammar.claim_words import HAPPENINGS, VERB_WORDS, followed_ahead, next_head
+from btq_lang.grammar.claim_words import HAPPENINGS, VERB_WORDS, bound_follows, followed_ahead, next_head
 from btq_lang.grammar.clause_slips import clause_slip
-from btq_lang.grammar.conditions import COMPARISONS, HEADS, METADATA_HEADS, RELATIONS, bound_ahead, parse_simple
+from btq_lang.grammar.conditions import (
+    COMPARISONS,
+    HEADS,
+    METADATA_HEADS,
+    NO_RATE,
+    RELATIONS,
+    bound_ahead,
+    parse_simple,
+)
 from btq_lang.grammar.cursor import Cursor, shown
 from btq_lang.grammar.prose import MODALS, clause_meant, state_meant
 from btq_lang.syntax.scan import number_end
@@ -39,7 +47,7 @@ def written_instead(cursor: Cursor, span: Span, clauses: tuple[str, ...], note: 
         cursor.complain(span, note)
         return
     fixes = [write_fix(clause, span) for clause in clauses if not _OPEN.search(clause)]
-    message = " or ".join(f"`{shown(clause)}`" for clause in clauses)
+    message = " or ".join(f"`{shown(clause, most=120)}`" for clause in clauses)
     cursor.complain(span, f"this clause is written {message}", *fixes, notes=(note,) if note else ())
 
 
@@ -58,7 +66,7 @@ def no_verb(cursor: Cursor, subject: Subject) -> None:
     elif isinstance(subject, Path) and (cursor.at_word("and") or cursor.at(",")):
         note = "a clause applies to one node; write it for each, or `sum of A, B` for the time of both"
         cursor.expected(_A_VERB, (note,))
-    elif first is not None and first.raw == "at" and report_slip(cursor):
+    elif first is not None and (first.raw in ("at", "within") or cursor.at("+")) and report_slip(cursor):
         cursor.recover()
     elif first is not None and first.raw == "at" and (fixes := takes_before(cursor, first)):
         cursor.expected(f"a verb before `at {cursor.raw}`", (MEANT["at"],), fixes)
@@ -180,9 +188,53 @@ def every_meant(cursor: Cursor) -> bool:
         return False
     if cursor.kinds[cursor.index + 1] != NAME or cursor.raws[cursor.index + 1] in VERB_WORDS:
         return False
-    fix = replace_fix(f"Replace `{cursor.raw}` with `every`", cursor.here(), "every", safe=True)
+    bound = cursor.index + 2
+    if "per" in cursor.raws and cursor.raws[bound] not in (*VERB_WORDS, "/") and bound_follows(cursor, bound):
+        cursor.complain(cursor.here(), NO_RATE)
+        cursor.recover()
+        return True
+    fix = replace_fix(f"Replace `{cursor.raw}` with `every`", cursor.here(), "every", safe="per" not in cursor.raws)
     cursor.complain(cursor.here(), "all nodes of a kind are written `every …`", fix)
     cursor.advance()
+    return True
+
+
+def event_after_condition(cursor: Cursor, first: int) -> bool:
+    """Report `near or Dock succeeds`, which begins at a token and whose end is read as a condition, if it is here: a
+    condition comes last.
+    """
+    is_event = cursor.kind == NAME and cursor.raw in HAPPENINGS and cursor.kinds[cursor.index - 1] in (NAME, STRING)
+    if not is_event or bound_follows(cursor, cursor.index + 1):
+        return False
+    words, following = cursor.raws[first : cursor.index], cursor.raws[cursor.index + 1 :]
+    is_clause = following[0] == "within" and "after" in following  # `starts within 2 s after …`
+    if is_clause or not {"or", "and"}.intersection(words):
+        return False
+    middle = cursor.index - 1 - words[::-1].index("or") if "or" in words else 0
+    event, end = text_between(cursor, middle + 1, cursor.index + 1), cursor.here().end
+    fixes: tuple[Fix, ...] = ()
+    if first < middle and not {"and", "not"}.intersection(cursor.raws[middle : cursor.index]):
+        start = first + (cursor.raws[first] == "when")
+        fixes = (write_fix(f"{event} or when {text_between(cursor, start, middle)}", Span(cursor.starts[first], end)),)
+    message = "of several events a condition comes last, after `when`: `Dock succeeds or when near`"
+    cursor.complain(cursor.here(), message, *fixes)
+    cursor.recover()
+    return True
+
+
+def condition_as_event(cursor: Cursor, path: Subject | None, start: int) -> bool:
+    """Report `Dock succeeds or near`, whose condition lacks its `when`; `start`: of the condition."""
+    is_ended = cursor.kind == NEWLINE or cursor.at_word("is") or cursor.at_word("within")
+    if not isinstance(path, Path) or len(path.names) > 1 or not (is_ended or cursor.kind == OPERATOR):
+        return False
+    if cursor.kind == OPERATOR and cursor.raw not in COMPARISONS:
+        return False
+    name, begin = path.names[0].raw, start + cursor.base
+    fixes = [replace_fix(f"Put `when` before `{name}`", Span(begin, begin), "when ")]
+    if is_ended:
+        fixes.append(replace_fix(f"Write `{name} succeeds`", path.span.shifted(cursor.base), f"{name} succeeds"))
+    message = f"among events a condition comes last, after `when`: `or when {name}`"
+    cursor.complain(path.span.shifted(cursor.base), message, *fixes)
     return True
 
 
@@ -328,7 +380,8 @@ MEANT: Final = {  # by the word that is read as a node before a verb
     "after": "write `follows Look succeeds`, `starts within 2 s after Look succeeds`, or "
     "`each Look succeeds is followed by Pick starts`",
     **dict.fromkeys(("whenever", "once"), "write `each Pick fails is followed by Recover starts within 5 s`"),
-    "before": "write `from Pick starts to Place succeeds takes at most 45 s`, or `Place follows Pick succeeds`",
+    "before": "write `from Pick starts to Place succeeds takes at most 45 s`, or "
+    "`mission never node Place from mission starts until Pick succeeds`",
     "between": "a range is written `keeps 0 N <= force <= 3 N`",
     "always": "write `keeps battery >= 15 %`",
     "not": "write `never lamp_on`, or `keeps not lamp_on`",

@@ -13,6 +13,8 @@ from btq_lang.grammar.claim_mistakes import (
     before_verb,
     blank_in_path,
     choice_in_other_words,
+    condition_as_event,
+    event_after_condition,
     every_meant,
     is_time,
     is_unit_of_time,
@@ -36,6 +38,7 @@ from btq_lang.grammar.claim_words import (
 from btq_lang.grammar.conditions import (
     BOUNDS,
     COMPARISONS,
+    NO_RATE,
     RELATIONS,
     accept_one,
     bound_ahead,
@@ -201,9 +204,14 @@ def parse_followed(cursor: Cursor, verb: int) -> Claim:
         fix = replace_fix(f"Replace `{cursor.raw}` with `each`", cursor.here(), "each", safe=True)
         cursor.complain(cursor.here(), "all occurrences of an event are written `each …`", fix)
         cursor.advance()
+    begin = cursor.index
     subject = EachEvent(start, cursor.last_end(), parse_event(cursor))
     subject = replace(subject, end=cursor.last_end())
-    begin = cursor.index
+    if "per" in cursor.raws[cursor.index : verb]:
+        cursor.complain(cursor.here(), NO_RATE)
+    elif cursor.raws[begin] == "when":
+        event_after_condition(cursor, begin)
+    begin = min(cursor.index, verb)
     cursor.go_to(verb)
     word = cursor.take()
     cursor.expect_word("by")
@@ -216,7 +224,9 @@ def parse_followed(cursor: Cursor, verb: int) -> Claim:
     if cursor.at_word("when") or is_event_ahead(cursor):
         event = parse_event(cursor)
     else:
+        begin = cursor.index
         condition = parse_cond(cursor)
+        event_after_condition(cursor, begin)
     bound = parse_within(cursor) if cursor.accept_word("within") else None
     return Claim(start, cursor.last_end(), subject, word, bound, condition, event=event)
 
@@ -248,14 +258,14 @@ def parse_event(cursor: Cursor) -> Event | AnyEvent | None:
     first = parse_event_atom(cursor)
     if first is None or not accept_one(cursor, ("or",)):
         return first
-    events: list[Event | None] = [first, parse_event_atom(cursor)]
+    events: list[Event | None] = [first, parse_event_atom(cursor, is_further=True)]
     while events[-1] is not None and accept_one(cursor, ("or",)):
-        events.append(parse_event_atom(cursor))
+        events.append(parse_event_atom(cursor, is_further=True))
     return AnyEvent(first.start, cursor.last_end(), tuple(events))
 
 
-def parse_event_atom(cursor: Cursor) -> Event | None:
-    """EventAtom = ( Path | "mission" ) ( "starts" | "succeeds" | … );  "when" Cond too"""
+def parse_event_atom(cursor: Cursor, is_further: bool = False) -> Event | None:
+    """EventAtom = ( Path | "mission" ) ( "starts" | "succeeds" | … );  "when" Cond too; `is_further`: after `or`"""
     start = cursor.start()
     if cursor.accept_word("when"):
         condition = parse_cond(cursor)
@@ -263,6 +273,8 @@ def parse_event_atom(cursor: Cursor) -> Event | None:
     path = None if cursor.accept_word("mission") else parse_path(cursor, "an event: a node and what happens to it")
     if not (cursor.kind == NAME and cursor.raw in HAPPENINGS) and not blank_in_path(cursor, path, HAPPENINGS):
         note = "an event is a node and what happens to it: `Pick starts`, `Place succeeds`"
+        if is_further and condition_as_event(cursor, path, start):
+            return None
         if cursor.at_word("or"):
             note = "of several events each has its own word: `Pick fails or Place fails`"
         cursor.expected("starts, succeeds, fails, finishes or halts", (note,), cursor.replaced_by(HAPPENINGS))

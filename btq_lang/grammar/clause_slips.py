@@ -106,12 +106,19 @@ _FEATURE: Final = (
 )
 _IF_THEN: Final = r"(?:[Ww]hen|[Ii]f) (?P<condition>[^,]+?),? then"
 _COMPARISON: Final = r"[^,]+?(?:[<>]=?|[=!]=)[^,]+?"
+_NO_VERB: Final = rf"(?!.*\b{_any('keeps', 'never', 'needs', 'leaves', 'is')}\b)"
 _ANSWER: Final = rf"{_COMPARISON}|{_PATH} {_any('starts', 'succeeds', 'fails', 'finishes', 'halts')}"
+_NIGHT: Final = ("night", "day", "hour", "shift", "week", "month", "season", "year")
+SEASONS: Final = frozenset((*_NIGHT, *(f"{word}s" for word in _NIGHT)))
+OF_SEASONS: Final = (
+    "a share of nights or of all hours cannot be said: `keeps <signal> in at least 98 % of time` is a share of each "
+    "run, `in at least 98 % of runs` counts the runs that keep a claim"
+)
 _FAILURE: Final = "`succeeds within` is violated by a failure too, `takes at most` is not"
 _SIGNAL: Final = "a name alone is a signal or context: `signal latency : s from {latency}`"
 _USED: Final = "a signal whose use is limited is a `counter` or a `level`: `signal energy : Wh from {energy} counter`"
 _BEFORE: Final = "what happens before an event is the time from one event to another"
-_AT_THE_OTHER: Final = "`follows` goes to the node that runs second, with the event that it waits for"
+_EACH_TIME: Final = "`Place follows Pick succeeds` asks for another success of Pick before each start of Place"
 # Patterns, in which a word in capitals is a piece of above; what is written instead; a note.
 _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
     # how long
@@ -192,6 +199,11 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
         ("{subject}keeps <signal> in at least {share} of time",),
         "the signal is true while it is available, and the share is that of each run",
     ),
+    (
+        rf"SUBJECT(?:is )?available (?:in )?(?:>=|at least) SHARE of (?:all |the )?{_any(*sorted(SEASONS))}",
+        (),
+        OF_SEASONS,
+    ),
     ("SUBJECTsatisfies OTHER", (), f"`satisfies` goes after a node in its tree; {OF_MISSION}"),
     # of which activations
     (
@@ -214,6 +226,14 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
             "",
         )
         for within, deadline in ((" (?:within|in) TIME", " within {time}"), ("", ""))
+    ),
+    *(
+        (
+            rf"(?:mission )?(?:keeps )?{_NO_VERB}(?P<answer>{_COMPARISON}) within TIME after (?:when )?{after}",
+            (f"each {event} is followed by {{answer}} within {{time}}",),
+            "",
+        )
+        for after, event in (("OTHER EVENT", "{other} {event}"), ("(?P<condition>.+?)", "when {condition}"))
     ),
     # what holds, or happens, in a situation
     (
@@ -253,8 +273,8 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
     # in which order
     (
         f"SUBJECT(?:{_any(*_GOES)} )?not (?:{_any(*_GOES)} )?before OTHER EVENT",
-        ("{subject}follows {other} {event}",),
-        "",
+        ("mission never node {node} from mission starts until {other} {event}", "{subject}follows {other} {event}"),
+        _EACH_TIME,
     ),
     (
         "SUBJECTstarts within TIME before OTHER EVENT",
@@ -268,18 +288,18 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
     ),
     (
         f"SUBJECT(?P<event>starts|succeeds|fails) (?:only )?before OTHER{_STARTS}",
-        ("{other} follows {node} {event}",),
-        _AT_THE_OTHER,
+        ("mission never node {other} from mission starts until {node} {event}",),
+        _EACH_TIME,
     ),
     (
         f"SUBJECT(?:ends|finishes|stops|completes|is done) (?:only )?before OTHER{_STARTS}",
-        ("{other} follows {node} finishes",),
-        _AT_THE_OTHER,
+        ("mission never node {other} from mission starts until {node} finishes",),
+        _EACH_TIME,
     ),
     (
         f"(?!before)SUBJECT(?:{_MODAL} )?(?:{_any(*_GOES)} )?(?:only )?(?:before|precedes?|then|->) OTHER{_STARTS}",
-        ("{other} follows {node} succeeds",),
-        _AT_THE_OTHER,
+        ("mission never node {other} from mission starts until {node} succeeds",),
+        _EACH_TIME,
     ),
     (f"(?!mission)SUBJECT{_any(*_GOES)} (?:only )?after OTHER EVENT", ("{subject}follows {other} {event}",), ""),
     (
@@ -288,6 +308,12 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
         "`finishes` is a success or a failure",
     ),
     # how much of what
+    (
+        "SUBJECT(?:keeps )?OTHER *BOUNDVALUE on average",
+        ("{subject}uses {bound} {value} of {other} on average",),
+        "what is used is the change of a counter or a level; a signal has no mean over runs",
+    ),
+    (r"SUBJECT(?:keeps )?OTHER *\+/?- *VALUE", ("{subject}keeps -{value} <= {other} <= {value}",), ""),
     (f"{_USES} BOUNDVALUE (?:(?:of|from) )?OTHER", ("{subject}uses {bound} {value} of {other}",), ""),
     (f"{_USES} BOUNDVALUE(?: of)?", ("{subject}uses {bound} {value} of <signal>",), _USED),
     (f"{_USES} BOUNDNUMBER(?: of)?", ("{subject}uses {bound} {number} of <signal>",), _USED),

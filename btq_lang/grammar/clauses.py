@@ -12,6 +12,7 @@ from btq_lang.diagnostics.model import Fix, FixEdit, Place, replace_fix, write_f
 from btq_lang.grammar.claim_mistakes import QUALITY_IN_HEAD, is_time, report_slip
 from btq_lang.grammar.claim_words import VERB_WORDS, is_verb_ahead
 from btq_lang.grammar.claims import parse_bounded, parse_claim, parse_event
+from btq_lang.grammar.clause_slips import OF_SEASONS, SEASONS
 from btq_lang.grammar.conditions import HEADS, METADATA_HEADS, SUBJECT_HEADS, bound_ahead, parse_cond
 from btq_lang.grammar.cursor import Cursor
 from btq_lang.grammar.metadata import begins_metadata, list_goes_on, parse_metadata, parse_text
@@ -270,6 +271,9 @@ def parse_counted(cursor: Cursor) -> Word | None:
         span = Span(cursor.here().start, cursor.starts[following] + len(TIME))
         cursor.complain(span, f"expected `{TIME}`, found `{cursor.raw} {TIME}`", write_fix(TIME, span, safe=True))
         cursor.advance()
+    if cursor.kind == NAME and cursor.raw in SEASONS:
+        cursor.expected("activations, runs, occurrences or time", (OF_SEASONS,))
+        return None
     return parse_one_of(cursor, (*COUNTED, TIME))
 
 

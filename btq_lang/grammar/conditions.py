@@ -43,6 +43,7 @@ _OTHER_FUNCTIONS: Final = {
 COMPARISONS: Final = frozenset(("<=", ">=", "<", ">", "==", "!="))
 RELATIONS: Final = {("at", "most"): "<=", ("at", "least"): ">=", ("less", "than"): "<", ("more", "than"): ">"}
 
+NO_RATE: Final = "a condition has no rate: a node's claim has, as in `Dock fails at most 1 per 1e6 h`"
 MAX_NESTING: Final = 50  # of brackets in one condition
 MAX_OPERATORS: Final = 100  # in one condition
 MAX_CASES: Final = 100  # in one value: each case of a table may be another table
@@ -130,6 +131,8 @@ def parse_factor(cursor: Cursor) -> Condition | None:
     if cursor.at("-"):
         cursor.advance()
         if cursor.kind == QUANTITY or cursor.kind == NUMBER:
+            if cursor.raws[cursor.index - 2] == "+":
+                tolerance(cursor)
             word = cursor.take()
             return Negative(start, word.end, Operand(word))
         cursor.expected("a number or a quantity after `-`")
@@ -295,6 +298,10 @@ def in_words(cursor: Cursor) -> str:
     if bound is None or cursor.kinds[cursor.index + bound[0]] not in (NUMBER, QUANTITY):
         return ""
     length, meant = bound
+    if cursor.is_word(cursor.index + length + 1, "per"):
+        cursor.complain(cursor.here(), NO_RATE)
+        cursor.recover()
+        return ""
     written_otherwise(cursor, "this comparison", length, RELATIONS[meant])
     cursor.go_to(cursor.index + length)
     return RELATIONS[meant]
@@ -313,6 +320,18 @@ def written_otherwise(cursor: Cursor, what: str, length: int, written: str) -> N
     last = cursor.index + length - 1
     span = Span(cursor.here().start, cursor.starts[last] + len(cursor.raws[last]))
     cursor.complain(span, f"{what} is written `{written}`", write_fix(written, span, safe=True))
+
+
+def tolerance(cursor: Cursor) -> None:
+    """Report `x +- 10 mm`, at its value."""
+    sign, value, raws = cursor.index - 2, cursor.raw, cursor.raws
+    is_of_two = sign > 3 and raws[sign - 2] == "==" and cursor.kinds[sign - 3] == NAME
+    if not cursor.adjacent(sign + 1) or sign < 1 or not (is_of_two or cursor.kinds[sign - 1] == NAME):
+        return
+    span = Span(cursor.starts[sign - 3 if is_of_two else sign - 1], cursor.here().end)
+    amount = f"{raws[sign - 3]} - {raws[sign - 1]}" if is_of_two else raws[sign - 1]
+    meant = f"-{value} <= {amount} <= {value}"
+    cursor.complain(span, f"a tolerance is written `{meant}`", write_fix(meant, span))
 
 
 def single_equals(cursor: Cursor) -> None:

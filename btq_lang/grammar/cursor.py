@@ -496,10 +496,10 @@ class Cursor:
             self.advance()
 
 
-def shown(raw: str) -> str:
-    """A piece of the source as a message shows it: its first line, shortened."""
+def shown(raw: str, most: int = 40) -> str:
+    """A piece of the source as a message shows it: its first line, with at most so many characters."""
     line = raw[: line_end(raw, 0)]
-    return line if len(line) == len(raw) <= 40 else f"{line[:37]}…"
+    return line if len(line) == len(raw) <= most else f"{line[: most - 3]}…"
 
 
 QUOTES: Final = "a name of several words goes in quotes"

@@ -375,6 +375,11 @@ class ResolvedClaim(Record):
         return min(_values(self.limit.value), key=itemgetter(0), default=None)
 
 
+def time_for_one(number: float, seconds: float) -> float:
+    """The time in seconds in which a rate of so many in a time allows one; at least that time."""
+    return seconds / number if 0 < number < 1 else seconds
+
+
 def _values(bounded: Bounded) -> list[tuple[float, str]]:
     """The values of a bound, in SI and as typed; empty if one of them is a signal's."""
     simple = [case.value for case in bounded.cases] if isinstance(bounded, ResolvedTable) else [bounded]

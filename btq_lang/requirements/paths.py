@@ -132,8 +132,13 @@ class PathReader:
 
     # ---- paths ----
 
-    def target(self, path: Path, notes: tuple[str, ...] = ()) -> NodeTarget | None:
-        """The one node that a path names; `notes` are for a path that names none."""
+    def target(self, path: Path, notes: tuple[str, ...] = (), *, asked: Span | None = None) -> NodeTarget | None:
+        """The one node that a path names.
+
+        Args:
+            notes: for a path that names none.
+            asked: the condition that asks whether that node runs, if one does.
+        """
         names = tuple(name.text for name in path.names)
         targets = self.find(names)
         if len(targets) > 1 and names[-1] in self.store.ask(inputs.names, self.viewpoint, Kind.TREE):
@@ -143,7 +148,7 @@ class PathReader:
             return targets[0]
         shown = "/".join(name.raw for name in path.names)
         if targets:
-            self.report_ambiguous(path.span, shown, targets)
+            self.report_ambiguous(path.span, shown, targets, asked)
         elif self.knows_all_nodes:
             likely = self._respellings(path)
             fixes = tuple(
@@ -177,16 +182,26 @@ class PathReader:
         fixes = tuple(replace_fix(f"Replace `{word.text}` with `{name}`", word.span, written(name)) for name in likely)
         self.complain("unmatched-path", word.span, f"{message}{did_you_mean(likely)}", notes=notes, fixes=fixes)
 
-    def report_ambiguous(self, span: Span, shown: str, targets: tuple[NodeTarget, ...]) -> None:
-        """Report a path that names several nodes."""
+    def report_ambiguous(
+        self, span: Span, shown: str, targets: tuple[NodeTarget, ...], asked: Span | None = None
+    ) -> None:
+        """Report a path that names several nodes; `asked`: the condition that asks whether one of them runs."""
         related = tuple(
             Related(target.node.place, f"in the tree `{target.node.tree}`") for target in targets[:_MAX_SHOWN]
         )
         examined = targets[:_MAX_EXAMINED]
-        paths = dict.fromkeys(path for target in examined if (path := self._path_to(target)) is not None)
+        paths = list(dict.fromkeys(path for target in examined if (path := self._path_to(target)) is not None))
         message = f"ambiguous path `{shown}`: {len(targets)} nodes match"
-        notes = ("a path must match one node; write `every` for all of them, in a clause or in `apply … to every …`",)
-        fixes = tuple(write_fix(path, span) for path in list(paths)[:_MAX_SHOWN])
+        notes: tuple[str, ...] = (
+            "a path must match one node; write `every` for all of them, in a clause or in `apply … to every …`",
+        )
+        fixes = tuple(write_fix(path, span) for path in paths[:_MAX_SHOWN])
+        if asked is not None:
+            is_each = len(paths) == len(targets) <= _MAX_JOINED
+            several = " or ".join(f"node {path}" for path in paths) if is_each else "node X or node Y"
+            notes = (f"for any of them, a condition names each: `{several}`",)
+            notes += ("nodes that no path tells apart need names",) if len(paths) < len(examined) else ()
+            fixes = (write_fix(f"({several})", asked), *fixes) if is_each else fixes
         self.complain("ambiguous-path", span, message, related=related, notes=notes, fixes=fixes)
 
     def _missing(self, names: tuple[str, ...], shown: str) -> str:
@@ -241,5 +256,6 @@ def _too_many_to_compare(store: Store[Workspace], viewpoint: str) -> bool:
 _DECLARED: Final = {"signals": Kind.SIGNAL, "contexts": Kind.CONTEXT}
 _ONE_VERB: Final = "a clause has one verb: write `succeeds within 30 s`, or put `succeeds` on a line of its own"
 _MAX_SHOWN: Final = 5  # places and fixes of one diagnostic
+_MAX_JOINED: Final = 10  # paths in one fix
 _MAX_EXAMINED: Final = 50  # matching nodes for which an unambiguous path is sought
 _MAX_COMPARISONS: Final = 200_000  # pairs of names; takes a few tenths of a second

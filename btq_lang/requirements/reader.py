@@ -13,6 +13,7 @@ from typing import Final, TypeAlias
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import a_dimension, to_si
 from btq_lang.diagnostics.model import Fix, replace_fix, write_fix
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements import model
 from btq_lang.requirements.contexts import IN_CIRCLE, context_depth, contexts_by_word, contexts_in, written_context
 from btq_lang.requirements.paths import PathReader, Problem
@@ -314,7 +315,7 @@ class Reader(PathReader):
         if isinstance(written, syntax.Operand):
             return self._lone(written)
         if isinstance(written, syntax.NodeRuns):
-            return self._running(written.path)
+            return self._running(written.path, Span(written.start, written.end))
         if isinstance(written, syntax.Not):
             operand = self.condition(written.operand)
             return model.Negation(operand) if operand is not None else None
@@ -323,15 +324,15 @@ class Reader(PathReader):
         if isinstance(written, syntax.Comparison):
             return self._compare(written)
         if isinstance(written, syntax.Binary) and (path := self._as_path(written)) is not None:
-            return self._running(path)
+            return self._running(path, Span(written.start, written.end))
         if written is not None:
             term = self._expression(written)
             if term is not None:
                 self._no_condition(term)
         return None
 
-    def _running(self, path: syntax.Path) -> model.Condition | None:
-        target = self.target(path)
+    def _running(self, path: syntax.Path, asked: Span) -> model.Condition | None:
+        target = self.target(path, asked=asked)
         return model.Running(target) if target is not None else None
 
     def _joined(self, written: syntax.Binary) -> model.Condition | None:
@@ -362,10 +363,25 @@ class Reader(PathReader):
             self._no_condition(term)
             return None
         if word.kind == STRING or self.find((name,)):
-            return self._running(syntax.Path((word,)))
+            running = self._running(syntax.Path((word,)), word.span)
+            if running is not None:
+                self._bare_node(word)
+            return running
         if not self._is_subtraction(word):
             self.unknown(word, ("parameters", "signals", "contexts", "nodes"), "bool")
         return None
+
+    def _bare_node(self, word: syntax.Word) -> None:
+        """Report a node's name as a condition: it holds while the node runs, and may be meant as what it comes to."""
+        fixes: tuple[Fix, ...] = (
+            replace_fix(f"Write `node {word.raw}`: while it runs", word.span, f"node {word.raw}"),
+        )
+        if self.text(0, word.start).endswith("followed by"):
+            succeeds = f"{word.raw} succeeds"
+            fixes = (replace_fix(f"Write `{succeeds}`", word.span, succeeds), *fixes)
+        meant = f"btq reads `node {word.raw}`, which is true while it runs"
+        message = f"`{word.text}` is a node, not a signal or a context: {meant}"
+        self.complain("unknown-signal", word.span, message, fixes=fixes, severity=Severity.WARNING)
 
     def _no_condition(self, term: Term) -> None:
         if term.sort == "number" and term.dimension is None:

@@ -463,13 +463,12 @@ def _totals(
     totals: list[TotalRow] = []
     for id_ in (*characteristics, None):
         own = [row for row, its_own in zip(rows, by_requirement, strict=True) if id_ in its_own]
-        clauses = [clause for row in own for use in row.uses for clause in use.clauses if clause.is_measurable]
         concerns = {key for each in quality_rows if each.characteristic == id_ for key in each.concerns}
         if id_ is None and not own and not concerns:
             continue
         quality = get(id_, edition) if id_ is not None else None
         name = quality.name if quality is not None else id_ or "without a characteristic"
-        ways = [clause.way for clause in clauses]
+        ways = [clause.way for row in own for use in row.uses for clause in use.clauses]
         totals.append(TotalRow(id_ or "", name, len(concerns), len(own), *map(ways.count, WAYS)))
     return tuple(totals)
 

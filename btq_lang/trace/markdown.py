@@ -9,6 +9,7 @@ from btq_lang.trace.overview import ExternalRow, HazardRow, Overview, Requiremen
 from btq_lang.trace.wording import (
     GAPS,
     NO_LABEL,
+    TOTALS,
     approval_lines,
     chain_rows,
     evidence_lines,
@@ -58,7 +59,7 @@ def _lines(overview: Overview) -> Iterator[str]:
     yield from _gaps(overview)
     yield from ("", f"### Totals, ISO/IEC 25010:{overview.edition}", "")
     totals = [(escaped(each.name), *map(str, each.numbers)) for each in overview.totals]
-    yield from table(("Characteristic", "Concerns", "Requirements", "Enforced", "Monitored", "By people"), totals, 1)
+    yield from table(("Characteristic", *TOTALS), totals, 1)
 
 
 def _end(row: HazardRow | ExternalRow, remarks: Sequence[str]) -> str:

@@ -297,7 +297,8 @@ class CharacteristicTotals(Record):
 
     Attributes:
         concerns: nodes that satisfice it.
-        enforced, monitored, reviewed: measurable clauses, counted for every subject; reviewed: by people.
+        enforced, monitored, reviewed: clauses, counted for every subject; reviewed: by people, and so the texts of
+            requirements without clauses.
     """
 
     id: str

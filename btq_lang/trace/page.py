@@ -21,6 +21,7 @@ from btq_lang.trace.wording import (
     GAPS,
     NO_LABEL,
     OUTDATED,
+    TOTALS,
     approval_lines,
     chain_rows,
     evidence_lines,
@@ -66,6 +67,7 @@ def render(overview: Overview, missions: Sequence[MissionVerdicts] = ()) -> str:
         by_build=list(overview.by_build),
         qualities=_qualities(overview),
         gaps=_gaps(overview),
+        totals_heading=("Characteristic", *TOTALS),
         edition=overview.edition,
         totals=[
             (total.name, [number or "–" for number in total.numbers], "" if any(total.numbers) else "empty")

@@ -17,6 +17,7 @@ from btq_lang.trace.overview import At, ExternalRow, HazardRow, Overview, Requir
 from btq_lang.trace.wording import (
     GAPS,
     NO_LABEL,
+    TOTALS,
     approval_lines,
     chain_rows,
     evidence_lines,
@@ -82,7 +83,7 @@ def _lines(overview: Overview, paint: Paint, width: int) -> Iterator[str]:
             yield paint("warning", GAPS[gap])
             yield from (f"  {cut(printable(line), 0, width - 3)}" for line in lines)
             yield ""
-    heading = [f"ISO/IEC 25010:{overview.edition}", "Concerns", "Requirements", "Enforced", "Monitored", "By people"]
+    heading = [f"ISO/IEC 25010:{overview.edition}", *TOTALS]
     totals = [((each.name,), *((str(number or "-"),) for number in each.numbers)) for each in overview.totals]
     yield from _table(heading, totals, paint, width, numbers_from=1)
     yield ""

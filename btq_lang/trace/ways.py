@@ -35,7 +35,9 @@ def _clauses(applied: Applied, because: str) -> tuple[Clause, ...]:
     requirement = applied.requirement
     if not requirement.claims:
         titles = clauses_in_words(applied)[:1]
-        return tuple(Clause(text, "reviewed", "it is not measurable", is_measurable=False) for text in titles)
+        return tuple(
+            Clause(text, "reviewed", "it is prose, which people verify", is_measurable=False) for text in titles
+        )
     is_demanded = way_instead(requirement) is None
     not_enforced = because or f"nothing enforces `on violation {requirement.action}`"
     way, why = way_instead(requirement) or ("monitored", not_enforced)

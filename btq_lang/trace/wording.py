@@ -129,6 +129,8 @@ GAPS: Final = {
     "bare_trees": "Trees without any quality",
     "bare_nodes": "Custom leaf nodes without any quality",
 }
+# The columns of the totals by characteristic.
+TOTALS: Final = ("Concerns", "Requirements", "Clauses enforced", "Clauses monitored", "Clauses, texts by people")
 NO_LABEL: Final = "(none)"
 OUTDATED: Final = "approval outdated"
 _ATTACHED: Final = {"apply": "by apply", "link": "a link only"}

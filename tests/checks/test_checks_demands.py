@@ -324,6 +324,27 @@ def test_a_window_that_is_too_short_for_a_failure_rate(confidence: str, number: 
     ]
 
 
+@pytest.mark.parametrize(
+    ("clauses", "once", "needed"),
+    [
+        ("A fails at most 1 per 100 h", "100 h", "300 h"),
+        ("A fails at most 1e-6 per 10 min", "10000000 min", "29957323 min"),
+        ("A fails between 0.1 and 0.5 per 1 h", "2 h", "6 h"),
+        ("A fails at most 1 per 100 h|confidence 90 %", None, None),
+        ("A fails at most 0 per 100 h", None, None),
+        ("A fails at least 1 per 100 h", None, None),
+    ],
+)
+def test_a_failure_rate_without_confidence(clauses: str, once: str | None, needed: str | None) -> None:
+    shown = [(each.message, each.notes) for each in problems(mission("Action A", f"q {clauses}"), _WITHOUT)]
+    message = f"without `confidence` this failure rate is judged only by its value, once {once} were observed"
+    expected = [(message, (f"`confidence 95 %` asks for {needed} without a failure",))]
+    assert shown == (expected if once is not None else [])
+
+
+_WITHOUT = "rate-without-confidence"
+
+
 # ---- swallowed ------------------------------------------------------------------------------------------------------
 
 

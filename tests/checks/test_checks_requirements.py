@@ -6,6 +6,9 @@ from __future__ import annotations
 import pytest
 from check_asserts import assert_clean, assert_fix, assert_problems, fixes, problems
 
+from btq_lang.checks.requirements import AS_PROSE, CLAIMS_OF_MISSION
+from btq_lang.grammar.clause_slips import OF_MISSION
+
 TREE = "BehaviorTree Main\n    X satisfies rq1\n"
 
 
@@ -140,6 +143,23 @@ def test_an_unused_requirement_names_the_ways_to_attach_it() -> None:
         "1:12 warning unused-requirement «rq1» "
         "unused requirement `rq1`: no `satisfies` or `apply` attaches it to a node",
     )
+
+
+@pytest.mark.parametrize(
+    ("clauses", "notes"),
+    [
+        ("takes at most 30 s", ("of mission",)),
+        ('takes at most 30 s|verified by test "TC-1"', ("of mission", "prose")),
+        ("takes at most 30 s|verified by review, analysis", ("of mission", "prose")),
+        ("takes at most 30 s|verified by monitor, test", ("of mission",)),
+        ('verified by test "TC-1"', ("attached to mission",)),
+    ],
+)
+def test_what_is_about_no_node_is_about_the_mission_or_prose(clauses: str, notes: tuple[str, ...]) -> None:
+    text = 'QualityReq rq1 "In time"\n    ' + clauses.replace("|", "\n    ") + "\nBehaviorTree Main\n    X\n"
+    (found,) = problems(text, "unused-requirement")
+    texts = {"attached to mission": OF_MISSION, "of mission": CLAIMS_OF_MISSION, "prose": AS_PROSE}
+    assert found.notes == ("attach it to a node with `satisfies rq1` or `apply`", *(texts[each] for each in notes))
 
 
 def test_a_misspelt_use_is_one_mistake() -> None:

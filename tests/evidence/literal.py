@@ -355,7 +355,8 @@ class Literal:
         is_strict = claim.limit.relation in ("<", ">")
         times = micros_ / 1e6 / claim.per.si
         confidence = requirement.confidence
-        if confidence is None and times < 1:
+        demanded = high if high < float("inf") else low
+        if confidence is None and times < (1 / demanded if 0 < demanded < 1 else 1):
             return "unknown"
         fewest, most = (
             (number, number)

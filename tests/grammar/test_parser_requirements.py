@@ -436,7 +436,7 @@ def test_a_verb_is_no_subject_without_quotes(verb: str) -> None:
             "after a succeeds then b starts within 3 s",
             "",
             "1:1 syntax-error «after a succeeds then b starts within 3 s» this clause is written "
-            "`each a succeeds is followed by b star…`",
+            "`each a succeeds is followed by b starts within 3 s`",
         ),
         (
             "from a starts until",

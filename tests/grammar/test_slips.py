@@ -461,7 +461,7 @@ PROSE: Final[list[Case]] = [
 ]
 
 _FAILURE: Final = "`succeeds within` is violated by a failure too, `takes at most` is not"
-_OTHER: Final = "`follows` goes to the node that runs second, with the event that it waits for"
+_ANEW: Final = "`Place follows Pick succeeds` asks for another success of Pick before each start of Place"
 _USED: Final = "a signal whose use is limited is a `counter` or a `level`: `signal energy : Wh from {energy} counter`"
 _SITUATION: Final = "`while` counts the time in which it holds, `when` the activations at whose start it holds"
 _SIGNAL: Final = "a name alone is a signal or context: `signal latency : s from {latency}`"
@@ -484,7 +484,7 @@ CLAUSES: Final[list[tuple[str, tuple[str, ...], str]]] = [
     ("is finished in 40 s", ("succeeds within 40 s", "takes at most 40 s"), _FAILURE),
     ("mission duration <= 1 h", ("mission takes at most 1 h",), ""),
     ("every Go runs at 10 Hz", ("every Go runs at least 10 per 1 s",), ""),
-    ("every Go ends before Turn", ("Turn follows <node> finishes",), _OTHER),
+    ("every Go ends before Turn", ("mission never node Turn from mission starts until <node> finishes",), _ANEW),
     ("Go succeeds 95 % of runs", ("Go succeeds in at least 95 % of runs",), ""),
     *(
         (clause, ("succeeds within 30 s", "takes at most 30 s"), _FAILURE)
@@ -543,10 +543,10 @@ CLAUSES: Final[list[tuple[str, tuple[str, ...], str]]] = [
     ("only when lit or v > 1 m/s", ("while lit or v > 1 m/s", "when lit or v > 1 m/s"), _SITUATION),
     ("until lit", ("while not lit",), ""),
     ("except when lit", ("while not lit",), ""),
-    ("Go ends before Turn starts", ("Turn follows Go finishes",), _OTHER),
-    ("Go must precede Turn", ("Turn follows Go succeeds",), _OTHER),
-    ("Go -> Turn", ("Turn follows Go succeeds",), _OTHER),
-    ("ends before Turn starts", ("Turn follows <node> finishes",), _OTHER),
+    ("Go ends before Turn starts", ("mission never node Turn from mission starts until Go finishes",), _ANEW),
+    ("Go must precede Turn", ("mission never node Turn from mission starts until Go succeeds",), _ANEW),
+    ("Go -> Turn", ("mission never node Turn from mission starts until Go succeeds",), _ANEW),
+    ("ends before Turn starts", ("mission never node Turn from mission starts until <node> finishes",), _ANEW),
     ("starts after Turn fails", ("follows Turn fails",), ""),
     (
         "Go runs after Turn",

@@ -33,7 +33,10 @@ BehaviorTree Main
             ("keeps speed <= 0.1 m/s while near", "each when near is followed by speed <= 0.1 m/s"),
         ),
         ("if near then takes at most 3 s", ("takes at most 3 s while near", "takes at most 3 s when near")),
-        ("Dock not before Go succeeds", ("Dock follows Go succeeds",)),
+        (
+            "Dock not before Go succeeds",
+            ("mission never node Dock from mission starts until Go succeeds", "Dock follows Go succeeds"),
+        ),
         ("Go starts within 5 s before Dock starts", ("from Go starts to Dock starts takes at most 5 s",)),
         ("Go ends within 5 s before Dock starts", ("from Go finishes to Dock starts takes at most 5 s",)),
         ("where near", ("assuming near", "while near")),
@@ -50,9 +53,9 @@ def test_each_fix_is_a_clause(clause: str, meant: tuple[str, ...]) -> None:
 @pytest.mark.parametrize(
     ("clause", "told"),
     [
-        ("When near, the robot shall stop within 1 s", "`each when near is followed by <answer…`"),
-        ("when near, the robot must stop in 1 s", "`each when near is followed by <answer…`"),
-        ("mission available at least 97 %", "`mission keeps <signal> in at least 97…`"),
+        ("When near, the robot shall stop within 1 s", "`each when near is followed by <answer> within 1 s`"),
+        ("when near, the robot must stop in 1 s", "`each when near is followed by <answer> within 1 s`"),
+        ("mission available at least 97 %", "`mission keeps <signal> in at least 97 % of time`"),
         ('integrity "PL d"', "`integrity` is not in btq; nearest is `priority` with a word, or `source` with"),
         ("assumptions near", "`assumptions` is not in btq; nearest is `assuming` with a condition"),
         ("mission satisfies r", "satisfied by the root node of its main tree: `-> satisfies calm`"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from check_asserts import assert_clean, split_files
+from check_asserts import after, assert_clean, problems, split_files
 from requirement_problems import problems_of
 from worked_mission import WORKED
 
@@ -119,6 +119,37 @@ def test_the_worked_examples_check_clean() -> None:
     text = text.replace("from {energy_used} counter", "from {energy_used} counter initially 0 Wh")
     text = text.replace("from {base_speed}\n", "from {base_speed} initially 0 m/s\n")
     assert_clean(text.replace("from {people_count}\n", "from {people_count} initially 0 person\n"))
+
+
+@pytest.mark.parametrize(
+    ("claim", "fixed"),
+    [
+        ("mission never Dock", ["mission never node Dock"]),
+        (
+            "mission keeps not Dock while Go",
+            ["mission keeps not node Dock while Go", "mission keeps not Dock while node Go"],
+        ),
+        (
+            "each Go succeeds is followed by Dock within 60 s",
+            [
+                "each Go succeeds is followed by Dock succeeds within 60 s",
+                "each Go succeeds is followed by node Dock within 60 s",
+            ],
+        ),
+        ('mission never "Dock"', ['mission never node "Dock"']),
+        ("mission never node Dock", []),
+        ("mission never busy", []),
+    ],
+)
+def test_a_node_that_is_no_condition(claim: str, fixed: list[str]) -> None:
+    """Its name alone means that it runs, which is said with the ways to write what is meant."""
+    text = f"signal busy : bool from {{@busy}} initially false\nQualityReq rq : safety\n    {claim}\n"
+    text += "Action Go\n    output busy : bool\nAction Dock\n"
+    text += "BehaviorTree Main\n    -> A\n        Go (busy = {@busy})\n        Dock\n"
+    shown = problems(text, "unknown-signal")
+    texts = [after(text, fix) for each in shown for fix in each.fixes]
+    assert texts == [text.replace(claim, other) for other in fixed]
+    assert {each.effective_severity.value for each in shown} <= {"warning"}
 
 
 # ---- paths ----------------------------------------------------------------------------------------------------------

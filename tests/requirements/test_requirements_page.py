@@ -14,6 +14,21 @@ BLOCK = re.compile(r"^```btq\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 SHOWN = re.compile(r"\s*```console\n\$ btq trace mission\.btq\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 
 
+TESTED = re.compile(
+    r"^```btq\n([^`]*)^```\n\n```console\n\$ btq test mission\.btq\n(.*?)^```$", re.DOTALL | re.MULTILINE
+)
+
+
+def test_a_scenario_shows_what_the_page_shows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    ((mission, shown),) = TESTED.findall(PAGE.read_text(encoding="utf-8"))
+    (tmp_path / "mission.btq").write_text(mission, encoding="utf-8")
+    assert main(["test", "mission.btq"]) == 0
+    assert capfd.readouterr().out == shown
+
+
 def steps() -> list[tuple[str, str]]:
     """The missions of the page, each with the overview that follows it, or nothing."""
     text = PAGE.read_text(encoding="utf-8")

@@ -120,6 +120,30 @@ def test_a_requirement_counts_for_each_of_its_qualities_and_once_in_all() -> Non
     assert "2 requirements (1 clause: 1 monitored)" in write(document, "table")
 
 
+def test_prose_that_people_verify_counts_as_such_under_its_quality() -> None:
+    text = """QualityReq light : safety "Weighs little"
+    verified by analysis "A-3"
+
+QualityReq quick : safety "In time"
+    takes at most 3 s
+    verified by test "TC-1"
+
+Action Go
+
+BehaviorTree Main
+    Go satisfies light, quick
+"""
+    document = overview(text)
+    (safety,) = [total for total in document.totals if total.id == "safety"]
+    assert safety.numbers == (0, 2, 0, 0, 2)
+    assert document.requirements[0].uses[0].clauses[0].why == "it is prose, which people verify"
+    headings = ("Concerns", "Requirements", "Clauses enforced", "Clauses monitored", "Clauses, texts by people")
+    assert "  ".join(headings) in write(document, "table")
+    assert f"| Characteristic | {' | '.join(headings)} |" in write(document, "markdown")
+    assert all(f">{heading}</th>" in write(document, "html") for heading in headings)
+    assert "(1 clause: 1 by people)" in write(document, "table")
+
+
 @pytest.mark.parametrize(
     ("written", "words"),
     [('test "TC-12"', "by test TC-12"), ("analysis", "by analysis"), ("review", "by review"), ("test", "by test")],

@@ -197,6 +197,7 @@ _TABLE: tuple[str | Rule, ...] = (  # a string is the subject of the rules below
     Rule("contradicting-bounds", _W, "two bounds on one node that cannot both hold"),
     Rule("odds-beyond-children", _W, "a required probability that the requirements of the children do not guarantee"),
     Rule("window-too-small", _W, "a required probability, or a failure rate, that a window of this size cannot show"),
+    Rule("rate-without-confidence", _H, "a failure rate that is judged only by its value"),
     Rule("swallowed-failure", _W, "`on violation fail` where a parent continues after the failure"),
     Rule("not-enforced", _W, "`on violation fail` or `halt` where the engine cannot enforce it"),
     Rule("guard-never-renewed", _W, "a guard on a value that no node writes while the guarded node runs"),
