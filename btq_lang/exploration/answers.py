@@ -70,9 +70,9 @@ def answered_by(
         opened.begin(watch, leaves)
         search = Search(opened.snapshots, budget, keeps_edges=is_circle).run()
         states = search.states
-        found = search.circle(leaves) if is_circle else search.found
-        if found is not None:
-            ways, circle = found if isinstance(found, tuple) else (found, ())
+        witness = search.circle(leaves) if is_circle else search.way
+        if witness is not None:
+            ways, circle = witness if isinstance(witness, tuple) else (witness, ())
             opened.snapshots.has_assumed = False
             ticks = replay(opened, watch, leaves, [*ways, *circle])
             return Answer("yes", states, ticks[: len(ways)], ticks[len(ways) :], opened.snapshots.has_assumed)

@@ -210,11 +210,11 @@ def _test(
         return None if inner is None else lambda: not inner()
     if isinstance(condition, All | Any):
         tests = [_test(mission, each, snapshots, tracked) for each in condition.conditions]
-        known = [test for test in tests if test is not None]
-        if len(known) < len(tests):
+        askable = [test for test in tests if test is not None]
+        if len(askable) < len(tests):
             return None
         joined = all if isinstance(condition, All) else any
-        return lambda: joined(test() for test in known)
+        return lambda: joined(test() for test in askable)
     return None
 
 

@@ -109,12 +109,12 @@ class ExploredMission:
         if path is None:
             return frozenset({1})
         names = tuple([name.text for name in path.names])
-        found = frozenset[int]().union(*map(self.uids_of, self.nodes.find(names)))
-        if not found:
+        uids = frozenset[int]().union(*map(self.uids_of, self.nodes.find(names)))
+        if not uids:
             shown = "/".join(names)
             likely = near(names[-1], sorted({name for node in self.nodes.all for name in node.names}))
             raise Unasked(f"no node of the tree {self.tree} is called `{shown}`{did_you_mean(likely)}")
-        return found
+        return uids
 
     def uids_of(self, target: NodeTarget | MissionRun) -> frozenset[int]:
         """The numbers of the instances of a node; of the mission, that of the root."""

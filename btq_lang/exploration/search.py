@@ -52,7 +52,7 @@ class Search:
         states: how many.
         is_closed: all states were seen, and in each it is known what happens.
         ends: how runs can end, with the choices of each tick of a shortest run that does.
-        found: the choices of each tick of a shortest run to what was asked; None: it was not found.
+        way: the choices of each tick of a shortest run to what was asked; None: it was not found.
         edges: for each state the states that a tick can lead to, and how; empty unless they were to be kept.
     """
 
@@ -61,7 +61,7 @@ class Search:
         self._budget: Final = budget
         self._keeps_edges: Final = keeps_edges
         self.ends: Final[dict[End, Sequence[Sequence[int]]]] = {}
-        self.found: Sequence[Sequence[int]] | None = None
+        self.way: Sequence[Sequence[int]] | None = None
         self.is_closed = False
         self.edges: Final[list[list[tuple[int, Outcome]]]] = []
         self._states: Final[list[tuple[Memories, Shared]]] = []
@@ -98,7 +98,7 @@ class Search:
             following: list[tuple[int, Outcome]] = []
             for outcome in results:
                 if outcome.result == ENDED:
-                    self.found = self._ways(self.current, outcome)
+                    self.way = self._ways(self.current, outcome)
                     return self
                 if outcome.result != RUNNING:
                     is_unknown = is_unknown or outcome.result == UNKNOWN

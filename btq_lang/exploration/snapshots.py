@@ -129,8 +129,8 @@ class Snapshots:
             boards.append(self._interned.setdefault(board_rows, board_rows))
         if any(domain.is_derived for domain in self.domains.values()):
             self._add_derived(numbers, domains)
-        known = tuple([self._domain_numbers.setdefault(domain, len(self._domain_numbers)) for domain in domains])
-        return self.watched, tuple([node.status for node in self.tracked]), tuple(boards), known
+        domain_numbers = tuple([self._domain_numbers.setdefault(domain, len(self._domain_numbers)) for domain in domains])
+        return self.watched, tuple([node.status for node in self.tracked]), tuple(boards), domain_numbers
 
     def _add_derived(self, numbers: dict[int, int], domains: list[Domain]) -> None:
         """Add what is known of values derived from others that last, and name these by their new numbers."""
