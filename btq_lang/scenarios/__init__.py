@@ -13,6 +13,7 @@ scenario, and a value that is needed and not given makes it unknown; actions tha
     witnessed.py   a run of `btq explore` as a scenario
     asked.py       what was asked there as expectations
     btlog.py       a run as a log
+    recorded_nodes.py   the words that name one node of it
     results.py     what came of scenarios, as data
     suite.py       the scenarios of files, run one by one
     parallel.py    the same in several processes

@@ -69,30 +69,89 @@ def ran(path: Path, is_enforced: bool = True) -> tuple[ScenarioMission, Scenario
     return mission, run(mission, plan_of(mission, scenario, ()))
 
 
-def test_a_run_is_the_same_again(tmp_path: Path) -> None:
-    (tmp_path / "main.btq").write_text(MISSION, encoding="utf-8")
-    (tmp_path / "odd.btq").write_text(ODD, encoding="utf-8")
-    assert run_btq("build", "main.btq", cwd=tmp_path)[0] == 0
-    _, first = ran(tmp_path / "odd.btq")
-    tree = as_logged((tmp_path / "main.xml").read_text(encoding="utf-8"))
+def recorded_case(folder: Path, mission: str, scenario: str, *options: str) -> tuple[int, str, str]:
+    """Run a scenario, and write case.btq from a log of that run; what the command gives."""
+    (folder / "main.btq").write_text(mission, encoding="utf-8")
+    (folder / "odd.btq").write_text(scenario, encoding="utf-8")
+    assert run_btq("build", "main.btq", cwd=folder)[0] == 0
+    _, first = ran(folder / "odd.btq")
+    tree = as_logged((folder / "main.xml").read_text(encoding="utf-8"))
     rows = [(time - START, uid, status) for time, uid, status in first.rows]
-    (tmp_path / "run.btlog").write_bytes(btlog(tree, rows))
-    written = run_btq("verify", "run.btlog", "--mission", "main.btq", "--show", "quick", "-o", "case.btq", cwd=tmp_path)
+    (folder / "run.btlog").write_bytes(btlog(tree, rows))
+    options = "verify", "run.btlog", "--mission", "main.btq", "-o", "case.btq", *options
+    return run_btq(*options, cwd=folder)
+
+
+def test_a_run_is_the_same_again(tmp_path: Path) -> None:
+    written = recorded_case(tmp_path, MISSION, ODD, "--show", "quick")
     assert written == (0, "", "run 1 of run.btlog is in case.btq: run it with btq test case.btq\n")
     assert (tmp_path / "case.btq").read_text(encoding="utf-8") == (
         'include "main.btq"\n\nscenario "Run 1 of run.btlog" verifies quick\n'
-        "    given every Low answers false\n"
-        "    when 25 s have passed: every Low answers true\n"
-        "    given every Move succeeds after 10 s 2 times, then does not end\n"
-        "    given every Dock fails after 2 s 2 times, then succeeds after 7.5 s\n"
+        "    given Low answers false\n"
+        "    when 25 s have passed: Low answers true\n"
+        '    given Move (to = "A") succeeds after 10 s\n'
+        '    given Move (to = "B") succeeds after 10 s\n'
+        '    given Move (to = "C") does not end\n'
+        "    given Dock fails after 2 s 2 times, then succeeds after 7.5 s\n"
         "    expect mission succeeds\n    expect quick violated\n"
     )
+    _, first = ran(tmp_path / "odd.btq")
     _, again = ran(tmp_path / "case.btq")
     assert [*again.rows] == [*first.rows]
     assert run_btq("test", "case.btq", cwd=tmp_path)[:2] == (
         0,
         "passed  Run 1 of run.btlog (case.btq:3): succeeds after 36.5 s\n1 scenario: 1 passed\n",
     )
+
+
+TWICE = """\
+QualityReq quick : performance-efficiency "At the ward in time"
+    ToWard takes at most 5 s
+
+Action Move
+    input to : string
+Action Look
+
+BehaviorTree Main
+    ->
+        SubTree Way Out
+        Move ToWard (to = "ward")
+        SubTree Way Back
+
+BehaviorTree Way
+    ->
+        Look
+        Move ToPharmacy (to = "pharmacy")
+"""
+TIMES = """\
+include "main.btq"
+
+scenario "All ways take another time"
+    given Look takes 1 s
+    given Out/ToPharmacy takes 2 s
+    given ToWard takes 7 s
+    given Back/ToPharmacy takes 3 s
+    expect mission succeeds
+"""
+
+
+def test_each_node_has_its_own_activations(tmp_path: Path) -> None:
+    assert recorded_case(tmp_path, TWICE, TIMES, "--show", "quick")[0] == 0
+    assert (tmp_path / "case.btq").read_text(encoding="utf-8").splitlines()[3:] == [
+        "    given every Look succeeds after 1 s",
+        "    given Out/ToPharmacy succeeds after 2 s",
+        "    given ToWard succeeds after 7 s",
+        "    given Back/ToPharmacy succeeds after 3 s",
+        "    expect mission succeeds",
+        "    expect quick violated",
+    ]
+
+
+def test_a_changed_mission_does_not_give_one_node_what_another_did(tmp_path: Path) -> None:
+    assert recorded_case(tmp_path, TWICE, TIMES, "--show", "quick")[0] == 0
+    (tmp_path / "main.btq").write_text(TWICE.replace("        SubTree Way Out\n", ""), encoding="utf-8")
+    code, out, _ = run_btq("test", "case.btq", cwd=tmp_path)
+    assert (code, out.splitlines()[1:-1]) == (2, ["        line 5: no node `ToPharmacy` below `Out`"])
 
 
 def test_an_unknown_requirement_has_no_run(tmp_path: Path) -> None:
