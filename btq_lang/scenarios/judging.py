@@ -125,8 +125,7 @@ class _Judge:
         return Step(at, *self.node(uid), happened, expected)
 
     def _verdict(self, verdict: RequirementVerdict, expected: WantedVerdict) -> tuple[Step | None, str]:
-        is_not_applicable = verdict.verdict == NEVER and any(clause.not_applicable for clause in verdict.clauses)
-        actual = "not applicable" if is_not_applicable else verdict.verdict
+        actual = verdict_in_words(verdict)
         if actual == expected.verdict:
             return None, ""
         why = next((clause.why for clause in verdict.clauses if clause.why), "")
@@ -204,6 +203,12 @@ class _Judge:
         read = [(signal.name, signals.reading(signal, end[0])) for signal in signals_in(expected.condition)]
         values = [f"{name} is {_shown(value)}" for name, value in dict(read).items()]
         return replace(self._at_end(text), happened=", ".join(values) or "it does not hold"), ""
+
+
+def verdict_in_words(verdict: RequirementVerdict) -> str:
+    """A verdict as a scenario expects it."""
+    is_not_applicable = verdict.verdict == NEVER and any(clause.not_applicable for clause in verdict.clauses)
+    return "not applicable" if is_not_applicable else verdict.verdict
 
 
 class _NothingRuns(Nearby):

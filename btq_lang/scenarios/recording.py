@@ -12,7 +12,8 @@ from typing import Final
 
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.evidence.identity import Joined
-from btq_lang.evidence.model import Activation, Outcome, SampleSeries, SampleValue
+from btq_lang.evidence.model import Activation, LogSession, Outcome, SampleSeries, SampleValue, Transition
+from btq_lang.evidence.verdicts import VIOLATED
 from btq_lang.requirements.model import ResolvedSignal
 from btq_lang.scenarios.recorded_nodes import words_for
 from btq_lang.syntax.tree import quote, written
@@ -26,11 +27,22 @@ class RecordedRun(Record):
     Attributes:
         activations: all of it, as they ended; that of the root is the last.
         samples: by signal.
+        rows: each change of a status in it.
     """
 
     joined: Joined
     activations: Sequence[Activation]
     samples: Mapping[str, SampleSeries]
+    rows: Sequence[Transition]
+
+    @property
+    def is_bare(self) -> bool:
+        """Whether it is of a build without guards."""
+        return _BARE in self.joined.build.how
+
+    def session(self) -> LogSession:
+        """The run as a log of its own."""
+        return LogSession(self.joined.tree, iter(self.rows))
 
     @property
     def root(self) -> Activation:
@@ -53,12 +65,15 @@ def as_scenario(run: RecordedRun, title: str, include: str, verdicts: Iterable[t
         *_signals(run),
         *([] if run.root.outcome in "SF" else [f"when {_time(run, run.root.end)} have passed : mission halts"]),
         *([f"expect {_ENDS[run.root.outcome]}"] if run.root.outcome in _ENDS else []),
-        *(f"expect {written(name)} {verdict}" for name, verdict in verdicts),
+        *(f"expect {written(name)} {verdict}{_hint(name, verdict)}" for name, verdict in verdicts),
     ]
     lines = "\n".join(f"    {step}" for step in steps)
-    built = run.joined.build.how
-    note = "# The log is of a build without guards, which btq test --no-enforce runs.\n" if _BARE in built else ""
+    note = "# The log is of a build without guards, which btq test --no-enforce runs.\n" if run.is_bare else ""
     return f"{note}include {quote(include)}\n\nscenario {quote(title)}{tree}{verifies}\n{lines}\n"
+
+
+def _hint(name: str, verdict: str) -> str:
+    return f"  # once this is mended: expect {written(name)}" if verdict == VIOLATED else ""
 
 
 # ---- what leaves did ----

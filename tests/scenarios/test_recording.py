@@ -93,7 +93,7 @@ def test_a_run_is_the_same_again(tmp_path: Path) -> None:
         '    given Move (to = "B") succeeds after 10 s\n'
         '    given Move (to = "C") does not end\n'
         "    given Dock fails after 2 s 2 times, then succeeds after 7.5 s\n"
-        "    expect mission succeeds\n    expect quick violated\n"
+        "    expect mission succeeds\n    expect quick violated  # once this is mended: expect quick\n"
     )
     _, first = ran(tmp_path / "odd.btq")
     _, again = ran(tmp_path / "case.btq")
@@ -143,7 +143,7 @@ def test_each_node_has_its_own_activations(tmp_path: Path) -> None:
         "    given ToWard succeeds after 7 s",
         "    given Back/ToPharmacy succeeds after 3 s",
         "    expect mission succeeds",
-        "    expect quick violated",
+        "    expect quick violated  # once this is mended: expect quick",
     ]
 
 
@@ -181,3 +181,48 @@ def told(all_activations: Iterable[Activation], polled: Set[int]) -> list[tuple[
     """The nodes in the order of their starts, each with its outcome, without some of them."""
     started = sorted(all_activations, key=lambda activation: (activation.started, activation.uid))
     return [(activation.uid, activation.outcome) for activation in started if activation.uid not in polled]
+
+
+@pytest.fixture
+def laboratory(tmp_path: Path) -> Path:
+    """The mission of the laboratory with its logs."""
+    for name in ("mission.btq", "btq.toml", "runs.btlog", "signals.csv"):
+        shutil.copy(LABORATORY / name, tmp_path / name)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("options", "which", "last"),
+    [
+        (["rq1"], "run 21 of runs.btlog", "expect rq1 violated  # once this is mended: expect rq1"),
+        (["rq2"], "run 9 of runs.btlog, which comes closest to a violation,", "expect rq2 satisfied"),
+        (["rq4"], "run 7 of runs.btlog", "expect rq4 undecided"),
+        (["rq1", "--run", "3"], "run 3 of runs.btlog", "expect rq1 never exercised"),
+    ],
+)
+def test_which_run_is_written_and_with_which_verdict(
+    options: list[str], which: str, last: str, laboratory: Path
+) -> None:
+    written = run_btq("verify", "runs.btlog", "--show", *options, "-o", "case.btq", cwd=laboratory)
+    assert written == (0, "", f"{which} is in case.btq: run it with btq test case.btq --no-enforce\n")
+    assert (laboratory / "case.btq").read_text(encoding="utf-8").splitlines()[-1].strip() == last
+    assert run_btq("test", "case.btq", "--no-enforce", cwd=laboratory)[0] == 0
+
+
+def test_a_requirement_that_nothing_measured_has_no_worst_run(tmp_path: Path) -> None:
+    unread = 'QualityReq calm : safety "Nobody is near"\n    every Look never node ToWard\n'
+    code, _, err = recorded_case(tmp_path, f"{unread}\n{TWICE}", TIMES, "--show", "calm")
+    assert (code, (tmp_path / "case.btq").exists()) == (1, False)
+    assert err == "btq verify: --show calm: no run violates it (satisfied); name one with --run N\n"
+
+
+def test_another_file_is_not_overwritten_unless_that_is_forced(laboratory: Path) -> None:
+    (laboratory / "case.btq").write_text("# mine\n", encoding="utf-8")
+    command = "verify", "runs.btlog", "--show", "rq1", "-o", "case.btq"
+    assert run_btq(*command, cwd=laboratory) == (
+        2,
+        "",
+        "btq verify: case.btq is there and differs; write to another file, or overwrite it with --force\n",
+    )
+    assert run_btq(*command, "--force", cwd=laboratory)[0] == 0
+    assert run_btq(*command, cwd=laboratory)[0] == 0  # nothing would change
