@@ -17,6 +17,7 @@ from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks.lookups import ports_of_models
 from btq_lang.evidence.identity import Build, Candidate, Joined
 from btq_lang.evidence.model import LoggedTree
+from btq_lang.requirements import nodes
 from btq_lang.requirements.model import NodeTarget
 from btq_lang.requirements.resolve import Requirements
 from btq_lang.simulator.kinds import is_of_nav2
@@ -172,14 +173,17 @@ def position_of(workspace: Workspace, path: str, item: object, offset: int) -> t
 
 
 def main_tree(workspace: Workspace, path: str) -> str:
-    """The tree that scenarios without `of` run: the main tree of their file, or the only one of all that it includes;
-    empty if it is unknown which.
+    """The tree that scenarios without `of` run: the main tree of their file, or the only one of all that it includes
+    which no other tree there runs, or which a `Root` names; empty if it is unknown which.
     """
     if workspace.factory is not None and workspace.factory.main:
         return workspace.factory.main[0]
-    own = _main_of(workspace, path)
-    mains = {own} if own else {main for each in workspace.closure(path) if (main := _main_of(workspace, each))}
-    return next(iter(mains)) if len(mains) == 1 else ""
+    if own := _main_of(workspace, path):
+        return own
+    mains = {main: each for each in workspace.closure(path) if (main := _main_of(workspace, each))}
+    run_by_none = [main for main in mains if len(mains) == 1 or not workspace.store.ask(nodes.callers, path, main)]
+    with_root = [main for main in run_by_none if any(workspace.files[mains[main]].of_type(Root))]
+    return next((names[0] for names in (run_by_none, with_root) if len(names) == 1), "")
 
 
 def _main_of(workspace: Workspace, path: str) -> str:

@@ -127,8 +127,10 @@ class Suite:
 
     def _without_tree(self, path: str, line: int) -> ScenarioMistake:
         """Why it is unknown which tree runs: an error in the file, or nothing names it."""
+        scenarios = [(entry.start, entry.start + entry.item.end) for entry in self._entries(path)]
         errors = (each for each in check(self.workspace, path) if each.effective_severity is Severity.ERROR)
-        if (error := next(errors, None)) is not None:
+        others = (each for each in errors if not any(start <= each.span.start <= end for start, end in scenarios))
+        if (error := next(others, None)) is not None:
             line_of_error = self.workspace.files[path].source.count("\n", 0, error.span.start) + 1
             return ScenarioMistake(line_of_error, error.message)
         return ScenarioMistake(line, 'it is unknown which tree runs; name it: `scenario "…" of Tree`')
