@@ -138,6 +138,11 @@ class ScenarioMission:
         ports = [port for port in ports if port not in ("ID", "name")]
         return ports[0] if len(ports) == 1 else None
 
+    def guarded(self, uid: int) -> int:
+        """The number of a written node itself; of a guard or a node below one, that of the first written node there."""
+        below = (other for other in self.tree.nodes if other in self.written and uid in self.tree.above(other))
+        return uid if uid in self.written else next(below, uid)
+
     def place(self, uid: int) -> tuple[str, int]:
         """The file and the line of a node, on the disk; the file is empty if the node is in none."""
         node = self.written.get(uid)

@@ -164,7 +164,14 @@ def test_guards_run_unless_they_are_left_out(folder: Path) -> None:
     )
     guarded, bare = (run_btq("test", "main.btq", *more, cwd=folder) for more in ((), ("--no-enforce",)))
     assert (guarded[0], bare[0]) == (1, 0)
-    assert guarded[1].splitlines()[0] == "failed  too long (main.btq:6): fails after 5 s"
+    assert guarded[1].splitlines() == [
+        "failed  too long (main.btq:6): fails after 5 s",
+        "        line 8: expect mission succeeds",
+        "          after 5 s Move::2 (main.btq:5): the guard of soon fails; expected mission succeeds",
+        "                0                                    5 s",
+        "          Move |---------------------------------------H| halted",
+        "1 scenario: 1 failed",
+    ]
     assert bare[1].splitlines()[0] == "passed  too long (main.btq:6): succeeds after 9 s"
 
 

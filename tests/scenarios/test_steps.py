@@ -145,10 +145,10 @@ def test_changes_one_after_the_other(tmp_path: Path) -> None:
     [
         ("mission succeeds", ""),
         ("mission succeeds within 60 s", ""),
-        ("mission succeeds within 40 s", "40 s Sequence::1:19 succeeded after 46 s"),
+        ("mission succeeds within 40 s", "40 s Sequence::1:19 not over yet: succeeded after 46 s"),
         ("succeeds within 60 s", ""),
         ("Dock takes at most 6 s", ""),
-        ("Dock takes at most 5 s", "45 s Dock::7:25 took 6 s"),
+        ("Dock takes at most 5 s", "45 s Dock::7:25 not over yet: took 6 s"),
         ("Dock tries at most 3", ""),
         ("never node Second", "20 s Sequence::1:19 `node Second` held"),
         ("every Move takes at most 20 s", ""),
@@ -171,8 +171,9 @@ def test_changes_one_after_the_other(tmp_path: Path) -> None:
         ("calm", ""),
         ("calm satisfied", ""),
         ("quick violated", ""),
-        ("quick", "45 s Dock::7:25 took 6 s"),
-        ("calm violated", "46 s Sequence::1:19 it is satisfied"),
+        ("quick", "45 s Dock::7:25 not over yet: took 6 s"),
+        ("finally battery < 20 %", "46 s Sequence::1:19 battery is 50 %"),
+        ("calm violated", "46 s Sequence::1:19 calm is satisfied"),
     ],
 )
 def test_what_is_expected(tmp_path: Path, expect: str, why: str) -> None:
@@ -181,6 +182,7 @@ def test_what_is_expected(tmp_path: Path, expect: str, why: str) -> None:
         "given Move takes 20 s",
         "given Dock succeeds after 6 s and writes place = 3",
         "given person = false",
+        "given battery = 50 %",
     ]
     scenario = result(tmp_path, *givens, f"expect {expect}")
     assert reasons(scenario) == ([why] if why else [])
@@ -206,6 +208,18 @@ def test_the_failure_of_a_mission_is_shown_where_it_began(tmp_path: Path) -> Non
 def test_a_requirement_whose_signal_nobody_gives_is_unknown(tmp_path: Path) -> None:
     scenario = result(tmp_path, *QUIET, "expect calm")
     assert (scenario["outcome"], reasons(scenario)) == ("unknown", ["no samples of `person`"])
+
+
+def test_a_requirement_whose_node_did_not_run_names_it(tmp_path: Path) -> None:
+    scenario = result(tmp_path, "given Low answers true", "given First fails", "expect quick")
+    assert reasons(scenario) == ["0 s Sequence::1:19 quick is never exercised: Dock::7 did not start in any run"]
+
+
+def test_a_halted_mission_neither_succeeds_nor_fails(tmp_path: Path) -> None:
+    scenario = result(
+        tmp_path, *QUIET, "given Dock takes 9 s", "when Dock starts: mission halts", "expect mission succeeds"
+    )
+    assert reasons(scenario) == ["0 s Sequence::1:19 it was halted"]
 
 
 def test_a_run_that_never_ends_is_an_outcome_of_its_own(tmp_path: Path) -> None:
