@@ -123,6 +123,14 @@ class ScenarioMission:
         """The numbers of the nodes that run that a path leads to."""
         return [each.uid for each in self.build.running.instances(target) if each.uid is not None]
 
+    def has_port(self, uid: int, name: str) -> bool:
+        """Whether a node has a port, by its model or because it is written."""
+        node = self.written.get(uid)
+        definition = self.workspace.find(node.path, Kind.MODEL, _id(node)) if node is not None else None
+        ports = definition.symbol.target.ports if definition and isinstance(definition.symbol.target, Model) else ()
+        declared = (port.id.text for port in ports if port.id is not None)
+        return node is not None and name in (*declared, *(pair.key.text for pair in node.node.attributes))
+
     def input_port(self, uid: int) -> str | None:
         """The one input port of a node by its model, or the one that is written; None: there are none, or several."""
         node = self.written.get(uid)

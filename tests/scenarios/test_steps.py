@@ -241,8 +241,45 @@ def test_a_mission_that_goes_round_does_not_end(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("steps", "end"),
+    [
+        (["given Dock succeeds and writes battery = 90 %"], "battery == 90 % and {battery} == 90"),
+        (["given Low answers false and writes seen = 3"], "{seen} == 3"),
+        (["given Low answers false, false and writes seen = 3, then answers true and writes seen = 4"], "{seen} == 3"),
+        (["given Low answers false, then answers true and writes seen = 4"], "{seen} == 5"),
+    ],
+)
+def test_what_nodes_write(tmp_path: Path, steps: list[str], end: str) -> None:
+    givens = [QUIET[1], *([] if "Low" in steps[0] else QUIET[:1]), "given {seen} = 5"]
+    assert reasons(result(tmp_path, *givens, *steps, f"expect finally {end}")) == []
+
+
+def test_a_condition_writes_at_every_answer(tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text(
+        "Condition Alive\n    output hour : double\nAction Go\n"
+        "BehaviorTree Main\n    R->\n        Alive (hour = {@hour})\n        Go\n"
+        'scenario "The night begins"\n'
+        "    given Alive answers true 3 times and writes hour = 21, then answers true and writes hour = 22\n"
+        "    given Go takes 10 min\n    expect mission succeeds\n    expect finally {hour} == 22\n",
+        encoding="utf-8",
+    )
+    assert run_btq("test", "main.btq", cwd=tmp_path)[:2] == (
+        0,
+        "passed  The night begins (main.btq:8): succeeds after 10 min\n1 scenario: 1 passed\n",
+    )
+
+
+@pytest.mark.parametrize(
     ("steps", "why"),
     [
+        (
+            ["given Dock succeeds and writes person = true", "expect calm"],
+            "line 28: `person` is a signal without an entry; no node writes it, so change it with `when …: person = …`",
+        ),
+        (
+            ["given battery = 20 %", "given {battery} = 30", "expect calm"],
+            "line 29: two givens say the value of `{battery}`, and neither is more specific",
+        ),
         (["expect mission succeeds"], "Low::4 was asked at 0 s; say what it answers"),
         (
             ["given First takes 12 s", 'given {goal} = "B"', "expect mission succeeds"],
