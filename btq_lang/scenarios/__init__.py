@@ -7,6 +7,7 @@ scenario, and a value that is needed and not given makes it unknown; actions tha
     plan.py        what a scenario says, resolved
     reading.py     the words of a scenario to its plan
     running.py     one run: the tree is ticked, the world changes as planned
+    unused_lines.py   lines that had no effect on it
     judging.py     whether a run is as expected
     drawing.py     a run as lines of text
     recording.py   a run of a log as a scenario

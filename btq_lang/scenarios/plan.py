@@ -20,7 +20,7 @@ class Set(Record):
         signal: its name, if it is a signal without an entry.
         key: of the entry on the root blackboard; empty if it has none.
         value: numbers of a signal in its unit.
-        line: that says so.
+        line: that says so; 0: a signal gets it.
     """
 
     signal: str

@@ -234,17 +234,16 @@ class _ItemReader:
 
     def _set(self, assignment: written.Assignment) -> plan.Set | None:
         target, word = assignment.target, assignment.value
-        line = self.line(assignment.start)
         if word is None:
             return None
         if target.kind == BRACED:
-            return plan.Set("", key_of(target), _literal(word), line)
+            return plan.Set("", key_of(target), _literal(word), self.line(assignment.start))
         signal = self._reader.signal(target.text)
         if signal is None:
             self._reader.unknown(target, ("signals",))
             return None
         value = self._value(signal, word)
-        return plan.Set("" if signal.key else signal.name, signal.entry, value, line) if value is not None else None
+        return plan.Set("" if signal.key else signal.name, signal.entry, value) if value is not None else None
 
     def _value(self, signal: ResolvedSignal, word: Word) -> float | str | bool | None:
         """The value of a signal, numbers in its unit."""

@@ -73,7 +73,9 @@ class Suite:
         outcome = _worst(expectations) if outcome == "passed" else outcome
         drawn = drawing(mission, ran) if (is_drawn or outcome != "passed") and mutant is None and ran.rows else ()
         ended = ran.end if ran.end not in ("unanswered", "unknown") else ""
-        result = ScenarioResult(*head, outcome, ended, ran.now / 1000, why, expectations, ran.assumed, drawn)
+        result = ScenarioResult(
+            *head, outcome, ended, ran.now / 1000, why, expectations, ran.assumed, drawn, ran.unused
+        )
         return Ran(result, mission, ran)
 
     def planned(self, place: ScenarioPlace) -> ScenarioResult | tuple[_Head, ScenarioMission, Plan]:

@@ -112,6 +112,7 @@ class Skills:
 
     Attributes:
         assumed: the actions of which nothing was given that have run, by path.
+        applied: the identities of what is given and was about some activation.
         machine: whose leaves they are; to be set before the first tick.
     """
 
@@ -130,6 +131,7 @@ class Skills:
         """
         self.machine: Machine
         self.assumed: Final[set[str]] = set()
+        self.applied: Final[set[int]] = set()
         self._givens: Final = sorted(givens, key=lambda given: -given.rank)
         self._conditions: Final = frozenset(conditions)
         self._outputs: Final = outputs
@@ -220,6 +222,7 @@ class Skills:
     def _answer(self, node: SimulatedNode) -> int:
         for given in self._givens:
             if given.answers and given.concerns(node):
+                self.applied.add(id(given))
                 number = min(self._asked.get(id(given), -1) + 1, len(given.answers) - 1)
                 self._asked[id(given)] = number
                 return SUCCESS if given.answers[number] else FAILURE
@@ -241,6 +244,7 @@ class Skills:
         for given in self._givens:
             if not given.activations or not given.concerns(node):
                 continue
+            self.applied.add(id(given))
             most = sum(activation.times or 1 for activation in given.activations[:-1])
             number = self._starts[id(given)] = min(self._starts.get(id(given), -1) + 1, most)
             of_this = _of_number(given.activations, number)
