@@ -193,7 +193,7 @@ def _seconds(microseconds: int) -> str:
 
 
 _RESULTS: Final[dict[Outcome, str]] = {"S": "succeeds", "F": "fails"}
-_ENDS: Final[dict[Outcome, str]] = {"S": "mission succeeds", "F": "mission fails at least 1 per run"}
+_ENDS: Final[dict[Outcome, str]] = {"S": "mission succeeds", "F": "mission fails", "H": "mission halts"}
 _BARE: Final = "--no-enforce"
 _TICK: Final = 10_000  # µs between two ticks of the program
 _POLLED: Final = 5 * _TICK

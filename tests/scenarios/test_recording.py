@@ -154,6 +154,42 @@ def test_a_changed_mission_does_not_give_one_node_what_another_did(tmp_path: Pat
     assert (code, out.splitlines()[1:-1]) == (2, ["        line 5: no node `ToPharmacy` below `Out`"])
 
 
+def test_nodes_that_no_words_tell_apart_count_together(tmp_path: Path) -> None:
+    mission = (
+        'QualityReq quick : performance-efficiency "Soon"\n    mission takes at most 3 s\nAction Look\n'
+        "BehaviorTree Main\n    ->\n        Look Once\n        Look\n        Look\n"
+    )
+    steps = "    given every Look succeeds after 1 s, then succeeds after 2 s, then succeeds after 3 s\n"
+    scenario = f'include "main.btq"\n\nscenario "S"\n{steps}    expect mission succeeds\n'
+    assert recorded_case(tmp_path, mission, scenario, "--show", "quick")[0] == 0
+    written = (tmp_path / "case.btq").read_text(encoding="utf-8").splitlines(keepends=True)
+    assert written[3:5] == [steps, "    given Once succeeds after 1 s\n"]
+    assert run_btq("test", "case.btq", cwd=tmp_path)[0] == 0
+
+
+STOPPED = """\
+include "main.btq"
+
+scenario "Somebody stops it"
+    given ToWard takes 9 s
+    when 7 s have passed: mission halts
+    expect mission halts
+"""
+
+
+def test_a_run_that_was_halted_is_halted_again(tmp_path: Path) -> None:
+    assert recorded_case(tmp_path, TWICE, STOPPED, "--show", "quick", "--run", "1")[0] == 0
+    assert (tmp_path / "case.btq").read_text(encoding="utf-8").splitlines()[3:] == [
+        "    given Out/Look succeeds",
+        "    given Out/ToPharmacy succeeds",
+        "    given ToWard does not end",
+        "    when 7 s have passed: mission halts",
+        "    expect mission halts",
+        "    expect quick violated  # once this is mended: expect quick",
+    ]
+    assert run_btq("test", "case.btq", cwd=tmp_path)[0] == 0
+
+
 def test_an_unknown_requirement_has_no_run(tmp_path: Path) -> None:
     code, _, err = run_btq("verify", str(LABORATORY), "--show", "rq9", cwd=tmp_path)
     assert (code, err) == (2, "btq verify: --show rq9: no requirement of a mission in these logs has this ID\n")
