@@ -1,4 +1,4 @@
-"""Lines of a scenario that had no effect on its run: a misspelt value or entry is no error, but is not passed over."""
+"""Lines of a scenario that had no effect on its run, such as misspelt entries: no errors, but worth naming."""
 
 from __future__ import annotations
 
