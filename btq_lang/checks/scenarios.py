@@ -13,7 +13,7 @@ from btq_lang.checks.view import View, near_names
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix, write_fix
 from btq_lang.syntax import scenarios as syntax
 from btq_lang.syntax.tokens import BRACED
-from btq_lang.syntax.tree import Amount, Claim, Pair, Path, shape, written
+from btq_lang.syntax.tree import Amount, Claim, Pair, Path, Word, shape, written
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.util.text import Span
@@ -281,7 +281,16 @@ def _ties_of_file(store: Store[Workspace], viewpoint: str) -> dict[int, list[Dia
 
 def _ties(view: View, givens: Sequence[tuple[Facts, syntax.Given]]) -> Iterator[tuple[Facts, Diagnostic]]:
     earlier: dict[tuple[bool, bool, int], list[_Stated]] = {}  # by how specific they are, and by the node
+    values: dict[str, tuple[Facts, syntax.Given, syntax.Assignment]] = {}  # by the signal or entry
     for facts, given in givens:
+        if isinstance(given.fact, syntax.Assignment) and given.fact.value is not None:
+            name = _entry_of(view, facts, given.fact.target)
+            first_facts, first, assigned = values.setdefault(name, (facts, given, given.fact))
+            if assigned.value is not None and assigned.value.text != given.fact.value.text:
+                related = (Related(Place(Span(first.start, first.end), view.path, first_facts.item), "the other one"),)
+                message = f"two givens say the value of `{given.fact.target.text}`, and neither is more specific"
+                note = "what changes during the run goes after `when`, as in `when 30 s have passed: battery = 20 %`"
+                yield facts, Diagnostic("ambiguous-given", Span(given.start, given.end), message, related, (note,))
         stated = _stated(view, facts, given)
         if stated is None or not isinstance(given.fact, syntax.NodesDo):
             continue
@@ -300,6 +309,16 @@ def _ties(view: View, givens: Sequence[tuple[Facts, syntax.Given]]) -> Iterator[
             note = "values of ports are more specific than a path, a path than `every`, and a scenario than the file"
             place = Span(given.start, given.end)
             yield facts, Diagnostic("ambiguous-given", place, message, related, (note,))
+
+
+def _entry_of(view: View, facts: Facts, target: Word) -> str:
+    """The entry that a value is given to, or the signal that has none."""
+    from btq_lang.requirements.entries import ScenarioReader, key_of  # few files have scenarios
+
+    if target.kind == BRACED:
+        return f"{{{key_of(target)}}}"
+    signal = ScenarioReader(view.store, view.path, view.path, facts).signal(target.text)
+    return f"{{{signal.entry}}}" if signal is not None and signal.key else target.text
 
 
 def _stated(view: View, facts: Facts, given: syntax.Given) -> _Stated | None:

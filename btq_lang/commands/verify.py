@@ -48,7 +48,7 @@ def run(options: VerifyOptions, messages: CommandOutput) -> int:
     logs, missions, samples = _inputs(options, problems)
     if options.events is not None and (problem := overwrite_problem(options.events, [*options.logs, *logs])):
         problems.append(problem)
-    if options.run is not None and not problems:
+    if options.run is not None and options.show is None and not problems:
         return _print_run(logs, missions, options.run, messages)
     declared = signal_sources(missions, problems)
     keeping = opened(options, problems)
@@ -69,7 +69,7 @@ def run(options: VerifyOptions, messages: CommandOutput) -> int:
         from btq_lang.commands.recorded import show_run
 
         refuse(*verification.problems)
-        return show_run(verification.report, means, logs, options.show, options.output, messages)
+        return show_run(verification.report, means, logs, options, messages)
     return finish(options, verification, missions, logs, messages)
 
 

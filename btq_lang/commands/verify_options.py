@@ -24,8 +24,9 @@ class VerifyOptions(Record):
         events: where to write the violations as a bag.
         live: the address of a running robot.
         summary: where to write the verdicts for an editor.
-        run: the number of the run to print.
+        run: the number of the run to print, or to write as a scenario.
         show: the requirement whose worst run is written as a scenario.
+        force: overwrite another file with it.
         store: where what is found in logs is kept.
         no_store: keep nothing, also where the project names a store.
         by: what the verdicts of a store are grouped by, `label` or `robot`.
@@ -46,6 +47,7 @@ class VerifyOptions(Record):
     summary: str | None = None
     run: int | None = None
     show: str | None = None
+    force: bool = False
     store: str | None = None
     no_store: bool = False
     by: Sequence[str] = ()
@@ -103,7 +105,13 @@ def add_verify_options(parser: SuggestingParser) -> None:
         metavar="ID",
         help="write the run with the worst violation of this requirement as a scenario, which btq test runs: with -o",
     )
-    parser.add("--run", type=int, metavar="N", help="for editors: print the run with this number in a log, as JSON")
+    parser.add(
+        "--run",
+        type=int,
+        metavar="N",
+        help="with --show: write the run with this number; without, for editors: print it, as JSON",
+    )
+    parser.flag("--force", "with --show: overwrite a file that differs")
     kept = parser.add_argument_group("keeping verdicts")
     store = kept.add_mutually_exclusive_group()
     store.add_argument(

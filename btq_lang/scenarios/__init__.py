@@ -7,12 +7,14 @@ scenario, and a value that is needed and not given makes it unknown; actions tha
     plan.py        what a scenario says, resolved
     reading.py     the words of a scenario to its plan
     running.py     one run: the tree is ticked, the world changes as planned
+    unused_lines.py   lines that had no effect on it
     judging.py     whether a run is as expected
     drawing.py     a run as lines of text
     recording.py   a run of a log as a scenario
     witnessed.py   a run of `btq explore` as a scenario
     asked.py       what was asked there as expectations
     btlog.py       a run as a log
+    recorded_nodes.py   the words that name one node of it
     results.py     what came of scenarios, as data
     suite.py       the scenarios of files, run one by one
     parallel.py    the same in several processes

@@ -1,4 +1,4 @@
-"""A run as lines of text: the tree, and beside each node when it ran and what became of it."""
+"""A run as lines of text: the tree as it is written, and beside each node when it ran and what became of it."""
 
 from __future__ import annotations
 
@@ -17,10 +17,13 @@ from btq_lang.util.text import counted
 def drawing(mission: ScenarioMission, run: ScenarioRun) -> tuple[str, ...]:
     """The run in lines: a node that ran has a bar of its activations, each with a sign of its end."""
     tree = mission.tree
-    by_node = grouped((activation.uid, activation) for activation in activations(run.session(mission)))
+    in_order = activations(run.session(mission))
+    by_node = grouped((each.uid, each) for each in in_order if each.uid in mission.written)
     length = max(run.now, 1)
     shown = [uid for uid in tree.nodes if uid in by_node][:_MOST]
-    names = {uid: "  " * sum(1 for _ in tree.above(uid)) + tree.nodes[uid].name for uid in shown}
+    names = {
+        uid: "  " * sum(above in mission.written for above in tree.above(uid)) + tree.nodes[uid].name for uid in shown
+    }
     width = max(map(len, names.values()), default=0)
     lines = [
         f"{name.ljust(width)} |{_bar(by_node[uid], length)}| {_words(by_node[uid])}" for uid, name in names.items()

@@ -10,7 +10,17 @@ from btq_lang.evidence.history import History, Nearby
 from btq_lang.evidence.model import FAILURE, ROOT, SampleSeries
 from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.signals import Signals, UnknownValue
-from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, RequirementVerdict, Violation
+from btq_lang.evidence.verdicts import (
+    NEVER,
+    SATISFIED,
+    UNDECIDED,
+    UNKNOWN,
+    VIOLATED,
+    ClauseVerdict,
+    RequirementVerdict,
+    Violation,
+)
+from btq_lang.evidence.wording import quantity
 from btq_lang.requirements.model import ResolvedSignal, signals_in
 from btq_lang.scenarios.mission import ScenarioMission
 from btq_lang.scenarios.plan import (
@@ -89,7 +99,8 @@ class _Judge:
         return ExpectationResult(expectation.text, expectation.line, outcome, why, step)  # type: ignore[arg-type]
 
     def node(self, uid: int) -> tuple[str, str, int]:
-        """The path, the file and the line of a node."""
+        """The path, the file and the line of a node; of a guard, those of the node that it guards."""
+        uid = self._mission.guarded(uid)
         return (self._mission.tree.nodes[uid].path, *self._mission.place(uid))
 
     def _at_end(self, expected: str) -> Step:
@@ -107,13 +118,20 @@ class _Judge:
         why = next((clause.why for clause in verdict.clauses if clause.why), verdict.verdict)
         if verdict.verdict in (UNKNOWN, UNDECIDED):
             return None, why
+        if self._run.end == "is halted" and ROOT in (self._uid(clause.path) for clause in verdict.clauses):
+            why = "it was halted"
         return replace(self._at_end(text), happened=why or "it never ran"), ""
+
+    def _uid(self, path: str) -> int:
+        """The number of a node by its path; of the root of the mission, that of the root that runs."""
+        paths = {node.path: uid for uid, node in reversed(self._mission.tree.nodes.items())}
+        uid = paths.get(path, ROOT)
+        return ROOT if uid == self._mission.guarded(ROOT) else uid
 
     def _violation(self, violation: Violation, expected: str) -> Step:
         """The step that broke a clause: where a failure began, or else the node itself."""
-        paths = {node.path: uid for uid, node in reversed(self._mission.tree.nodes.items())}
         origin = next((link for link in violation.chain if link.kind == "origin"), None)
-        uid = paths.get(origin.path if origin is not None else violation.path, ROOT)
+        uid = self._uid(origin.path if origin is not None else violation.path)
         at, happened = violation.at, violation.why
         if origin is not None:
             failures = [time for time, row_uid, status in self._run.rows if (row_uid, status) == (uid, FAILURE)]
@@ -121,15 +139,17 @@ class _Judge:
         elif self._run.end == "does not end" and uid == ROOT:
             happened = "it does not end"
         elif violation.measured and violation.passed is not None:
-            at = violation.passed
+            at, happened = violation.passed, f"not over yet: {happened}"
+        guard = self._mission.joined.enforcing().get(uid)
+        if guard is not None and happened in _FAILURES:
+            happened = f"the guard of {guard} fails"
         return Step(at, *self.node(uid), happened, expected)
 
     def _verdict(self, verdict: RequirementVerdict, expected: WantedVerdict) -> tuple[Step | None, str]:
-        is_not_applicable = verdict.verdict == NEVER and any(clause.not_applicable for clause in verdict.clauses)
-        actual = "not applicable" if is_not_applicable else verdict.verdict
+        actual = verdict_in_words(verdict)
         if actual == expected.verdict:
             return None, ""
-        why = next((clause.why for clause in verdict.clauses if clause.why), "")
+        why = next((_why(clause) for clause in verdict.clauses if clause.why), "")
         if actual == UNKNOWN and expected.verdict in (SATISFIED, VIOLATED):
             return None, why
         wanted = f"{expected.name} {expected.verdict}"
@@ -137,7 +157,7 @@ class _Judge:
             violations = [violation for clause in verdict.clauses for violation in clause.violations]
             first = min(violations, key=lambda violation: violation.at)
             return self._violation(first, f"{wanted}{f', bound {first.bound}' if first.bound else ''}"), ""
-        return replace(self._at_end(wanted), happened=f"it is {actual}{f': {why}' if why else ''}"), ""
+        return replace(self._at_end(wanted), happened=f"{expected.name} is {actual}{f': {why}' if why else ''}"), ""
 
     # ---- values of ports ----
 
@@ -201,9 +221,15 @@ class _Judge:
             return None, f"nothing gives `{unset[0]}` a value" if unset else holds.why
         if holds:
             return None, ""
-        read = [(signal.name, signals.reading(signal, end[0])) for signal in signals_in(expected.condition)]
-        values = [f"{name} is {_shown(value)}" for name, value in dict(read).items()]
+        read = {signal.name: signal for signal in signals_in(expected.condition)}
+        values = [f"{name} is {_shown(signals.reading(signal, end[0]), signal)}" for name, signal in read.items()]
         return replace(self._at_end(text), happened=", ".join(values) or "it does not hold"), ""
+
+
+def verdict_in_words(verdict: RequirementVerdict) -> str:
+    """A verdict as a scenario expects it."""
+    is_not_applicable = verdict.verdict == NEVER and any(clause.not_applicable for clause in verdict.clauses)
+    return "not applicable" if is_not_applicable else verdict.verdict
 
 
 class _NothingRuns(Nearby):
@@ -221,14 +247,21 @@ def _series_of(signal: ResolvedSignal, run: ScenarioRun) -> SampleSeries | None:
     return run.signals.get(signal.name) or run.entries.get(signal.entry)
 
 
+def _shown(value: object, signal: ResolvedSignal) -> str:
+    """The value of a signal, a number in its unit."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return quantity(value, signal.unit) if isinstance(value, int | float) else f'"{value}"'
+
+
+def _why(clause: ClauseVerdict) -> str:
+    """Why a clause has its verdict, with the path of its node."""
+    return f"{clause.path} {clause.why[3:]}" if clause.path and clause.why.startswith("it ") else clause.why
+
+
+_FAILURES: Final = ("it fails", "failed")  # what happened where a guard did it
 _EXPECTED: Final = {
     "fails": "the mission fails",
     "is halted": "the mission is halted",
     "does not end": "it goes on for ever",
 }
-
-
-def _shown(value: object) -> str:
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    return f"{value:g}" if isinstance(value, float) else f'"{value}"' if isinstance(value, str) else str(value)

@@ -17,6 +17,7 @@ from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks.lookups import ports_of_models
 from btq_lang.evidence.identity import Build, Candidate, Joined
 from btq_lang.evidence.model import LoggedTree
+from btq_lang.requirements import nodes
 from btq_lang.requirements.model import NodeTarget
 from btq_lang.requirements.resolve import Requirements
 from btq_lang.simulator.kinds import is_of_nav2
@@ -122,6 +123,14 @@ class ScenarioMission:
         """The numbers of the nodes that run that a path leads to."""
         return [each.uid for each in self.build.running.instances(target) if each.uid is not None]
 
+    def has_port(self, uid: int, name: str) -> bool:
+        """Whether a node has a port, by its model or because it is written."""
+        node = self.written.get(uid)
+        definition = self.workspace.find(node.path, Kind.MODEL, _id(node)) if node is not None else None
+        ports = definition.symbol.target.ports if definition and isinstance(definition.symbol.target, Model) else ()
+        declared = (port.id.text for port in ports if port.id is not None)
+        return node is not None and name in (*declared, *(pair.key.text for pair in node.node.attributes))
+
     def input_port(self, uid: int) -> str | None:
         """The one input port of a node by its model, or the one that is written; None: there are none, or several."""
         node = self.written.get(uid)
@@ -136,6 +145,11 @@ class ScenarioMission:
             ports = [pair.key.text for pair in node.node.attributes if not pair.key.text.startswith("_")]
         ports = [port for port in ports if port not in ("ID", "name")]
         return ports[0] if len(ports) == 1 else None
+
+    def guarded(self, uid: int) -> int:
+        """The number of a written node itself; of a guard or a node below one, that of the first written node there."""
+        below = (other for other in self.tree.nodes if other in self.written and uid in self.tree.above(other))
+        return uid if uid in self.written else next(below, uid)
 
     def place(self, uid: int) -> tuple[str, int]:
         """The file and the line of a node, on the disk; the file is empty if the node is in none."""
@@ -172,14 +186,17 @@ def position_of(workspace: Workspace, path: str, item: object, offset: int) -> t
 
 
 def main_tree(workspace: Workspace, path: str) -> str:
-    """The tree that scenarios without `of` run: the main tree of their file, or the only one of all that it includes;
-    empty if it is unknown which.
+    """The tree that scenarios without `of` run: the main tree of their file, or the only one of all that it includes
+    which no other tree there runs, or which a `Root` names; empty if it is unknown which.
     """
     if workspace.factory is not None and workspace.factory.main:
         return workspace.factory.main[0]
-    own = _main_of(workspace, path)
-    mains = {own} if own else {main for each in workspace.closure(path) if (main := _main_of(workspace, each))}
-    return next(iter(mains)) if len(mains) == 1 else ""
+    if own := _main_of(workspace, path):
+        return own
+    mains = {main: each for each in workspace.closure(path) if (main := _main_of(workspace, each))}
+    run_by_none = [main for main in mains if len(mains) == 1 or not workspace.store.ask(nodes.callers, path, main)]
+    with_root = [main for main in run_by_none if any(workspace.files[mains[main]].of_type(Root))]
+    return next((names[0] for names in (run_by_none, with_root) if len(names) == 1), "")
 
 
 def _main_of(workspace: Workspace, path: str) -> str:

@@ -20,11 +20,13 @@ class Set(Record):
         signal: its name, if it is a signal without an entry.
         key: of the entry on the root blackboard; empty if it has none.
         value: numbers of a signal in its unit.
+        line: that says so; 0: a signal gets it.
     """
 
     signal: str
     key: str
     value: float | int | str | bool
+    line: int = 0
 
 
 class Halt(Record):
@@ -48,10 +50,16 @@ class WatchedEvent(Record):
 
 
 class PlannedChange(Record):
-    """What changes during a run, once; trigger: milliseconds since the start, an event, or a condition that is true."""
+    """What changes during a run, once.
+
+    Attributes:
+        trigger: milliseconds since the start, an event, or a condition that is true.
+        line: that says so.
+    """
 
     trigger: int | WatchedEvent | Condition
     effect: Set | GivenSkill | Halt
+    line: int = 0
 
 
 class ExpectedClaims(Record):

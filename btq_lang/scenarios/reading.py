@@ -23,6 +23,7 @@ from btq_lang.requirements.model import (
     Quantity,
     ResolvedParameter,
     ResolvedRequirement,
+    ResolvedSignal,
     TextValue,
     signals_in,
 )
@@ -159,18 +160,21 @@ class _ItemReader:
         rank += (_PATH if fact.nodes.path is not None else 0) + (_VALUES if values else 0)
         answers: list[bool] = []
         activations: list[GivenActivation] = []
+        writes = any(behavior.writes for behavior in fact.behaviors)
         for behavior in fact.behaviors:
             times = self._times(behavior.times)
             words = [word.raw for aspect in behavior.aspects for word in aspect.answers]
             answers += [word == "true" for word in words] * (times or 1)
-            activation = self._activation(behavior)
-            if activation != GivenActivation():
+            activation = self._activation(behavior, uids)
+            if words:
+                times = len(words) * (times or 1) if behavior is not fact.behaviors[-1] else 0
+            if activation != GivenActivation() or (words and writes):
                 activations.append(replace(activation, times=times))
         if activations and activations[-1].times:
             activations.append(GivenActivation())
-        return GivenSkill(uids, rank, tuple(activations), tuple(answers), values)
+        return GivenSkill(uids, rank, tuple(activations), tuple(answers), values, self.line(fact.start))
 
-    def _activation(self, behavior: written.Behavior) -> GivenActivation:
+    def _activation(self, behavior: written.Behavior, uids: frozenset[int]) -> GivenActivation:
         result: int | None = None
         takes: int | None = None
         for aspect in behavior.aspects:
@@ -178,13 +182,27 @@ class _ItemReader:
             if aspect.duration is not None:
                 duration = self._reader.quantity(aspect.duration, DURATION)
                 takes = round(duration.si * 1000) if duration is not None else 0
-        writes = tuple(self._write(pair.key, pair.value) for pair in behavior.writes if pair.value is not None)
-        return GivenActivation(result, takes, writes or None)
+        pairs = [(pair.key, pair.value) for pair in behavior.writes if pair.value is not None]
+        writes = [write for key, word in pairs if (write := self._write(key, word, uids)) is not None]
+        return GivenActivation(result, takes, tuple(writes) or None)
 
-    def _write(self, key: Word, word: Word) -> Write:
-        value = _literal(word)
+    def _write(self, key: Word, word: Word, uids: frozenset[int]) -> Write | None:
+        """What nodes write through a port, into the entry that a signal reads, or into another entry."""
+        name = key_of(key)
+        value: float | int | str | bool | None = _literal(word)
+        signal = None if any(self._mission.has_port(uid, name) for uid in uids) else self._reader.signal(name)
+        if signal is not None and not signal.key:
+            message = (
+                f"`{name}` is a signal without an entry; no node writes it, so change it with `when …: {name} = …`"
+            )
+            self._complain(key.start, message)
+            return None
+        if signal is not None:
+            name, value = f"@{signal.entry}", self._value(signal, word)
+        if value is None:
+            return None
         is_bool = isinstance(value, bool)
-        return Write(key_of(key), int(value) if isinstance(value, bool) else value, BOOL if is_bool else type_of(value))
+        return Write(name, int(value) if isinstance(value, bool) else value, BOOL if is_bool else type_of(value))
 
     def _times(self, word: Word | None) -> int:
         if word is None:
@@ -219,18 +237,20 @@ class _ItemReader:
         if word is None:
             return None
         if target.kind == BRACED:
-            return plan.Set("", key_of(target), _literal(word))
+            return plan.Set("", key_of(target), _literal(word), self.line(assignment.start))
         signal = self._reader.signal(target.text)
         if signal is None:
             self._reader.unknown(target, ("signals",))
             return None
+        value = self._value(signal, word)
+        return plan.Set("" if signal.key else signal.name, signal.entry, value) if value is not None else None
+
+    def _value(self, signal: ResolvedSignal, word: Word) -> float | str | bool | None:
+        """The value of a signal, numbers in its unit."""
         value = self._reader.argument(ResolvedParameter(signal.name, signal.sort, signal.unit, None), Amount(word))
         if isinstance(value, Quantity):
-            number = from_si(value.si, signal.unit) if signal.unit is not None else value.si
-            return plan.Set("" if signal.key else signal.name, signal.entry, number)
-        if isinstance(value, Flag | TextValue):
-            return plan.Set("" if signal.key else signal.name, signal.entry, value.value)
-        return None
+            return from_si(value.si, signal.unit) if signal.unit is not None else value.si
+        return value.value if isinstance(value, Flag | TextValue) else None
 
     # ---- when ----
 
@@ -245,7 +265,7 @@ class _ItemReader:
         else:
             effect = plan.Halt() if when.effect is not None else None
         if trigger is not None and effect is not None:
-            self.changes.append(plan.PlannedChange(trigger, effect))
+            self.changes.append(plan.PlannedChange(trigger, effect, self.line(when.start)))
 
     def _trigger(self, trigger: object) -> int | plan.WatchedEvent | Condition | None:
         if isinstance(trigger, written.Elapsed):

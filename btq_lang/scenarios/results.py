@@ -59,6 +59,7 @@ class ScenarioResult(Record):
         why: why it failed as a whole, is unknown or wrong; empty otherwise.
         assumed: the actions of which nothing was given, which succeeded at once, by their paths.
         drawing: the run in lines, if it was wanted.
+        notes: the lines of the scenario that had no effect.
     """
 
     title: str
@@ -73,6 +74,7 @@ class ScenarioResult(Record):
     expectations: tuple[ExpectationResult, ...]
     assumed: tuple[str, ...]
     drawing: tuple[str, ...]
+    notes: tuple[str, ...] = ()
 
 
 class OutcomePlace(Record):

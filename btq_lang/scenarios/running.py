@@ -19,6 +19,7 @@ from btq_lang.requirements.model import Condition, NodeTarget, signals_in
 from btq_lang.scenarios.mission import ScenarioMission
 from btq_lang.scenarios.mutating import Mutant, mutated
 from btq_lang.scenarios.plan import ExpectedValues, Plan, PlannedChange, Set, WatchedEvent
+from btq_lang.scenarios.unused_lines import unused_lines
 from btq_lang.simulator.blackboard import BOOL, Board, Unknown, Unsaid, Value, ValueNeeded, type_of
 from btq_lang.simulator.drivers import halt_tree, tick_while_running
 from btq_lang.simulator.errors import EngineError, NotModelled
@@ -61,6 +62,7 @@ class ScenarioRun(Record):
         entries: samples by entry.
         assumed: the actions of which nothing was given, by path.
         skipped: the nodes that were skipped at some time.
+        unused: the lines of the scenario that had no effect, in words.
     """
 
     end: End
@@ -72,6 +74,7 @@ class ScenarioRun(Record):
     entries: dict[str, SampleSeries]
     assumed: tuple[str, ...]
     skipped: frozenset[int]
+    unused: tuple[str, ...] = ()
 
     def session(self, mission: ScenarioMission) -> LogSession:
         """The run as a log would hold it, with the begin of each node in a row of its own."""
@@ -172,7 +175,14 @@ class _Running:
         self._renew(now)
         assumed = tuple(sorted(self._skills.assumed))
         skipped = frozenset(self._machine.skipped if self._machine is not None else ())
-        return ScenarioRun(end, why, now, self._rows, self._starts, self._signals, self._entries, assumed, skipped)
+        is_told = end in _COMPLETE and self._mutant is None
+        unused = self._unused(self._machine) if is_told and self._machine is not None else ()
+        happened = self._rows, self._starts, self._signals, self._entries
+        return ScenarioRun(end, why, now, *happened, assumed, skipped, unused)
+
+    def _unused(self, machine: Machine) -> tuple[str, ...]:
+        started = {start.uid for start in self._starts}
+        return unused_lines(self._mission, self._plan, machine, started, self._skills.applied, self._waiting)
 
     def _why(self, error: NotModelled) -> str:
         """What is not known: of the value of an entry, who reads and who wrote it."""
@@ -394,6 +404,7 @@ def _watched(plan: Plan) -> frozenset[int]:
 
 
 _ENDS: Final[dict[int, Known]] = {SUCCESS: "succeeds", FAILURE: "fails", SKIPPED: "is skipped"}
+_COMPLETE: Final = (*_ENDS.values(), "is halted", "does not end")
 _WORDS: Final = {SUCCESS: ("succeeds", "finishes"), FAILURE: ("fails", "finishes")}
 _LONGEST: Final = 7 * 24 * 3600 * 1000  # ms
 _MOST_LOOKS: Final = 100_000  # two a tick

@@ -73,7 +73,9 @@ class Suite:
         outcome = _worst(expectations) if outcome == "passed" else outcome
         drawn = drawing(mission, ran) if (is_drawn or outcome != "passed") and mutant is None and ran.rows else ()
         ended = ran.end if ran.end not in ("unanswered", "unknown") else ""
-        result = ScenarioResult(*head, outcome, ended, ran.now / 1000, why, expectations, ran.assumed, drawn)
+        result = ScenarioResult(
+            *head, outcome, ended, ran.now / 1000, why, expectations, ran.assumed, drawn, ran.unused
+        )
         return Ran(result, mission, ran)
 
     def planned(self, place: ScenarioPlace) -> ScenarioResult | tuple[_Head, ScenarioMission, Plan]:
@@ -127,8 +129,10 @@ class Suite:
 
     def _without_tree(self, path: str, line: int) -> ScenarioMistake:
         """Why it is unknown which tree runs: an error in the file, or nothing names it."""
+        scenarios = [(entry.start, entry.start + entry.item.end) for entry in self._entries(path)]
         errors = (each for each in check(self.workspace, path) if each.effective_severity is Severity.ERROR)
-        if (error := next(errors, None)) is not None:
+        others = (each for each in errors if not any(start <= each.span.start <= end for start, end in scenarios))
+        if (error := next(others, None)) is not None:
             line_of_error = self.workspace.files[path].source.count("\n", 0, error.span.start) + 1
             return ScenarioMistake(line_of_error, error.message)
         return ScenarioMistake(line, 'it is unknown which tree runs; name it: `scenario "…" of Tree`')

@@ -5,7 +5,7 @@ One invariant: a condition is never assumed; an action of which nothing is given
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
 
 from btq_lang.simulator.blackboard import UNTYPED, Unknown, Unsaid, Value
@@ -49,6 +49,7 @@ class GivenSkill(Record):
         activations: in the order of their starts; the last one repeats.
         answers: of successive ticks of conditions; the last one repeats.
         values: which ports have which values at the start of the activations that it is about.
+        line: of the scenario that says so.
     """
 
     uids: frozenset[int]
@@ -56,6 +57,7 @@ class GivenSkill(Record):
     activations: tuple[GivenActivation, ...] = ()
     answers: tuple[bool, ...] = ()
     values: tuple[tuple[str, str], ...] = ()
+    line: int = 0
 
     def concerns(self, node: SimulatedNode) -> bool:
         """Whether it is about the activation of a node that starts now."""
@@ -110,6 +112,7 @@ class Skills:
 
     Attributes:
         assumed: the actions of which nothing was given that have run, by path.
+        applied: the identities of what is given and was about some activation.
         machine: whose leaves they are; to be set before the first tick.
     """
 
@@ -128,6 +131,7 @@ class Skills:
         """
         self.machine: Machine
         self.assumed: Final[set[str]] = set()
+        self.applied: Final[set[int]] = set()
         self._givens: Final = sorted(givens, key=lambda given: -given.rank)
         self._conditions: Final = frozenset(conditions)
         self._outputs: Final = outputs
@@ -148,7 +152,8 @@ class Skills:
         """
         if node.id in self._conditions:
             result = self._answer(node)
-            self._write_unsaid(node, (), only_empty=True)
+            given = self._given(node)
+            self._write(node, given.writes or () if given is not None else (), only_empty=True)
             return result
         activation = self._open.get(node.uid) if node.status == RUNNING else None
         if activation is None:
@@ -158,12 +163,26 @@ class Skills:
                 self._write_unsaid(node, (), only_empty=True)
             return RUNNING
         del self._open[node.uid]
-        keys = [key_of(node.ports.get(write.key, ""), write.key) or write.key for write in activation.writes]
-        if activation.result != SKIPPED:
-            self._write_unsaid(node, keys)
-        for key, write in zip(keys, activation.writes, strict=True):
-            node.board.write(key, write.value, write.type)
+        self._write(node, activation.writes, is_skipped=activation.result == SKIPPED)
         return activation.result
+
+    def _write(
+        self, node: SimulatedNode, writes: Sequence[Write], only_empty: bool = False, is_skipped: bool = False
+    ) -> None:
+        """Write what is given, and unknown values into the entries of the other outputs.
+
+        Args:
+            only_empty: as of `_write_unsaid`; what is given is written where it is another value.
+            is_skipped: the others are not written.
+        """
+        keys = [key_of(node.ports.get(write.key, ""), write.key) or write.key for write in writes]
+        if not is_skipped:
+            self._write_unsaid(node, keys, only_empty)
+        for key, write in zip(keys, writes, strict=True):
+            entry = node.board.entry(key)
+            if only_empty and entry is not None and entry.value == write.value:
+                continue  # a tick that changes nothing can be passed over
+            node.board.write(key, write.value, write.type)
 
     def _write_unsaid(self, node: SimulatedNode, given: Iterable[str], only_empty: bool = False) -> None:
         """Write unknown values into the entries of outputs of which no value is given.
@@ -203,31 +222,39 @@ class Skills:
     def _answer(self, node: SimulatedNode) -> int:
         for given in self._givens:
             if given.answers and given.concerns(node):
+                self.applied.add(id(given))
                 number = min(self._asked.get(id(given), -1) + 1, len(given.answers) - 1)
                 self._asked[id(given)] = number
                 return SUCCESS if given.answers[number] else FAILURE
         raise Unanswered(node, self.machine.now)
 
     def _begun(self, node: SimulatedNode) -> _Activation:
-        """A new activation: each aspect as the most specific of what is given says."""
-        result: int | None = None
-        takes: int | None = None
-        writes: tuple[Write, ...] | None = None
-        is_given = False
+        """A new activation of an action."""
+        given = self._given(node)
+        if given is None:
+            self.assumed.add(node.path)
+            given = GivenActivation()
+        end = NEVER if given.result == RUNNING else self.machine.now + (given.takes or 0)
+        return _Activation(end, SUCCESS if given.result is None else given.result, given.writes or ())
+
+    def _given(self, node: SimulatedNode) -> GivenActivation | None:
+        """What is given of a new activation, or of a condition that is asked: each aspect as the most specific says;
+        None: nothing."""
+        merged: GivenActivation | None = None
         for given in self._givens:
             if not given.activations or not given.concerns(node):
                 continue
-            is_given = True
+            self.applied.add(id(given))
             most = sum(activation.times or 1 for activation in given.activations[:-1])
             number = self._starts[id(given)] = min(self._starts.get(id(given), -1) + 1, most)
             of_this = _of_number(given.activations, number)
-            result = of_this.result if result is None else result
-            takes = of_this.takes if takes is None else takes
-            writes = of_this.writes if writes is None else writes
-        if not is_given:
-            self.assumed.add(node.path)
-        end = NEVER if result == RUNNING else self.machine.now + (takes or 0)
-        return _Activation(end, SUCCESS if result is None else result, writes or ())
+            merged = merged or GivenActivation()
+            merged = GivenActivation(
+                of_this.result if merged.result is None else merged.result,
+                of_this.takes if merged.takes is None else merged.takes,
+                of_this.writes if merged.writes is None else merged.writes,
+            )
+        return merged
 
 
 class _Activation(Record):

@@ -208,6 +208,16 @@ def test_ties_of_the_file() -> None:
     )
 
 
+def test_two_values_of_a_signal() -> None:
+    assert_problems(
+        "signal hour : h from {@hour}\nBehaviorTree T\n    A (hour = {@hour})\ngiven hour = 1 h\n"
+        'scenario "S"\n    given hour = 2 h\n    given hour = 2 h\n    given {hour} = 3\n'
+        "    expect finally hour == 1 h\n",
+        "8:5 error ambiguous-given «given {hour} = 3» "
+        "two givens say the value of `{hour}`, and neither is more specific",
+    )
+
+
 def test_a_signal_that_a_scenario_reads_is_used() -> None:
     assert_clean(
         "signal near : bool from {near}\nBehaviorTree T\n    A (near = {near})\n"

@@ -164,7 +164,14 @@ def test_guards_run_unless_they_are_left_out(folder: Path) -> None:
     )
     guarded, bare = (run_btq("test", "main.btq", *more, cwd=folder) for more in ((), ("--no-enforce",)))
     assert (guarded[0], bare[0]) == (1, 0)
-    assert guarded[1].splitlines()[0] == "failed  too long (main.btq:6): fails after 5 s"
+    assert guarded[1].splitlines() == [
+        "failed  too long (main.btq:6): fails after 5 s",
+        "        line 8: expect mission succeeds",
+        "          after 5 s Move::2 (main.btq:5): the guard of soon fails; expected mission succeeds",
+        "                0                                    5 s",
+        "          Move |---------------------------------------H| halted",
+        "1 scenario: 1 failed",
+    ]
     assert bare[1].splitlines()[0] == "passed  too long (main.btq:6): succeeds after 9 s"
 
 
@@ -202,3 +209,42 @@ def test_the_engine_would_never_return(folder: Path) -> None:
         "unknown it (cases.btq:3)",
         "        Sequence::1 goes on without an end in one tick",
     ]
+
+
+@pytest.mark.parametrize(
+    ("main", "library"),
+    [
+        ("Root A\nBehaviorTree A\n    ->\n        Go\n        SubTree B\n", "BehaviorTree B\n    Ho\n"),
+        ("BehaviorTree A\n    ->\n        Go\n        SubTree B\n", "BehaviorTree B\n    Ho\n"),
+        ("Root A\nBehaviorTree A\n    ->\n        Go\n        SubTree B\n", "Root B\nBehaviorTree B\n    Ho\n"),
+        ("Root A\nBehaviorTree A\n    Go\n", "BehaviorTree B\n    Ho\n"),
+    ],
+)
+def test_the_main_tree_of_several_included_files_runs(main: str, library: str, folder: Path) -> None:
+    (folder / "library.btq").write_text(library, encoding="utf-8")
+    (folder / "main.btq").write_text(f'include "library.btq"\n{main}', encoding="utf-8")
+    (folder / "tests.btq").write_text(
+        'include "main.btq"\n'
+        'scenario "right"\n    given Go takes 3 s\n    expect mission succeeds\n'
+        'scenario "wrong"\n    given Gone takes 3 s\n    expect mission succeeds\n',
+        encoding="utf-8",
+    )
+    assert run_btq("test", "tests.btq", cwd=folder) == (
+        2,
+        "passed  right (tests.btq:2): succeeds after 3 s\n"
+        "error   wrong (tests.btq:5)\n        line 6: unknown node `Gone`\n"
+        "2 scenarios: 1 passed, 1 with an error\n",
+        "",
+    )
+
+
+def test_a_mistake_in_one_scenario_is_none_of_another_without_a_tree(folder: Path) -> None:
+    (folder / "tests.btq").write_text(
+        "BehaviorTree A\n    Go\nBehaviorTree B\n    Go\n"
+        'scenario "right"\n    expect mission succeeds\n'
+        'scenario "wrong"\n    given Gone takes 3 s\n    expect mission succeeds\n',
+        encoding="utf-8",
+    )
+    _, out, _ = run_btq("test", "tests.btq", cwd=folder)
+    unknown = 'it is unknown which tree runs; name it: `scenario "…" of Tree`'
+    assert out.splitlines()[1::2] == [f"        line 5: {unknown}", f"        line 7: {unknown}"]

@@ -69,30 +69,125 @@ def ran(path: Path, is_enforced: bool = True) -> tuple[ScenarioMission, Scenario
     return mission, run(mission, plan_of(mission, scenario, ()))
 
 
-def test_a_run_is_the_same_again(tmp_path: Path) -> None:
-    (tmp_path / "main.btq").write_text(MISSION, encoding="utf-8")
-    (tmp_path / "odd.btq").write_text(ODD, encoding="utf-8")
-    assert run_btq("build", "main.btq", cwd=tmp_path)[0] == 0
-    _, first = ran(tmp_path / "odd.btq")
-    tree = as_logged((tmp_path / "main.xml").read_text(encoding="utf-8"))
+def recorded_case(folder: Path, mission: str, scenario: str, *options: str) -> tuple[int, str, str]:
+    """Run a scenario, and write case.btq from a log of that run; what the command gives."""
+    (folder / "main.btq").write_text(mission, encoding="utf-8")
+    (folder / "odd.btq").write_text(scenario, encoding="utf-8")
+    assert run_btq("build", "main.btq", cwd=folder)[0] == 0
+    _, first = ran(folder / "odd.btq")
+    tree = as_logged((folder / "main.xml").read_text(encoding="utf-8"))
     rows = [(time - START, uid, status) for time, uid, status in first.rows]
-    (tmp_path / "run.btlog").write_bytes(btlog(tree, rows))
-    written = run_btq("verify", "run.btlog", "--mission", "main.btq", "--show", "quick", "-o", "case.btq", cwd=tmp_path)
+    (folder / "run.btlog").write_bytes(btlog(tree, rows))
+    options = "verify", "run.btlog", "--mission", "main.btq", "-o", "case.btq", *options
+    return run_btq(*options, cwd=folder)
+
+
+def test_a_run_is_the_same_again(tmp_path: Path) -> None:
+    written = recorded_case(tmp_path, MISSION, ODD, "--show", "quick")
     assert written == (0, "", "run 1 of run.btlog is in case.btq: run it with btq test case.btq\n")
     assert (tmp_path / "case.btq").read_text(encoding="utf-8") == (
         'include "main.btq"\n\nscenario "Run 1 of run.btlog" verifies quick\n'
-        "    given every Low answers false\n"
-        "    when 25 s have passed: every Low answers true\n"
-        "    given every Move succeeds after 10 s 2 times, then does not end\n"
-        "    given every Dock fails after 2 s 2 times, then succeeds after 7.5 s\n"
-        "    expect mission succeeds\n    expect quick violated\n"
+        "    given Low answers false\n"
+        "    when 25 s have passed: Low answers true\n"
+        '    given Move (to = "A") succeeds after 10 s\n'
+        '    given Move (to = "B") succeeds after 10 s\n'
+        '    given Move (to = "C") does not end\n'
+        "    given Dock fails after 2 s 2 times, then succeeds after 7.5 s\n"
+        "    expect mission succeeds\n    expect quick violated  # once this is mended: expect quick\n"
     )
+    _, first = ran(tmp_path / "odd.btq")
     _, again = ran(tmp_path / "case.btq")
     assert [*again.rows] == [*first.rows]
     assert run_btq("test", "case.btq", cwd=tmp_path)[:2] == (
         0,
         "passed  Run 1 of run.btlog (case.btq:3): succeeds after 36.5 s\n1 scenario: 1 passed\n",
     )
+
+
+TWICE = """\
+QualityReq quick : performance-efficiency "At the ward in time"
+    ToWard takes at most 5 s
+
+Action Move
+    input to : string
+Action Look
+
+BehaviorTree Main
+    ->
+        SubTree Way Out
+        Move ToWard (to = "ward")
+        SubTree Way Back
+
+BehaviorTree Way
+    ->
+        Look
+        Move ToPharmacy (to = "pharmacy")
+"""
+TIMES = """\
+include "main.btq"
+
+scenario "All ways take another time"
+    given Look takes 1 s
+    given Out/ToPharmacy takes 2 s
+    given ToWard takes 7 s
+    given Back/ToPharmacy takes 3 s
+    expect mission succeeds
+"""
+
+
+def test_each_node_has_its_own_activations(tmp_path: Path) -> None:
+    assert recorded_case(tmp_path, TWICE, TIMES, "--show", "quick")[0] == 0
+    assert (tmp_path / "case.btq").read_text(encoding="utf-8").splitlines()[3:] == [
+        "    given every Look succeeds after 1 s",
+        "    given Out/ToPharmacy succeeds after 2 s",
+        "    given ToWard succeeds after 7 s",
+        "    given Back/ToPharmacy succeeds after 3 s",
+        "    expect mission succeeds",
+        "    expect quick violated  # once this is mended: expect quick",
+    ]
+
+
+def test_a_changed_mission_does_not_give_one_node_what_another_did(tmp_path: Path) -> None:
+    assert recorded_case(tmp_path, TWICE, TIMES, "--show", "quick")[0] == 0
+    (tmp_path / "main.btq").write_text(TWICE.replace("        SubTree Way Out\n", ""), encoding="utf-8")
+    code, out, _ = run_btq("test", "case.btq", cwd=tmp_path)
+    assert (code, out.splitlines()[1:-1]) == (2, ["        line 5: no node `ToPharmacy` below `Out`"])
+
+
+def test_nodes_that_no_words_tell_apart_count_together(tmp_path: Path) -> None:
+    mission = (
+        'QualityReq quick : performance-efficiency "Soon"\n    mission takes at most 3 s\nAction Look\n'
+        "BehaviorTree Main\n    ->\n        Look Once\n        Look\n        Look\n"
+    )
+    steps = "    given every Look succeeds after 1 s, then succeeds after 2 s, then succeeds after 3 s\n"
+    scenario = f'include "main.btq"\n\nscenario "S"\n{steps}    expect mission succeeds\n'
+    assert recorded_case(tmp_path, mission, scenario, "--show", "quick")[0] == 0
+    written = (tmp_path / "case.btq").read_text(encoding="utf-8").splitlines(keepends=True)
+    assert written[3:5] == [steps, "    given Once succeeds after 1 s\n"]
+    assert run_btq("test", "case.btq", cwd=tmp_path)[0] == 0
+
+
+STOPPED = """\
+include "main.btq"
+
+scenario "Somebody stops it"
+    given ToWard takes 9 s
+    when 7 s have passed: mission halts
+    expect mission halts
+"""
+
+
+def test_a_run_that_was_halted_is_halted_again(tmp_path: Path) -> None:
+    assert recorded_case(tmp_path, TWICE, STOPPED, "--show", "quick", "--run", "1")[0] == 0
+    assert (tmp_path / "case.btq").read_text(encoding="utf-8").splitlines()[3:] == [
+        "    given Out/Look succeeds",
+        "    given Out/ToPharmacy succeeds",
+        "    given ToWard does not end",
+        "    when 7 s have passed: mission halts",
+        "    expect mission halts",
+        "    expect quick violated  # once this is mended: expect quick",
+    ]
+    assert run_btq("test", "case.btq", cwd=tmp_path)[0] == 0
 
 
 def test_an_unknown_requirement_has_no_run(tmp_path: Path) -> None:
@@ -122,3 +217,48 @@ def told(all_activations: Iterable[Activation], polled: Set[int]) -> list[tuple[
     """The nodes in the order of their starts, each with its outcome, without some of them."""
     started = sorted(all_activations, key=lambda activation: (activation.started, activation.uid))
     return [(activation.uid, activation.outcome) for activation in started if activation.uid not in polled]
+
+
+@pytest.fixture
+def laboratory(tmp_path: Path) -> Path:
+    """The mission of the laboratory with its logs."""
+    for name in ("mission.btq", "btq.toml", "runs.btlog", "signals.csv"):
+        shutil.copy(LABORATORY / name, tmp_path / name)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("options", "which", "last"),
+    [
+        (["rq1"], "run 21 of runs.btlog", "expect rq1 violated  # once this is mended: expect rq1"),
+        (["rq2"], "run 9 of runs.btlog, which comes closest to a violation,", "expect rq2 satisfied"),
+        (["rq4"], "run 7 of runs.btlog", "expect rq4 undecided"),
+        (["rq1", "--run", "3"], "run 3 of runs.btlog", "expect rq1 never exercised"),
+    ],
+)
+def test_which_run_is_written_and_with_which_verdict(
+    options: list[str], which: str, last: str, laboratory: Path
+) -> None:
+    written = run_btq("verify", "runs.btlog", "--show", *options, "-o", "case.btq", cwd=laboratory)
+    assert written == (0, "", f"{which} is in case.btq: run it with btq test case.btq --no-enforce\n")
+    assert (laboratory / "case.btq").read_text(encoding="utf-8").splitlines()[-1].strip() == last
+    assert run_btq("test", "case.btq", "--no-enforce", cwd=laboratory)[0] == 0
+
+
+def test_a_requirement_that_nothing_measured_has_no_worst_run(tmp_path: Path) -> None:
+    unread = 'QualityReq calm : safety "Nobody is near"\n    every Look never node ToWard\n'
+    code, _, err = recorded_case(tmp_path, f"{unread}\n{TWICE}", TIMES, "--show", "calm")
+    assert (code, (tmp_path / "case.btq").exists()) == (1, False)
+    assert err == "btq verify: --show calm: no run violates it (satisfied); name one with --run N\n"
+
+
+def test_another_file_is_not_overwritten_unless_that_is_forced(laboratory: Path) -> None:
+    (laboratory / "case.btq").write_text("# mine\n", encoding="utf-8")
+    command = "verify", "runs.btlog", "--show", "rq1", "-o", "case.btq"
+    assert run_btq(*command, cwd=laboratory) == (
+        2,
+        "",
+        "btq verify: case.btq is there and differs; write to another file, or overwrite it with --force\n",
+    )
+    assert run_btq(*command, "--force", cwd=laboratory)[0] == 0
+    assert run_btq(*command, cwd=laboratory)[0] == 0  # nothing would change

@@ -145,10 +145,10 @@ def test_changes_one_after_the_other(tmp_path: Path) -> None:
     [
         ("mission succeeds", ""),
         ("mission succeeds within 60 s", ""),
-        ("mission succeeds within 40 s", "40 s Sequence::1:19 succeeded after 46 s"),
+        ("mission succeeds within 40 s", "40 s Sequence::1:19 not over yet: succeeded after 46 s"),
         ("succeeds within 60 s", ""),
         ("Dock takes at most 6 s", ""),
-        ("Dock takes at most 5 s", "45 s Dock::7:25 took 6 s"),
+        ("Dock takes at most 5 s", "45 s Dock::7:25 not over yet: took 6 s"),
         ("Dock tries at most 3", ""),
         ("never node Second", "20 s Sequence::1:19 `node Second` held"),
         ("every Move takes at most 20 s", ""),
@@ -171,8 +171,9 @@ def test_changes_one_after_the_other(tmp_path: Path) -> None:
         ("calm", ""),
         ("calm satisfied", ""),
         ("quick violated", ""),
-        ("quick", "45 s Dock::7:25 took 6 s"),
-        ("calm violated", "46 s Sequence::1:19 it is satisfied"),
+        ("quick", "45 s Dock::7:25 not over yet: took 6 s"),
+        ("finally battery < 20 %", "46 s Sequence::1:19 battery is 50 %"),
+        ("calm violated", "46 s Sequence::1:19 calm is satisfied"),
     ],
 )
 def test_what_is_expected(tmp_path: Path, expect: str, why: str) -> None:
@@ -181,6 +182,7 @@ def test_what_is_expected(tmp_path: Path, expect: str, why: str) -> None:
         "given Move takes 20 s",
         "given Dock succeeds after 6 s and writes place = 3",
         "given person = false",
+        "given battery = 50 %",
     ]
     scenario = result(tmp_path, *givens, f"expect {expect}")
     assert reasons(scenario) == ([why] if why else [])
@@ -208,6 +210,18 @@ def test_a_requirement_whose_signal_nobody_gives_is_unknown(tmp_path: Path) -> N
     assert (scenario["outcome"], reasons(scenario)) == ("unknown", ["no samples of `person`"])
 
 
+def test_a_requirement_whose_node_did_not_run_names_it(tmp_path: Path) -> None:
+    scenario = result(tmp_path, "given Low answers true", "given First fails", "expect quick")
+    assert reasons(scenario) == ["0 s Sequence::1:19 quick is never exercised: Dock::7 did not start in any run"]
+
+
+def test_a_halted_mission_neither_succeeds_nor_fails(tmp_path: Path) -> None:
+    scenario = result(
+        tmp_path, *QUIET, "given Dock takes 9 s", "when Dock starts: mission halts", "expect mission succeeds"
+    )
+    assert reasons(scenario) == ["0 s Sequence::1:19 it was halted"]
+
+
 def test_a_run_that_never_ends_is_an_outcome_of_its_own(tmp_path: Path) -> None:
     steps = [*QUIET, "given Dock does not end"]
     scenario = result(tmp_path, *steps, "expect never person")
@@ -227,8 +241,45 @@ def test_a_mission_that_goes_round_does_not_end(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("steps", "end"),
+    [
+        (["given Dock succeeds and writes battery = 90 %"], "battery == 90 % and {battery} == 90"),
+        (["given Low answers false and writes seen = 3"], "{seen} == 3"),
+        (["given Low answers false, false and writes seen = 3, then answers true and writes seen = 4"], "{seen} == 3"),
+        (["given Low answers false, then answers true and writes seen = 4"], "{seen} == 5"),
+    ],
+)
+def test_what_nodes_write(tmp_path: Path, steps: list[str], end: str) -> None:
+    givens = [QUIET[1], *([] if "Low" in steps[0] else QUIET[:1]), "given {seen} = 5"]
+    assert reasons(result(tmp_path, *givens, *steps, f"expect finally {end}")) == []
+
+
+def test_a_condition_writes_at_every_answer(tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text(
+        "Condition Alive\n    output hour : double\nAction Go\n"
+        "BehaviorTree Main\n    R->\n        Alive (hour = {@hour})\n        Go\n"
+        'scenario "The night begins"\n'
+        "    given Alive answers true 3 times and writes hour = 21, then answers true and writes hour = 22\n"
+        "    given Go takes 10 min\n    expect mission succeeds\n    expect finally {hour} == 22\n",
+        encoding="utf-8",
+    )
+    assert run_btq("test", "main.btq", cwd=tmp_path)[:2] == (
+        0,
+        "passed  The night begins (main.btq:8): succeeds after 10 min\n1 scenario: 1 passed\n",
+    )
+
+
+@pytest.mark.parametrize(
     ("steps", "why"),
     [
+        (
+            ["given Dock succeeds and writes person = true", "expect calm"],
+            "line 28: `person` is a signal without an entry; no node writes it, so change it with `when …: person = …`",
+        ),
+        (
+            ["given battery = 20 %", "given {battery} = 30", "expect calm"],
+            "line 29: two givens say the value of `{battery}`, and neither is more specific",
+        ),
         (["expect mission succeeds"], "Low::4 was asked at 0 s; say what it answers"),
         (
             ["given First takes 12 s", 'given {goal} = "B"', "expect mission succeeds"],
