@@ -86,6 +86,6 @@ def test_same_states_changes_and_ends(seed: int) -> None:
         tree.begin(asked, leaves)
         answer = Search(tree.snapshots, SearchBudget(10 * MOST)).run()
         orders = search(lambda: opened(xml, version), leaves, 10 * MOST, pair).orders
-        assert (answer.found is not None) == (pair in orders)
-        if answer.found is not None:
-            assert replay(tree, Seen(tree, pair), leaves, answer.found)[-1].result == ""
+        assert (answer.way is not None) == (pair in orders)
+        if answer.way is not None:
+            assert replay(tree, Seen(tree, pair), leaves, answer.way)[-1].result == ""
