@@ -129,7 +129,9 @@ class Snapshots:
             boards.append(self._interned.setdefault(board_rows, board_rows))
         if any(domain.is_derived for domain in self.domains.values()):
             self._add_derived(numbers, domains)
-        domain_numbers = tuple([self._domain_numbers.setdefault(domain, len(self._domain_numbers)) for domain in domains])
+        domain_numbers = tuple(
+            [self._domain_numbers.setdefault(domain, len(self._domain_numbers)) for domain in domains]
+        )
         return self.watched, tuple([node.status for node in self.tracked]), tuple(boards), domain_numbers
 
     def _add_derived(self, numbers: dict[int, int], domains: list[Domain]) -> None:

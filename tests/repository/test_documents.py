@@ -314,7 +314,7 @@ def test_the_extension_is_packed_and_installed(page: str, tmp_path: Path) -> Non
 def test_ci_knows_its_names() -> None:
     """Hooks, the action's inputs and outputs, and the commands of the page are those there are."""
     text = (ROOT / "docs" / "ci.md").read_text(encoding="utf-8")
-    hooks, workflow, simulation, comparing, gitlab = (
+    hooks, workflow, simulation, comparing, scenarios, gitlab_scenarios, gitlab = (
         yaml.safe_load(match[2]) for match in BLOCK.finditer(text) if match[1] == "yaml"
     )
     known = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
@@ -330,5 +330,10 @@ def test_ci_knows_its_names() -> None:
         ' --store evidence --label "$GITHUB_SHA" --exit-zero -o verdicts.md',
         'btq compare evidence main "$GITHUB_SHA" -o comparison.md',
     ]
+    testing = "btq test missions --format junit -o scenarios.xml"  # scenarios/test_command.py has JUnit
+    assert scenarios[0] == {"run": testing}
+    assert scenarios[1]["with"]["path"] == "scenarios.xml"
+    assert gitlab_scenarios["scenarios"]["script"][1] == testing
+    assert gitlab_scenarios["scenarios"]["artifacts"]["reports"] == {"junit": "scenarios.xml"}
     assert gitlab["btq"]["script"][1] == "btq check --output-file btq.json"
     assert gitlab["btq"]["artifacts"]["reports"] == {"codequality": "btq.json"}
