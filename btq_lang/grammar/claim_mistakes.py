@@ -189,7 +189,8 @@ def every_meant(cursor: Cursor) -> bool:
     if cursor.kinds[cursor.index + 1] != NAME or cursor.raws[cursor.index + 1] in VERB_WORDS:
         return False
     bound = cursor.index + 2
-    if "per" in cursor.raws and cursor.raws[bound] not in (*VERB_WORDS, "/") and bound_follows(cursor, bound):
+    is_bound = cursor.raws[bound] != "/" and cursor.raws[bound] not in VERB_WORDS and bound_follows(cursor, bound)
+    if is_bound and "per" in cursor.raws:
         cursor.complain(cursor.here(), NO_RATE)
         cursor.recover()
         return True
