@@ -52,10 +52,10 @@ def show_run(
         messages.remark(f"btq verify: --show {name}: no run violates it ({requirement.verdict}); name one with --run N")
         return 1
     mission = next(each for each in means.missions if each.path == verdicts.file)
-    found = run_of(logs, mission, means, number)
-    if found is None:
+    recorded = run_of(logs, mission, means, number)
+    if recorded is None:
         raise Refused(f"--show {name}: the logs have no run {number} of {mission.name}")
-    log, run = found
+    log, run = recorded
     folder = os.path.dirname(absolute(output)) if output is not None and output != "-" else absolute(".")
     include = os.path.relpath(mission.path, folder).replace(os.sep, "/")
     title = f"Run {number} of {os.path.basename(log)}"

@@ -383,9 +383,9 @@ def time_in_words(cursor: Cursor, index: int, is_any: bool = False) -> int:
         is_any: any bound that is in words; else one that is mostly said of a time.
     """
     for length in (3, 2, 1):
-        found = tuple(cursor.raws[index : index + length])
-        if found in BOUNDS and cursor.kinds[index] == NAME and BOUNDS[found] != ("less", "than"):
-            is_of_time = is_any or "longer" in found or found in _NO_MORE
+        phrase = tuple(cursor.raws[index : index + length])
+        if phrase in BOUNDS and cursor.kinds[index] == NAME and BOUNDS[phrase] != ("less", "than"):
+            is_of_time = is_any or "longer" in phrase or phrase in _NO_MORE
             value = index + length
             return length if is_of_time and cursor.kinds[value] == QUANTITY and is_time(cursor.raws[value]) else 0
     return 0

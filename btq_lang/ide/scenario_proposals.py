@@ -83,9 +83,9 @@ def _values(workspace: Workspace, path: str, place: CursorPlace, name: str, port
     for value in values:
         quoted = value if value[0] in "{\"'" or value[0].isdigit() or value in ANSWERS else f'"{value}"'
         yield Proposal(value.strip("\"'"), "enum", "in the mission", quoted)
-    known = next((each for each in ports if each.name == port), None)
+    declared = next((each for each in ports if each.name == port), None)
     entry = entry_at(workspace, path, place.span.start)
-    yield from (one for one in of_nodes.port_values(workspace, path, entry, known) if one.label != "{=}")
+    yield from (one for one in of_nodes.port_values(workspace, path, entry, declared) if one.label != "{=}")
 
 
 def _values_of_signal(workspace: Workspace, path: str, name: str) -> Iterator[Proposal]:

@@ -32,7 +32,7 @@ from btq_lang.scenarios.plan import (
     WantedEnd,
     WantedVerdict,
 )
-from btq_lang.scenarios.results import ExpectationResult, Step
+from btq_lang.scenarios.results import ExpectationResult, Outcome, Step
 from btq_lang.scenarios.running import START, ScenarioRun, Start
 from btq_lang.simulator.blackboard import Unknown, Unsaid
 from btq_lang.simulator.errors import NotModelled
@@ -95,8 +95,8 @@ class _Judge:
             step, why = self._end(expected, expectation.text)
         else:
             step = None if self._run.end == expected.end else self._at_end(_EXPECTED[expected.end])
-        outcome = "failed" if step is not None else "unknown" if why else "passed"
-        return ExpectationResult(expectation.text, expectation.line, outcome, why, step)  # type: ignore[arg-type]
+        outcome: Outcome = "failed" if step is not None else "unknown" if why else "passed"
+        return ExpectationResult(expectation.text, expectation.line, outcome, why, step)
 
     def node(self, uid: int) -> tuple[str, str, int]:
         """The path, the file and the line of a node; of a guard, those of the node that it guards."""

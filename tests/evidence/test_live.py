@@ -370,7 +370,7 @@ def test_what_is_kept_from_an_event_until_another_is_news_at_once(
         robot.play("1R 2R 20 2S")
         robot.boards["Main"]["level"] = 10
         robot.wait_for("B", "B", "t")
-        time.sleep(0.3)
+        time.sleep(0.3)  # the next look must find the entry changed
         robot.boards["Main"]["level"] = 50
         robot.wait_for("B", "B", "t")
         time.sleep(0.3)

@@ -115,7 +115,7 @@ def search(
 
 
 def _tick(tree: Opened, told: Told) -> tuple[int, str]:
-    tree.snapshots.choices = told  # type: ignore[assignment]
+    tree.snapshots.choices = told  # type: ignore[assignment]  # it chooses likewise
     tree.machine.is_woken = False
     try:
         for node in reversed(tree.machine.timed):
