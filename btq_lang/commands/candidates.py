@@ -16,6 +16,7 @@ from btq_lang.evidence.readers import NotALog, trees
 from btq_lang.evidence.readers.side import SideFile, side_file_at, side_files_beside
 from btq_lang.projects.files import Files
 from btq_lang.projects.opening import Disk
+from btq_lang.projects.scenario_files import with_scenario_files
 from btq_lang.workspace.loader import absolute, find_project, is_project_file, shown
 
 if TYPE_CHECKING:
@@ -36,12 +37,13 @@ def candidates(requested: Sequence[str], logs: Sequence[str], problems: list[str
         ]
     )
     home = find_project(".")
-    groups, unreadable = Files().groups(requested or [*existing, home.project.root])
+    files = Files()
+    groups, unreadable = files.groups(requested or [*existing, home.project.root])
     # A mission of a broken project elsewhere was not requested.
     elsewhere = {problem.path for problem in unreadable if is_project_file(problem.path) and problem.path != home.path}
     broken = elsewhere if not requested else set()
     problems += [str(problem) for problem in unreadable if problem.path not in broken]
-    for group in groups:
+    for group in with_scenario_files(files, groups):
         for path in group.given if group.project_file not in broken else ():
             if group.workspace.files[path].has_only_scenarios:
                 continue

@@ -9,6 +9,7 @@ from btq_lang.commands.output import form_of, form_problem, is_coloured, termina
 from btq_lang.projects.files import Files, no_mission_below, usage_problem
 from btq_lang.projects.messages import CommandOutput
 from btq_lang.projects.options import refuse
+from btq_lang.projects.scenario_files import with_scenario_files
 from btq_lang.trace import FORMATS
 from btq_lang.trace.judged import together
 from btq_lang.trace.missions import trace_tables
@@ -52,11 +53,13 @@ def run(options: TraceOptions, messages: CommandOutput) -> int:
     )
     from btq_lang.commands.given_evidence import builds_for, verdicts_for  # it imports the readers of logs
 
-    groups, problems = Files().groups(options.paths, options.stdin_filename)
+    files = Files()
+    groups, problems = files.groups(options.paths, options.stdin_filename)
     messages.problems(problems)
     refuse(no_mission_below(options.paths, groups))
     if problems:
         return 2
+    groups = with_scenario_files(files, groups)
     evidence_problems: list[str] = []
     runs: list[JudgedRuns] = []
     verdicts_of = verdicts_for(options.evidence, groups, evidence_problems, runs)

@@ -236,7 +236,7 @@ class MissionEvaluation:
             listener.end(self._clauses)
 
     def verdicts(self, open_run: Run | None = None) -> tuple[RequirementVerdict, ...]:
-        """The verdict on each requirement so far, with the open run if that is given."""
+        """The verdict on each requirement so far, with the open run if that is given, without links."""
         requirements = self.mission.requirements
         by_requirement: dict[str, list[ClauseVerdict]] = {name: [] for name in requirements.all}
         for clause in self._clauses:
@@ -250,11 +250,13 @@ class MissionEvaluation:
                 " ".join((requirements.all[name].title or "").split()),
                 worst_of(clause_verdict.verdict for clause_verdict in clauses),
                 tuple(clauses),
-                RequirementLinks.of(requirements.all[name]),
-                tuple(filter(None, (self.mission.fingerprints.get(name),))),
+                fingerprints=tuple(filter(None, (self.mission.fingerprints.get(name),))),
             )
             for name, clauses in by_requirement.items()
         )
+
+    def _links(self, name: str) -> RequirementLinks:
+        return RequirementLinks.of(self.mission.requirements.all[name], self.mission.scenarios(name))
 
     def result(self) -> MissionVerdicts:
         """The verdicts and statistics so far."""
@@ -264,7 +266,7 @@ class MissionEvaluation:
             name=self.mission.name,
             file=self.mission.path,
             sources=tuple(findings.sources),
-            requirements=self.verdicts(),
+            requirements=tuple(replace(verdict, links=self._links(verdict.id)) for verdict in self.verdicts()),
             outcomes=tuple((OUTCOMES[outcome], number) for outcome, number in findings.outcomes.items() if number),
             ended_by=tuple(findings.ended_by.items()),
             nodes=findings.coverage.summary(requirements.nodes.all),

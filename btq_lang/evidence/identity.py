@@ -25,6 +25,7 @@ from btq_lang.evidence.model import LoggedTree
 from btq_lang.evidence.readers.tree import delay_of, kind_of
 from btq_lang.requirements.model import NodeTarget
 from btq_lang.requirements.resolve import Requirements, requirements
+from btq_lang.requirements.verifying import RequirementKey, VerifyingScenario, verifying_scenarios
 from btq_lang.util.grouping import grouped
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.workspace import Workspace
@@ -67,6 +68,15 @@ class Candidate:
     def indices(self) -> dict[int, int]:
         """The index of each written node among those of the mission, by its `id`."""
         return {id(node): index for index, node in enumerate(self.requirements.nodes.all)}
+
+    def scenarios(self, name: str) -> list[str]:
+        """The titles of the scenarios that verify a requirement."""
+        place = self.requirements.all[name].place
+        return [scenario.title for scenario in self._scenarios.get((place.path or "", name), ())]
+
+    @cached_property
+    def _scenarios(self) -> Mapping[RequirementKey, Sequence[VerifyingScenario]]:
+        return verifying_scenarios(self.workspace, (self.path,))
 
     @cached_property
     def fingerprints(self) -> dict[str, str]:

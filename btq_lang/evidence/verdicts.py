@@ -5,9 +5,10 @@ One invariant: writers compute nothing from it, so a table, JSON and a page agre
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
+from btq_lang.requirements.verifying import other_ways
 from btq_lang.util.record import Record, as_dict
 
 if TYPE_CHECKING:
@@ -288,7 +289,7 @@ class RequirementLinks(Record):
         sources: where it is from.
         refines, mitigates: the IDs of requirements and of hazards.
         priority: empty without one.
-        verified_by: the ways to verify it: `test TC-12`.
+        verified_by: the ways to verify it: `test TC-12`; a scenario is a test with its title.
     """
 
     sources: tuple[str, ...] = ()
@@ -298,9 +299,10 @@ class RequirementLinks(Record):
     verified_by: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, requirement: ResolvedRequirement) -> RequirementLinks:
-        """Those of a requirement."""
-        ways = tuple(f"{way.method} {way.id or ''}".rstrip() for way in requirement.ways)
+    def of(cls, requirement: ResolvedRequirement, scenarios: Sequence[str]) -> RequirementLinks:
+        """Those of a requirement; scenarios: the titles of those that verify it."""
+        declared = (f"{way.method} {way.id or ''}".rstrip() for way in other_ways(requirement, scenarios))
+        ways = tuple(dict.fromkeys((*declared, *(f"test {title}" for title in scenarios))))
         sources = tuple(" ".join(source.split()) for source in requirement.sources)
         return cls(sources, requirement.refines, requirement.mitigates, requirement.priority or "", ways)
 

@@ -150,18 +150,19 @@ def _predicate(claim: ResolvedClaim) -> str:
     return (verb + after).strip() if claim.subject is not None and verb else claim.text
 
 
-def requirement_note(key: str, applied: Applied, measured: tuple[MeasuredClause, ...], state: str = "") -> Note:
+def requirement_note(
+    key: str, applied: Applied, measured: tuple[MeasuredClause, ...], state: str = "", in_words: str = ""
+) -> Note:
     """The note of a requirement at what it applies to; with what logs show of it, it has its title, too.
 
     Args:
-        key, state: as of `Note`.
+        key, state: as of `Note`; in_words: the state.
     """
     requirement = applied.requirement
     name, clauses = f"{requirement.name}{applied.argument_list}", clauses_in_words(applied)
     title = " ".join((requirement.title or "").split())
     lines = (title, *clauses) if measured and title and title not in clauses else clauses
-    in_words = applied.requirement.by_people if state == "reviewed" else state
-    text = "; ".join((name, *lines, *(each.text for each in measured), *([in_words] if state else [])))
+    text = "; ".join((name, *lines, *(each.text for each in measured), *([in_words] if in_words else [])))
     return Note("requirement", key, name, lines, text, state, measured=measured)
 
 

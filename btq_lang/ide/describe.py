@@ -104,7 +104,7 @@ def tree(workspace: Workspace, path: str, name: str) -> str:
 
 def requirement(workspace: Workspace, path: str, definition: Definition) -> str:
     """A requirement as it is written, with its values in SI units, its quality, what a build does about each clause,
-    and where it is used."""
+    where it is used, and the scenarios that verify it."""
     item = definition.symbol.target
     assert isinstance(item, Requirement), "a requirement's symbol defines one"
     lines = [f"**{definition.symbol.name}**{_parameters(workspace, definition, item)}"]
@@ -121,14 +121,15 @@ def requirement(workspace: Workspace, path: str, definition: Definition) -> str:
             + "\n```"
         )
     referent = Subject(What.REQUIREMENT, definition.symbol.name, home_of(definition))
-    attached = used(workspace, referent, "Attached to", lambda use: not is_refinement(use))
+    attached = used(workspace, referent, "Attached to", lambda use: not (is_refinement(use) or _is_in_scenario(use)))
     refined = used(workspace, referent, "Refined by", is_refinement)
+    verified = used(workspace, referent, "Verified by", _is_verification)
     if item.clauses or item.text is not None:
         from btq_lang.ide.clause_enforcement import enforcement_lines  # most hovers need no plan of a build
 
         enforcement = enforcement_lines(workspace, path, definition, is_attached=bool(attached))
         lines.append(f"Enforcement by `btq build`:\n{enforcement}" if enforcement else "")
-    return "\n\n".join(filter(None, (*lines, attached, refined)))
+    return "\n\n".join(filter(None, (*lines, attached, refined, verified)))
 
 
 def hazard(workspace: Workspace, definition: Definition) -> str:
@@ -176,6 +177,16 @@ def is_refinement(use: ReferenceAt) -> bool:
     mention = use.mention
     is_named = mention.what in (What.REQUIREMENT, What.HAZARD) and not mention.defines
     return is_named and isinstance(mention.owner, Requirement)
+
+
+def _is_in_scenario(use: ReferenceAt) -> bool:
+    return use.entry is not None and isinstance(use.entry.item, Scenario)
+
+
+def _is_verification(use: ReferenceAt) -> bool:
+    """Whether a reference to a requirement is after the `verifies` of a scenario."""
+    item = use.entry.item if use.entry is not None else None
+    return isinstance(item, Scenario) and any(word is use.mention.word for word in item.verifies)
 
 
 def used(

@@ -8,6 +8,7 @@ their contents.  Of command lines, only options are known here.
     xml_below.py     which XML below a folder is the engine's
     created_trees.py which trees of XML the programs around it create; `tree_servers.py`, servers in parameter files
     cpp_files.py     C++ sources as files with the models of their nodes; `node_writers.py` writes such models
+    scenario_files.py   the files with scenarios of requested missions
     external_files.py   files with the requirements of other tools
     opening.py       a folder as a workspace
     building.py      a mission as XML, in memory, and what prevents a build

@@ -7,7 +7,7 @@ once.  Errors of missions are not reported here: an overview has all valid parts
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
 from itertools import chain
 from typing import TYPE_CHECKING, Final, TypeAlias
@@ -25,6 +25,7 @@ from btq_lang.requirements.applied import Applied
 from btq_lang.requirements.approval import approval_state
 from btq_lang.requirements.model import MissionRun, NodeTarget, ResolvedRequirement
 from btq_lang.requirements.resolve import Requirements, requirements
+from btq_lang.requirements.verifying import RequirementKey, verifying_scenarios
 from btq_lang.syntax.tree import Hazard, QualityDecl, written
 from btq_lang.trace.chain import chained
 from btq_lang.trace.meanings import Meanings, NameMeaning
@@ -41,9 +42,11 @@ from btq_lang.trace.overview import (
     QualityRow,
     RequirementRow,
     TreeRow,
+    VerificationRow,
 )
 from btq_lang.trace.overview import CharacteristicTotals as TotalRow
 from btq_lang.trace.ways import declared_ways
+from btq_lang.util.grouping import grouped
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span as TextSpan
 from btq_lang.workspace.node_names import is_placeholder
@@ -73,14 +76,15 @@ def collect(
 
     Args:
         parts: workspaces, each with the requested paths in it; a file included by another of them is a part of that
-            mission.
+            mission.  Its scenarios count, and those in files that include one of these.
         ways: determines how clauses are covered.
         shown: gives a path as people read it.
         details_of: gives further lines for the box of a node, and its class in the drawing.
         verdicts_of: gives the verdicts on the mission with a path; None: there is no evidence.
         builds_of: gives them by the labels of builds, in the order of time; None: builds are not known apart.
     """
-    collector = _Collector(ways, shown, details_of, verdicts_of, builds_of)
+    scenarios = _scenarios(parts, shown)
+    collector = _Collector(ways, shown, details_of, verdicts_of, builds_of, scenarios)
     files: list[str] = []
     for workspace, requested in parts:
         included = {path for each in requested for path in workspace.closure(each) if path != each}
@@ -88,7 +92,19 @@ def collect(
             files.append(shown(path))
             collector.add(workspace, path)
     overview = collector.overview(tuple(files))
-    return chained(overview, (workspace.project for workspace, _ in parts), shown)
+    return chained(overview, (workspace.project for workspace, _ in parts), shown, scenarios)
+
+
+def _scenarios(
+    parts: Sequence[tuple[Workspace, Sequence[str]]], shown: Callable[[str], str]
+) -> dict[RequirementKey, list[VerificationRow]]:
+    """The scenarios that verify each requirement, each once, as several workspaces may have them."""
+    pairs: dict[tuple[RequirementKey, VerificationRow], None] = {}
+    for workspace, requested in parts:
+        place = _places(workspace, shown)
+        for key, scenarios in verifying_scenarios(workspace, requested).items():
+            pairs.update(((key, VerificationRow("test", one.title, place(one.place))), None) for one in scenarios)
+    return grouped(pairs)
 
 
 class _Collector:
@@ -101,8 +117,10 @@ class _Collector:
         details_of: BoxDetails | None,
         verdicts_of: VerdictsOf | None,
         builds_of: BuildsOf | None,
+        scenarios: Mapping[RequirementKey, Sequence[VerificationRow]],
     ) -> None:
         self._ways = ways
+        self._scenarios = scenarios
         self._details_of = details_of
         self._verdicts_of = verdicts_of
         self._builds_of = builds_of
@@ -220,6 +238,7 @@ class _Collector:
             quality = self._quality(name, meanings, location) if name is not None else None
             further = [self._quality(each, meanings, location) for each in requirement.further_qualities]
             approval = resolved.store.ask(approval_state, resolved.viewpoint, requirement.name)
+            scenarios = self._scenarios.get((requirement.place.path or "", requirement.name), ())
             if key not in self._requirements:
                 self._meanings[key] = [meanings.of(each) for each in requirement.qualities] or [_NO_MEANING]
                 self._requirements[key] = RequirementRow(
@@ -236,7 +255,7 @@ class _Collector:
                     evidence=(),
                     further_qualities=requirement.further_qualities,
                     further_quality_keys=tuple(further),
-                    **metadata_fields(requirement, approval),
+                    **metadata_fields(requirement, approval, scenarios),
                 )
 
     def _evidence(self, workspace: Workspace, path: str, resolved: Requirements) -> None:
@@ -294,7 +313,7 @@ class _Collector:
                 tuple(clauses),
             )
             self._uses[definition_key][use] = None
-            note = _note(self._requirements[definition_key].key, applied, use, measured(applied))
+            note = _note(self._requirements[definition_key], applied, use, measured(applied))
             for source in sources:
                 self._notes[id(source.node)].setdefault((note.key, use.arguments, tuple(note.lines)), note)
         for trace in resolved.traces:
@@ -405,11 +424,11 @@ def _name(source: ResolvedNode) -> str:
     return source.shown.removeprefix("`").removesuffix("`")
 
 
-def _note(key: str, applied: Applied, use: AppliedRequirement, measured: tuple[MeasuredClause, ...]) -> Note:
+def _note(row: RequirementRow, applied: Applied, use: AppliedRequirement, measured: tuple[MeasuredClause, ...]) -> Note:
     """The note at a node; its state is that of the weakest clause."""
     ways = {clause.way for clause in use.clauses}
     state = next((way for way in ("reviewed", "monitored", "enforced") if way in ways), "")
-    return replace(requirement_note(key, applied, measured, state), link=f"#{key}")
+    return replace(requirement_note(row.key, applied, measured, state, row.in_words(state)), link=f"#{row.key}")
 
 
 def _stated(requirement: ResolvedRequirement) -> Iterator[str]:

@@ -6,7 +6,7 @@ The columns, which later versions add to but do not change:
                     clause without node | hard requirement not enforced | evidence | build |
                     node without quality | tree without quality |
                     hazard | hazard without requirement | external |
-                    requirement without verdict | requirement without source
+                    requirement without verdict | requirement without source | scenario
     requirement, title, quality, characteristic
     holds_for       the subject, or the node that has the concern, or the node or tree of a gap
     tree the tree of its first node
@@ -21,6 +21,7 @@ The columns, which later versions add to but do not change:
     external        the ID in another tool of what the requirement refines or mitigates, likewise
     refines, mitigates, origin, priority, verified_by, approval     of the requirement; origin: its sources,
                     approval: open | approved | approved without fingerprint | suspect
+    scenario        the title of one that verifies the requirement, or what is in external; its place is in source, line
     approved_by     who has approved the requirement, each with the date: `Kim 2026-11-29; Lee 2026-12-01`
 
 A text that a spreadsheet would take for a formula (`-> Work`, `=1+1`) gets an apostrophe prefix, as OWASP advises ("CSV
@@ -33,7 +34,7 @@ from collections.abc import Iterator, Mapping
 from typing import Final
 
 from btq_lang.render.spreadsheet import table
-from btq_lang.trace.overview import At, Clause, HazardRow, Overview, RequirementRow
+from btq_lang.trace.overview import At, Clause, ExternalRow, HazardRow, Overview, RequirementRow, VerificationRow
 from btq_lang.trace.wording import chain_rows
 
 
@@ -62,6 +63,8 @@ def _rows(overview: Overview) -> Iterator[dict[str, str | int]]:
             verdict |= {"suspect": "yes"} if evidence.is_suspect else {}
             source = {"source": evidence.mission} if evidence.mission else {}
             yield {"kind": "evidence", **row, "holds_for": evidence.path, **verdict, **source}
+        for scenario in requirement.scenarios:
+            yield {"kind": "scenario", **row, **_scenario(scenario)}
     for requirement, verdicts in overview.by_build:
         row = _requirement(requirement, characteristics.get(requirement.quality_key or "", ""))
         for build, (of_build, is_old) in zip(overview.builds, verdicts, strict=True):
@@ -94,7 +97,9 @@ def _chain(overview: Overview, characteristics: Mapping[str, str]) -> Iterator[d
             row = _requirement(requirement, characteristics.get(requirement.quality_key or "", ""))
             state = {"how": ", ".join(requirement.ways_in_words), "verdict": requirement.verdict or ""}
             yield {"kind": "hazard" if is_hazard else "external", **row, **own, **state, **_source(end.at)}
-        if not mitigating:
+        for scenario in end.scenarios if isinstance(end, ExternalRow) else ():
+            yield {"kind": "scenario", "title": end.title, **own, **_scenario(scenario)}
+        if is_hazard and not mitigating:
             yield {"kind": "hazard without requirement", "title": end.title, **own, **_source(end.at)}
     gaps = {"requirement without verdict": overview.unjudged, "requirement without source": overview.sourceless}
     for kind, requirements in gaps.items():
@@ -126,6 +131,10 @@ def _clause(requirement: RequirementRow, clause: Clause | None) -> dict[str, str
     return {"clause": clause.text, "how": requirement.in_words(clause.way), "why": clause.why}
 
 
+def _scenario(scenario: VerificationRow) -> dict[str, str | int]:
+    return {"scenario": scenario.id, **(_source(scenario.at) if scenario.at is not None else {})}
+
+
 def _source(place: At) -> dict[str, str | int]:
     return {"source": place.path, "line": place.line}
 
@@ -136,4 +145,5 @@ COLUMNS: Final = (
     *("hazard", "severity", "external", "refines", "mitigates", "origin", "priority", "verified_by", "approval"),
     "suspect",
     "approved_by",
+    "scenario",
 )

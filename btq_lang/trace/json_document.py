@@ -8,7 +8,8 @@ The document, format 1; a later btq adds keys but changes none without a new num
                        "how": TEXT, "clauses": [TEXT], "at": PLACE,
                        "sources": [TEXT], "refines": [NAME], "refined_by": [KEY], "mitigates": [NAME],
                        "priority": NAME | null,
-                       "verified_by": [{"method": "monitor" | "analysis" | "test" | "review", "id": TEXT | null}],
+                       "verified_by": [{"method": "monitor" | "analysis" | "test" | "review", "id": TEXT | null,
+                                        "at": PLACE | null}],
                        "approvals": [{"by": TEXT, "on": TEXT, "of": FINGERPRINT | null}],
                        "state": "open" | "approved" | "approved without fingerprint" | "suspect",
                        "fingerprint": FINGERPRINT,
@@ -24,7 +25,7 @@ The document, format 1; a later btq adds keys but changes none without a new num
      "hazards": [{"key": KEY, "id": NAME, "title": TEXT, "severity": NAME | null, "sources": [TEXT], "reasons": [TEXT],
                   "at": PLACE, "requirements": [KEY]}],
      "external": [{"key": KEY, "id": NAME, "title": TEXT, "status": TEXT, "url": TEXT, "at": PLACE,
-                   "requirements": [KEY]}],
+                   "requirements": [KEY], "scenarios": [{"id": TEXT, "at": PLACE}]}],
      "qualities": [{"key": KEY, "name": NAME, "id": NAME | null, "characteristic": NAME | null, "definition": TEXT,
                     "at": PLACE, "concerns": [KEY], "requirements": [KEY]}],
      "nodes": [{"key": KEY, "name": TEXT, "tree": NAME, "category": NAME | null, "skill": BOOL,
@@ -43,7 +44,8 @@ The document, format 1; a later btq adds keys but changes none without a new num
     PLACE = {"path": PATH, "line": N, "column": N}, counted from 1, columns in Unicode code points
 
 A `skill` is an action or a condition that is not built in; it `carries` a quality or a requirement itself, through a
-node above it, or not at all.  Keys are valid in this document only.  `mission` is empty in the overview of
+node above it, or not at all.  Keys are valid in this document only.  A test in `verified_by` that has a place is a
+scenario, and its id the title; `btq test` runs it, `btq trace` does not.  `mission` is empty in the overview of
 one mission; `evidence` is null where neither logs nor verdicts are given.  A verdict is `suspect` if the requirement
 meant something else when it was judged; `state` is that of its approval.  A build is the runs in a store that have its
 label.  The text is ASCII.
@@ -142,7 +144,10 @@ def _requirement(requirement: RequirementRow, has_evidence: bool) -> Json:
         "refined_by": list(requirement.refined_by),
         "mitigates": list(requirement.mitigates),
         "priority": requirement.priority or None,
-        "verified_by": [{"method": way.method, "id": way.id or None} for way in requirement.verification],
+        "verified_by": [
+            {"method": way.method, "id": way.id or None, "at": as_dict(way.at) if way.at is not None else None}
+            for way in requirement.verification
+        ],
         "approvals": [{"by": each.by, "on": each.on, "of": each.of or None} for each in requirement.approvals],
         "state": requirement.state,
         "fingerprint": requirement.fingerprint,
@@ -182,6 +187,7 @@ def _external(external: ExternalRow) -> Json:
         **fields,
         "at": as_dict(external.at),
         "requirements": list(external.requirements),
+        "scenarios": [{"id": way.id, "at": as_dict(way.at)} for way in external.scenarios],
     }
 
 

@@ -15,6 +15,7 @@ from btq_lang.trace.wording import (
     evidence_lines,
     remarks,
     shown_quality,
+    shown_scenario,
     state_of,
     summary,
 )
@@ -81,7 +82,8 @@ def _requirement(requirement: RequirementRow, has_evidence: bool, names: Mapping
     subjects = [
         ", ".join((_node(use.subject + use.arguments, use.at), *remarks(requirement, use))) for use in requirement.uses
     ]
-    how = "<br>".join((*map(escaped, [", ".join(requirement.ways_in_words)]), *requirement.whys))
+    scenarios = [escaped(f"{shown_scenario(each)} ({each.at})") for each in requirement.scenarios]
+    how = "<br>".join((*map(escaped, [", ".join(requirement.ways_in_words)]), *requirement.whys, *scenarios))
     evidence = "<br>".join(f"**{verdict}** {escaped(text)}" for verdict, text in evidence_lines(requirement)) or "none"
     return (
         "<br>".join(cell),

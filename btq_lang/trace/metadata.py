@@ -4,24 +4,28 @@ has approved them.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from btq_lang.requirements.approval import ApprovalState
 from btq_lang.requirements.model import ResolvedRequirement
+from btq_lang.requirements.verifying import other_ways
 from btq_lang.syntax.tree import Because, Hazard, HazardSeverity, Source
 from btq_lang.trace.overview import ApprovalRow, At, HazardRow, RequirementRow, VerificationRow
 from btq_lang.util.record import replace
 
 
-def metadata_fields(requirement: ResolvedRequirement, approval: ApprovalState) -> dict[str, Any]:
-    """The fields of a requirement's row for these clauses."""
+def metadata_fields(
+    requirement: ResolvedRequirement, approval: ApprovalState, scenarios: Sequence[VerificationRow]
+) -> dict[str, Any]:
+    """The fields of a requirement's row for these clauses; scenarios: those that verify it."""
+    ways = other_ways(requirement, {scenario.id for scenario in scenarios})
     return {
         "sources": tuple(map(_folded, requirement.sources)),
         "refines": requirement.refines,
         "mitigates": requirement.mitigates,
         "priority": requirement.priority or "",
-        "verification": tuple(VerificationRow(way.method, way.id or "") for way in requirement.ways),
+        "verification": (*(VerificationRow(way.method, way.id or "") for way in ways), *scenarios),
         "approvals": tuple(ApprovalRow(each.by, each.on, each.fingerprint or "") for each in requirement.approvals),
         "state": approval.state,
         "fingerprint": approval.fingerprint,

@@ -1,7 +1,8 @@
 """The needs.json of sphinx-needs, which its `needimport` and `needs_external_needs` read, and `btq check` too.
 
 A requirement is a need of type `req`, a hazard one of type `hazard`.  The content of a requirement is a list of its
-clauses, its tags are its qualities, its links what it refines and mitigates, and its status is the worst verdict.
+clauses and of the scenarios that verify it, its tags are its qualities, its links what it refines and mitigates, and
+its status is the worst verdict.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import json
 
 from btq_lang.trace.overview import HazardRow, Overview, RequirementRow
+from btq_lang.trace.wording import shown_scenario
 from btq_lang.util.version import __version__
 
 
@@ -21,11 +23,12 @@ def render(overview: Overview) -> str:
 
 
 def _need(requirement: RequirementRow) -> dict[str, object]:
+    scenarios = (f"* ``{shown_scenario(each)}``, {each.at}" for each in requirement.scenarios)
     return {
         "id": requirement.name,
         "type": "req",
         "title": requirement.title or requirement.name,
-        "content": "\n".join(f"* ``{clause}``" for clause in requirement.clauses),
+        "content": "\n".join((*(f"* ``{clause}``" for clause in requirement.clauses), *scenarios)),
         "status": requirement.verdict,
         "tags": [requirement.quality, *requirement.further_qualities] if requirement.quality is not None else [],
         "links": [*requirement.refines, *requirement.mitigates],

@@ -115,10 +115,16 @@ class ApprovalRow(Record):
 
 
 class VerificationRow(Record):
-    """A way to verify a requirement; id: of the test case or the report, empty if none is named."""
+    """A way to verify a requirement.
+
+    Attributes:
+        id: of the test case or the report, empty if none is named; of a scenario, its title.
+        at: the place of the scenario; None for any other way.
+    """
 
     method: str
     id: str
+    at: At | None = None
 
 
 class RequirementRow(Record):
@@ -136,7 +142,7 @@ class RequirementRow(Record):
         sources: where it is from.
         refines: the IDs of the requirements of which it is a part; `mitigates`: those of hazards.
         priority: empty without one.
-        verification: the ways to verify it; empty: by monitor.
+        verification: the ways to verify it, with the scenarios that do; without others, by monitor.
         refined_by: the keys of those that refine it.
         state: of its approval; `fingerprint`: of what it means now.
     """
@@ -176,8 +182,13 @@ class RequirementRow(Record):
 
     @property
     def is_judged(self) -> bool:
-        """Whether logs show how it is kept, or it names the test or the report that does."""
-        return self.verdict not in (None, NEVER, OPEN) or any(way.id for way in self.verification)
+        """Whether logs show how it is kept, or it names the test or the report that does, or a scenario verifies it."""
+        return self.verdict not in (None, NEVER, OPEN) or any(way.id or way.at for way in self.verification)
+
+    @property
+    def scenarios(self) -> tuple[VerificationRow, ...]:
+        """The scenarios that verify it."""
+        return tuple(way for way in self.verification if way.at is not None)
 
     @property
     def ways(self) -> tuple[str, ...]:
@@ -197,8 +208,12 @@ class RequirementRow(Record):
         return tuple(map(self.in_words, self.ways))
 
     def in_words(self, way: str) -> str:
-        """A way in words: what people verify is `by test TC-12`."""
-        return by_people((each.method, each.id) for each in self.verification) if way == "reviewed" else way
+        """A way in words: what people verify is `by test TC-12`, and `by test` if scenarios do."""
+        if way != "reviewed":
+            return way
+        ways = [(each.method, each.id) for each in self.verification if each.at is None]
+        is_tested = any(method == "test" for method, _ in ways) or not self.scenarios
+        return by_people(ways if is_tested else [*ways, ("test", "")])
 
     @property
     def whys(self) -> tuple[str, ...]:
@@ -233,6 +248,7 @@ class ExternalRow(Record):
     Attributes:
         title, status, url: empty without one.
         requirements: the keys of those that refine or mitigate it.
+        scenarios: those that verify it.
     """
 
     key: str
@@ -242,6 +258,7 @@ class ExternalRow(Record):
     url: str
     at: At
     requirements: tuple[str, ...]
+    scenarios: tuple[VerificationRow, ...] = ()
 
 
 class QualityRow(Record):

@@ -28,6 +28,7 @@ from btq_lang.trace.wording import (
     incomplete,
     remarks,
     shown_quality,
+    shown_scenario,
     state_of,
     summary,
 )
@@ -61,6 +62,7 @@ def render(overview: Overview, missions: Sequence[MissionVerdicts] = ()) -> str:
         ],
         names={each.key: each.name for each in overview.requirements},
         state_of=state_of,
+        shown_scenario=shown_scenario,
         requirement_heads=("Requirement", "Holds for", "How", *(("Evidence",) if overview.has_evidence else ())),
         requirements=[_requirement(row, _characteristics(row, characteristics)) for row in overview.requirements],
         build_heads=("Requirement", *(build.label or NO_LABEL for build in overview.builds)),

@@ -23,6 +23,7 @@ from btq_lang.trace.wording import (
     evidence_lines,
     remarks,
     shown_quality,
+    shown_scenario,
     state_of,
     summary,
 )
@@ -129,7 +130,8 @@ def _requirement(requirement: RequirementRow, folder: str, names: Mapping[str, s
     lines += [f"refined by {refining}"] if refining else []
     lines += approval_lines(requirement)
     lines[1:] = [f"  {line}" for line in lines[1:]]
-    return lines, subjects or ("nothing",), (*requirement.ways_in_words, *requirement.whys)
+    scenarios = [f"{shown_scenario(each)}, {_place(each.at, folder)}" for each in requirement.scenarios if each.at]
+    return lines, subjects or ("nothing",), (*requirement.ways_in_words, *requirement.whys, *scenarios)
 
 
 def _evidence(requirement: RequirementRow) -> Sequence[str]:

@@ -14,6 +14,7 @@ from btq_lang.trace.overview import (
     Overview,
     QualityRow,
     RequirementRow,
+    VerificationRow,
 )
 from btq_lang.util.text import counted
 
@@ -28,7 +29,16 @@ def incomplete(overview: Overview) -> str:
 
 
 def summary(overview: Overview) -> str:
-    """All counts, in a sentence."""
+    """All counts, in a sentence, and how many scenarios there are, in another."""
+    rows = [row.scenarios for row in overview.requirements]
+    scenarios = {scenario for of_row in (*rows, *(row.scenarios for row in overview.external)) for scenario in of_row}
+    if not scenarios:
+        return f"{_counts(overview)}."
+    verify = f"{counted(len(scenarios), 'scenario')} {'verifies' if len(scenarios) == 1 else 'verify'}"
+    return f"{_counts(overview)}. {verify} {counted(len([*filter(None, rows)]), 'requirement')}; {NOT_RUN}."
+
+
+def _counts(overview: Overview) -> str:
     of_rows = (use.clauses for row in overview.requirements for use in row.uses)
     clauses = [clause.way for clauses in of_rows for clause in clauses if clause.is_measurable]
     ways: dict[str, int] = {words: clauses.count(way) for way, words in WAYS_COUNTED.items()}
@@ -41,11 +51,11 @@ def summary(overview: Overview) -> str:
     sentence += f", {counted(len(overview.qualities), 'quality', 'qualities')}"
     skills = overview.coverage()
     if not sum(skills.values()):
-        return f"{sentence}."
+        return sentence
     whole = f"{sentence}; of {counted(sum(skills.values()), 'custom leaf node')}, {skills['own']}"
     whole += " carries" if skills["own"] == 1 else " carry"
     return (
-        f"{whole} a quality or a requirement, {skills['above']} only through a node above, {skills['none']} not at all."
+        f"{whole} a quality or a requirement, {skills['above']} only through a node above, {skills['none']} not at all"
     )
 
 
@@ -94,6 +104,7 @@ def chain_rows(overview: Overview) -> Iterator[tuple[HazardRow | ExternalRow, li
         yield hazard, remarks, [rows[key] for key in hazard.requirements]
     for external in overview.external:
         remarks = [external.status] if external.status else []
+        remarks += [f"{shown_scenario(scenario)}, {scenario.at}" for scenario in external.scenarios]
         yield external, remarks, [rows[key] for key in external.requirements]
 
 
@@ -105,12 +116,18 @@ def approval_lines(requirement: RequirementRow) -> Iterator[str]:
         yield OUTDATED
 
 
+def shown_scenario(scenario: VerificationRow) -> str:
+    """A scenario as it begins in the file."""
+    return f'scenario "{scenario.id}"'
+
+
 def state_of(requirement: RequirementRow) -> str:
-    """How a requirement is covered, the tests, reports and reviews that it names, its verdict, and whether its approval
-    is outdated.
+    """How a requirement is covered, the tests, reports and reviews that it names, the scenarios that verify it, its
+    verdict, and whether its approval is outdated.
     """
     by_tools = requirement.verification if "reviewed" not in requirement.ways else ()  # else its way names them
-    named = ", ".join(f'{way.method} "{way.id}"' for way in by_tools if way.id)
+    ways = [f'{way.method} "{way.id}"' for way in by_tools if way.id and way.at is None]
+    named = ", ".join((*ways, *map(shown_scenario, requirement.scenarios)))
     is_old = any(clause.is_suspect for clause in requirement.evidence)
     verdict = f"{requirement.verdict} (suspect)" if is_old else requirement.verdict
     outdated = OUTDATED if requirement.state == "suspect" else ""
@@ -132,5 +149,6 @@ GAPS: Final = {
 # The columns of the totals by characteristic.
 TOTALS: Final = ("Concerns", "Requirements", "Clauses enforced", "Clauses monitored", "Clauses, texts by people")
 NO_LABEL: Final = "(none)"
+NOT_RUN: Final = "btq trace runs no scenario, btq test does"
 OUTDATED: Final = "approval outdated"
 _ATTACHED: Final = {"apply": "by apply", "link": "a link only"}

@@ -183,6 +183,42 @@ def test_what_a_build_does_about_a_requirement_that_missions_share() -> None:
     )
 
 
+def test_a_requirement_that_scenarios_verify() -> None:
+    check_hover(
+        """
+        //- mission.btq
+        QualityReq <hover>so$0on</hover>
+            takes at most 3 s
+            verified by test
+        BehaviorTree Main
+            Pick satisfies soon
+        //- cases.btq
+        include "mission.btq"
+        scenario "It picks" verifies soon
+            expect soon
+        scenario "It fails"
+            expect soon violated
+        """,
+        """
+        **soon**
+
+        ```btq
+        takes at most 3 s
+        verified by test
+        ```
+
+        Enforcement by `btq build`:
+        - `takes at most 3 s`: **by test**
+
+        Attached to:
+        - `Pick` in `Main` (mission.btq)
+
+        Verified by:
+        - the scenario "It picks" (cases.btq)
+        """,
+    )
+
+
 def test_a_requirement_that_people_judge() -> None:
     check_hover(
         """

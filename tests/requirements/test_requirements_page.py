@@ -18,6 +18,8 @@ TESTED = re.compile(
     r"^```btq\n([^`]*)^```\n\n```console\n\$ btq test mission\.btq\n(.*?)^```$", re.DOTALL | re.MULTILINE
 )
 
+TRACED = re.compile(r"^```console\n\$ btq trace mission\.btq\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+
 
 def test_a_scenario_shows_what_the_page_shows(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
@@ -27,6 +29,9 @@ def test_a_scenario_shows_what_the_page_shows(
     (tmp_path / "mission.btq").write_text(mission, encoding="utf-8")
     assert main(["test", "mission.btq"]) == 0
     assert capfd.readouterr().out == shown
+    (overview,) = TRACED.findall(PAGE.read_text(encoding="utf-8").partition(shown)[2])
+    assert main(["trace", "mission.btq"]) == 0
+    assert capfd.readouterr().out.split("\nISO/IEC 25010")[0] == overview
 
 
 def steps() -> list[tuple[str, str]]:

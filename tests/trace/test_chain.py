@@ -78,9 +78,11 @@ def test_links_are_in_both_ends(folder: Path) -> None:
             "url": "https://x.org/1",
             "at": {"path": "reqs.csv", "line": 2, "column": 1},
             "requirements": ["r2"],
+            "scenarios": [],
         },
         {
-            **{"key": "x2", "id": "HAZ_9", "title": "Late", "status": "", "url": "", "requirements": ["r2"]},
+            **{"key": "x2", "id": "HAZ_9", "title": "Late", "status": "", "url": ""},
+            **{"requirements": ["r2"], "scenarios": []},
             "at": {"path": "reqs.csv", "line": 3, "column": 1},
         },
     ]

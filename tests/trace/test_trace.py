@@ -269,6 +269,7 @@ def test_csv() -> None:
         "build": "",
         **dict.fromkeys(("hazard", "severity", "external", "refines", "mitigates"), ""),
         **{"origin": "", "priority": "", "verified_by": "", "approval": "open", "suspect": "", "approved_by": ""},
+        "scenario": "",
     }
 
 

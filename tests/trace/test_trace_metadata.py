@@ -70,7 +70,10 @@ def test_requirements_and_hazards_in_json() -> None:
         "refines": ["top", "REQ-7"],
         "mitigates": ["H1"],
         "priority": "must",
-        "verified_by": [{"method": "test", "id": "TC-12"}, {"method": "monitor", "id": None}],
+        "verified_by": [
+            {"method": "test", "id": "TC-12", "at": None},
+            {"method": "monitor", "id": None, "at": None},
+        ],
         "approvals": [
             {"by": "Kim", "on": "2026-11-29", "of": "1:0123456789ab"},
             {"by": "Lee", "on": "2026-11-30", "of": None},
