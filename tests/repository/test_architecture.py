@@ -39,6 +39,7 @@ ROWS = (
     ("exploration",),
     ("projects",),
     ("scenarios",),
+    ("prediction",),
     ("ide", "trace"),
     ("preview",),
     ("commands", "lsp"),

@@ -1,0 +1,7 @@
+"""Runs that are drawn: how likely a mission does what it must, and how long it takes.
+
+One invariant: what a skill does is declared, measured or shown as assumed, and a condition is never assumed.
+
+    skill.py       what a skill does in a drawn activation
+    streams.py     the random numbers of one activation, the same in every process
+"""
