@@ -36,6 +36,10 @@ def violations(
         yield from violations(item, schema.get("items", {}), f"{at}[{index}]", definitions)
     if isinstance(value, list) and len(value) < schema.get("minItems", 0):
         yield f"{at}: fewer than {schema['minItems']}"
+    if isinstance(value, list) and len(value) > schema.get("maxItems", len(value)):
+        yield f"{at}: more than {schema['maxItems']}"
+    if isinstance(value, dict) and len(value) < schema.get("minProperties", 0):
+        yield f"{at}: fewer than {schema['minProperties']}"
     if isinstance(value, str) and len(value) < schema.get("minLength", 0):
         yield f"{at}: shorter than {schema['minLength']}"
     for part in schema.get("allOf", ()):

@@ -66,5 +66,6 @@ _DEFAULTS: Final = {
     "qualities": Project().qualities,
     "baseline": "",
     "evidence": {},
+    "simulate": {},
     "requirements": {},
 }

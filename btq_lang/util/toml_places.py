@@ -34,7 +34,10 @@ def find_key(text: str, keys: tuple[str, ...], value: str | None = None) -> Posi
             place, depth, end = start, shared, stop
     if place < 0:
         return None
-    words = [*map(re.escape, keys[depth:]), *([f"[\"']{re.escape(value)}[\"']"] if value is not None else [])]
+    words = [
+        *(rf"(?<![\w-]){re.escape(key)}(?![\w-])" for key in keys[depth:]),
+        *([f"[\"']{re.escape(value)}[\"']"] if value is not None else []),
+    ]
     for word in words:
         match = re.compile(word).search(text, place + 1, end)
         place = match.start() if match else place

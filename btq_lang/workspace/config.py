@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from btq_lang.workspace.external_requirements import ExternalRequirements, RequirementSettings
     from btq_lang.workspace.factories import Factory
     from btq_lang.workspace.project_evidence import EvidenceSettings
+    from btq_lang.workspace.project_simulation import SimulationSettings
 
 Kind: TypeAlias = "Literal['btq.toml', 'pyproject.toml']"
 PROJECT_FILES: tuple[Kind, ...] = ("btq.toml", "pyproject.toml")  # the first of those in a folder counts
@@ -51,6 +52,7 @@ class Project(Record):
         created: the trees of XML that C++ in the pools names, and probably creates.
         served: the folders from whose XML a server in the pools creates any tree by its ID.
         evidence: its table about logs, if it has one.
+        simulation: its table about simulated runs, if it has one.
         requirements: its table about requirements, if it has one.
         external_requirements: those that the files of this table have; None without any.
         factories: what each of its programs registers.
@@ -82,6 +84,7 @@ class Project(Record):
     created: frozenset[str] = frozenset()
     served: tuple[str, ...] = ()
     evidence: EvidenceSettings | None = None
+    simulation: SimulationSettings | None = None
     requirements: RequirementSettings | None = None
     external_requirements: ExternalRequirements | None = None
     factories: tuple[Factory, ...] = ()
@@ -360,6 +363,13 @@ def _evidence(key: str, value: object) -> _Read:
     return settings, [_Complaint(message, below) for message, below in complaints]
 
 
+def _simulation(key: str, value: object) -> _Read:
+    from btq_lang.workspace.project_simulation import read_simulation  # few projects simulate runs
+
+    settings, complaints = read_simulation(value)
+    return settings, [_Complaint(message, below) for message, below in complaints]
+
+
 def _requirements(key: str, value: object) -> _Read:
     from btq_lang.workspace.external_requirements import read_requirements  # few projects have this table
 
@@ -410,6 +420,7 @@ KEYS = {
     "rules": ("severities", _severities, "severities", "the severities of rules"),
     "overrides": ("overrides", _overrides, "overrides", "severities of rules in some files"),
     "evidence": ("evidence", _evidence, "evidence", "logs of what robots did, which btq verify reads"),
+    "simulate": ("simulation", _simulation, "simulate", "what skills and the world do in simulated runs"),
     "requirements": ("requirements", _requirements, "requirements", "requirements that other tools keep"),
     "factory": ("factories", _factories, "factories", "what one program registers before it creates a tree"),
 }

@@ -6,7 +6,8 @@ tables that `config` and `project_evidence` read by.  It is written in draft 4, 
 
 from __future__ import annotations
 
-from typing import Any, TypeAlias
+from collections.abc import Mapping
+from typing import Any, Final, TypeAlias
 
 from btq_lang.catalog.nav2 import PACKAGED
 from btq_lang.catalog.qualities import EDITIONS
@@ -20,8 +21,14 @@ from btq_lang.workspace.file import CPP_SUFFIXES
 from btq_lang.workspace.overrides import KEYS as OVERRIDE_KEYS
 from btq_lang.workspace.project_evidence import KEYS as EVIDENCE_KEYS
 from btq_lang.workspace.project_evidence import NUMBERS, OF_A_FILE, OF_A_TOPIC, SOURCE_KEYS, TEXTS
+from btq_lang.workspace.project_simulation import KEYS as SIMULATION_KEYS
+from btq_lang.workspace.project_simulation import OF_ACTIONS, OF_CONDITIONS, SKILL_KEYS, WORLD_KEYS
 
 Json: TypeAlias = "dict[str, Any]"
+
+
+_NUMBER: Final = r"[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?"
+_KINDS: Final = {"action": OF_ACTIONS, "condition": OF_CONDITIONS}
 
 
 def _ending(suffixes: tuple[str, ...]) -> str:
@@ -53,6 +60,9 @@ def project_schema() -> Json:
             "number": {"type": "number"},
             "evidence": _evidence(),
             "signal": _signal(),
+            "duration": _pattern(rf"^\s*\+?{_NUMBER}[ \t]*[A-Za-z]+\s*$"),
+            "quantity": {"anyOf": [_form("number"), _pattern(rf"^\s*(\+|-)?{_NUMBER}([ \t]*[^ \t]+)?\s*$")]},
+            "simulate": _simulation(),
             "requirements": _requirements(),
             "factories": _list(_factory()),
         },
@@ -61,7 +71,7 @@ def project_schema() -> Json:
 
 def _override() -> Json:
     forms = {"include": _list(_form("text"), minItems=1), "ignore": _form("rules"), "rules": _form("severities")}
-    return _table({key: {"description": doc, "allOf": [forms[key]]} for key, doc in OVERRIDE_KEYS.items()})
+    return _described(OVERRIDE_KEYS, forms)
 
 
 def _evidence() -> Json:
@@ -70,13 +80,13 @@ def _evidence() -> Json:
         "store": _form("text"),
         "signals": {"type": "object", "additionalProperties": _form("signal")},
     }
-    return _table({key: {"description": doc, "allOf": [forms[key]]} for key, doc in EVIDENCE_KEYS.items()})
+    return _described(EVIDENCE_KEYS, forms)
 
 
 def _requirements() -> Json:
     imports = _list({"type": "string", "pattern": _ending(IMPORTED_SUFFIXES)})
     forms = {"import": imports, **{key: {"enum": [*DEMANDS]} for key in ("approval", "source")}}
-    return _table({key: {"description": doc, "allOf": [forms[key]]} for key, doc in REQUIREMENT_KEYS.items()})
+    return _described(REQUIREMENT_KEYS, forms)
 
 
 def _signal() -> Json:
@@ -88,6 +98,50 @@ def _signal() -> Json:
         for kind, wanted, others in (OF_A_TOPIC, OF_A_FILE)
     ]
     return {**_table(keys), "oneOf": kinds}
+
+
+def _simulation() -> Json:
+    quantities = {"type": "object", "additionalProperties": _form("quantity")}
+    world = {
+        "start": {"anyOf": [_form("quantity"), {"type": "boolean"}, _pattern(r"\S")]},
+        "rate": _form("quantity"),
+        "while": quantities,
+        "between": {"anyOf": [_list(_form("quantity"), minItems=2, maxItems=2), {"enum": [[]]}]},
+    }
+    signal = {**_described(WORLD_KEYS, world), "required": ["start"]}
+    tables = {"skills": _skill(), "world": signal}
+    return _described(SIMULATION_KEYS, {key: {"type": "object", "additionalProperties": tables[key]} for key in tables})
+
+
+def _skill() -> Json:
+    """What a skill does: either an action or a condition."""
+    duration = _form("duration")
+    pairs = [("from", "to"), ("median", "p95")]
+    spreads = [{**_table(dict.fromkeys(pair, duration)), "required": [*pair]} for pair in pairs]
+    written = {"anyOf": [{"type": ["number", "boolean"]}, _pattern(r"\S")]}
+    forms = {
+        "takes": {"anyOf": [duration, _list(duration, minItems=2, maxItems=2), *spreads]},
+        "succeeds": _pattern(r"^\s*(100(\.0+)?|[0-9]{1,2}(\.[0-9]+)?)[ \t]*%\s*$"),
+        "writes": {"type": "object", "additionalProperties": written, "minProperties": 1},
+        "is": _pattern(r"\S"),
+        "fails": _pattern(rf"^\s*{_NUMBER} per ({_NUMBER} ?)?[A-Za-z]+\s*$"),
+        "for": duration,
+    }
+    has_any = {name: {"anyOf": [{"required": [key]} for key in keys]} for name, keys in _KINDS.items()}
+    is_both = {"allOf": [*has_any.values()]}
+    is_alone = [
+        {"required": [key], "not": {"required": [other]}} for key, other in (("fails", "for"), ("for", "fails"))
+    ]
+    return {**_described(SKILL_KEYS, forms), "minProperties": 1, "not": {"anyOf": [is_both, *is_alone]}}
+
+
+def _described(keys: Mapping[str, str], forms: Json) -> Json:
+    """A table with the line of each key and the form of its values."""
+    return _table({key: {"description": doc, "allOf": [forms[key]]} for key, doc in keys.items()})
+
+
+def _pattern(pattern: str) -> Json:
+    return {"type": "string", "pattern": pattern}
 
 
 def _factory() -> Json:

@@ -56,6 +56,7 @@ def test_show_settings(folder: Path) -> None:
         'ignore = ["old-quality-name"]            # btq.toml:2',
         'baseline = ""                            # default',
         "evidence = {}                            # default",
+        "simulate = {}                            # default",
         "requirements = {}                        # default",
         "factory = []                             # default",
         'rules.unknown-node = "warning"           # btq.toml:6',
