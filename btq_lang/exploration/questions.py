@@ -12,8 +12,7 @@ from typing import Final, TypeAlias
 from btq_lang.grammar.claims import parse_event
 from btq_lang.grammar.conditions import parse_cond, parse_path
 from btq_lang.grammar.cursor import Cursor
-from btq_lang.lexer import Lexer
-from btq_lang.requirements.entries import key_of
+from btq_lang.requirements.entries import key_of, line_of_text
 from btq_lang.syntax.tokens import BRACED, NEWLINE
 from btq_lang.syntax.tree import AnyEvent, Condition, Event, Path, Word
 from btq_lang.util.record import Record
@@ -76,7 +75,7 @@ def parse_question(text: str) -> Question:
     """
     if " ".join(text.split()) == "mission does not end":
         return Question(text, EndlessRun())
-    cursor = _cursor(text)
+    cursor = line_of_text(" ".join(text.split()))
     asked = _reads_unset(cursor) or _asked(cursor)
     if cursor.kind != NEWLINE and not cursor.problems:
         cursor.expected("`before`, `after` or the end of the question")
@@ -92,15 +91,6 @@ def _entries(cursor: Cursor) -> Iterator[Word]:
         word = cursor.take()
         if word.kind == BRACED:
             yield word
-
-
-def _cursor(text: str) -> Cursor:
-    lexer = Lexer(" ".join(text.split()))
-    cursor = Cursor(lexer, lambda _: False)
-    lexer.open_line()
-    cursor.in_scenario = True
-    cursor.scan()
-    return cursor
 
 
 def _reads_unset(cursor: Cursor) -> ReadsUnset | None:

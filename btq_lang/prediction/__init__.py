@@ -3,5 +3,6 @@
 One invariant: what a skill does is declared, measured or shown as assumed, and a condition is never assumed.
 
     skill.py       what a skill does in a drawn activation
+    declared.py    what btq.toml declares of skills and conditions
     streams.py     the random numbers of one activation, the same in every process
 """

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final, Literal, TypeAlias
 
 from btq_lang.prediction.streams import Stream
-from btq_lang.simulator.nodes import SUCCESS
+from btq_lang.simulator.nodes import SUCCESS, SimulatedNode
 from btq_lang.simulator.skills import Write
 from btq_lang.util.record import Record
 
@@ -18,7 +18,7 @@ class DrawnActivation(Record):
     Attributes:
         result: SUCCESS, FAILURE or SKIPPED; RUNNING: it does not end.
         takes: in milliseconds; of one that does not end, for how long that is known.
-        writes: at its end; None: unknown values.
+        writes: at its end; None: unknown values; `Skill.writes` has those that depend on entries.
         is_guess: it is beyond the longest measured activation.
     """
 
@@ -33,16 +33,30 @@ class Skill:
 
     Attributes:
         source: who says what it does.
+        keys: the entries, or ports that name some, of which it says what is written: their values are never unknown.
     """
 
-    __slots__ = ("source",)
+    __slots__ = ("keys", "source")
 
-    def __init__(self, source: Source) -> None:
+    def __init__(self, source: Source, keys: tuple[str, ...] = ()) -> None:
         self.source: Final = source
+        self.keys: Final = keys
 
     def draw(self, random: Stream) -> DrawnActivation:
         """Draw an activation; `random`: the stream of that activation."""
         raise NotImplementedError
+
+    def writes(self, node: SimulatedNode, drawn: DrawnActivation, has_real_truth: bool) -> tuple[Write, ...] | None:
+        """What it writes when an activation ends now; None: unknown values.
+
+        Args:
+            has_real_truth: as of scripts.
+
+        Raises:
+            EngineError: a script cannot be evaluated.
+            NotModelled: it needs a value that is unknown.
+        """
+        return drawn.writes
 
 
 class AssumedSkill(Skill):

@@ -16,6 +16,7 @@ identified by its facts.  What they read is in workspace/inputs.py.
     fingerprint.py, approval.py, approving.py   whether a requirement is approved as it is, and writing that
     shares.py, pooled.py   claims of a share of time, and those that are judged of all runs together
     classic.py, constraints.py   the same in SuccessIf and FailureIf of descriptions
+    simulation.py   the settings for simulated runs in a mission
     definitions.py   the requirement of a name
     attach.py    which requirement holds for which node
     durations.py, composition.py, budgets.py   how long nodes take when all that is demanded below them holds:

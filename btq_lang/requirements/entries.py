@@ -1,7 +1,9 @@
-"""Reading conditions of scenarios, which may name entries in braces."""
+"""Reading conditions of scenarios, of questions and of settings, which may name entries in braces."""
 
 from __future__ import annotations
 
+from btq_lang.grammar.cursor import Cursor
+from btq_lang.lexer import Lexer
 from btq_lang.requirements import model
 from btq_lang.requirements.reader import Reader
 from btq_lang.requirements.terms import Term
@@ -30,6 +32,16 @@ class ScenarioReader(Reader):
 
     def _entry(self, word: syntax.Word, sort: model.Sort) -> model.ResolvedSignal:
         return model.ResolvedSignal(word.raw, sort, None, key_of(word), "gauge", None, None, self.place(word.span))
+
+
+def line_of_text(text: str) -> Cursor:
+    """A cursor at the start of a line that is in no file, and may name entries as the lines of a scenario do."""
+    lexer = Lexer(text)
+    cursor = Cursor(lexer, lambda _: False)
+    lexer.open_line()
+    cursor.in_scenario = True
+    cursor.scan()
+    return cursor
 
 
 def key_of(word: syntax.Word) -> str:

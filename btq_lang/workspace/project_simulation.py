@@ -146,7 +146,10 @@ def _skill(name: str, table: object, mistakes: list[Complaint]) -> SkillSetting 
         if key in table:
             fields[field], wrong = read(table[key])
             mistakes += [(f"`{above}.{key}` {message}", (key, *below)) for message, below in wrong]
-    return SkillSetting(name, **fields)
+    setting = SkillSetting(name, **fields)
+    if setting.fails * setting.lasts >= 1:
+        mistakes.append((f"`{above}.for` must be shorter than the time from one failure to the next", ("for",)))
+    return setting
 
 
 _Read: TypeAlias = "tuple[Any, list[Complaint]]"  # the message without its subject, and the keys below

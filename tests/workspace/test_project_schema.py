@@ -75,7 +75,7 @@ METASCHEMA: dict[str, Any] = {
 
 
 INEXPRESSIBLE = re.compile(
-    "unknown unit|^duplicate factory|a `p95` above|the shorter duration|above 0 s|to a year|in the script of"
+    "unknown unit|^duplicate factory|a `p95` above|the shorter duration|above 0 s|to a year|to the next|script of"
 )
 
 

@@ -174,6 +174,10 @@ TAKES = (
             "2:31: `simulate.skills.Full.for` must be above 0 s",
         ),
         (
+            f'{SKILLS}Full = {{ fails = "6 per min", for = "10 s" }}',
+            "2:31: `simulate.skills.Full.for` must be shorter than the time from one failure to the next",
+        ),
+        (
             f"{WORLD}battery = {{}}",
             '2:1: `simulate.world.battery` must be a table with a `start` such as { start = "60 %" }',
         ),
