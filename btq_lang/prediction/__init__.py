@@ -5,5 +5,6 @@ One invariant: what a skill does is declared, measured or shown as assumed, and 
     skill.py       what a skill does in a drawn activation
     declared.py    what btq.toml declares of skills and conditions
     measured.py    what logs show of skills, with halted activations
+    measuring.py   reads that from logs and stores
     streams.py     the random numbers of one activation, the same in every process
 """

@@ -1,0 +1,165 @@
+"""Reads what skills did, from logs and from stores.
+
+One invariant: a run counts once, however often it is given, and what a log does not show is left out and counted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+from itertools import groupby
+from typing import Final
+
+from btq_lang.evidence.identity import Joined
+from btq_lang.evidence.judging import Means, rows_of
+from btq_lang.evidence.model import BEGUN_BEFORE, ROOT, Activation, LogSession
+from btq_lang.evidence.named_runs import joined_sessions
+from btq_lang.evidence.readers import NotALog, read
+from btq_lang.evidence.repeats import LoggedRuns, notes, repeated, without_copies
+from btq_lang.evidence.runs import activations
+from btq_lang.evidence.store.engine import asked
+from btq_lang.evidence.store.rows import node_names
+from btq_lang.evidence.store.tables import quoted
+from btq_lang.evidence.verdicts import OUTCOMES
+from btq_lang.prediction.measured import MeasuredActivation, MeasuredSkills
+from btq_lang.requirements.simulation import is_condition, is_skill
+from btq_lang.scenarios.mission import ScenarioMission
+from btq_lang.simulator.nodes import FAILURE, RUNNING, SUCCESS
+from btq_lang.util.record import Record
+from btq_lang.workspace.loader import shown
+
+
+class Measurement(Record):
+    """What skills did.
+
+    Attributes:
+        skills: in the runs that count.
+        foreign: how many runs are of other missions.
+        left_out: how many activations are left out, because it is unknown how long they took.
+        latest: how many halted ones may have been halted earlier than the log shows.
+        problems: why logs could not be read.
+        remarks: which runs are there twice.
+    """
+
+    skills: MeasuredSkills
+    foreign: int = 0
+    left_out: int = 0
+    latest: int = 0
+    problems: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
+
+
+def actions_of(mission: ScenarioMission) -> dict[int, tuple[str, str]]:
+    """The name and the kind of each action of a mission, by its number."""
+    names = node_names(mission.tree)
+    return {
+        uid: (names[uid], mission.tree.nodes[uid].kind)
+        for uid, node in mission.written.items()
+        if is_skill(node) and not is_condition(node)
+    }
+
+
+def measured_in_logs(logs: Sequence[str], mission: ScenarioMission) -> Measurement:
+    """What skills did in the runs of a mission that logs hold."""
+    means = Means([mission.joined.mission])
+    wanted, copies = without_copies(logs)
+    reading = _Reading()
+    problems: list[str] = []
+    for log in wanted:
+        try:
+            for _, session, joined in joined_sessions(read(log), means.missions, log):
+                reading.read(log, session, joined)
+        except NotALog as error:
+            problems.append(f"{shown(log)}: {error}")
+        except OSError as error:
+            problems.append(f"{shown(log)}: cannot be read: {error.strerror or error}")
+    repeats = repeated(reading.sessions, partial(rows_of, means=means))
+    twice = {(session.log, session.number): runs.keys() for session, runs in repeats}
+    counted = [run for key, run in reading.runs if key[2] not in twice.get(key[:2], ())]
+    same = [f"{shown(log)} is the same log as {shown(first)}, so it is not counted" for log, first in copies.items()]
+    remarks = *same, *notes(repeats, reading.sessions, shown)
+    skills = MeasuredSkills(counted)
+    return Measurement(skills, reading.foreign, reading.left_out, reading.latest, tuple(problems), remarks)
+
+
+class _Reading:
+    """Reads sessions.
+
+    Attributes:
+        sessions: where the runs are.
+        runs: the activations in each run, with its log, the number of its session there, and its own in that.
+    """
+
+    def __init__(self) -> None:
+        self.sessions: Final[list[LoggedRuns]] = []
+        self.runs: Final[list[tuple[tuple[str, int, int], list[MeasuredActivation]]]] = []
+        self.foreign = 0
+        self.left_out = 0
+        self.latest = 0
+
+    def read(self, log: str, session: LogSession, joined: Joined | str) -> None:
+        """Read a session, which is of the mission if it is joined."""
+        if isinstance(joined, str):
+            self.foreign += sum(activation.uid == ROOT for activation in activations(session))
+            return
+        number = sum(other.log == log for other in self.sessions)
+        runs = LoggedRuns(log, number, (joined.mission.path, None), session.robot)
+        self.sessions.append(runs)
+        names = _names(joined)
+        of_run: list[MeasuredActivation] = []
+        for activation in activations(session):
+            if activation.uid in session.tree.leaves:
+                of_run += self._measured(activation, names[activation.uid], session.tree.nodes[activation.uid].kind)
+            if activation.uid == ROOT:
+                self.runs.append(((log, number, len(runs.begins)), of_run))
+                runs.add(activation)
+                of_run = []
+
+    def _measured(self, activation: Activation, node: str, kind: str) -> Iterator[MeasuredActivation]:
+        if activation.timing in _UNKNOWN:
+            self.left_out += 1
+            return
+        self.latest += activation.timing == "latest"
+        yield MeasuredActivation(node, kind, _RESULTS.get(activation.outcome, RUNNING), activation.seconds)
+
+
+def _names(joined: Joined) -> dict[int, str]:
+    """The names of the nodes in a log: those that they have in the mission, if they are there."""
+    names = node_names(joined.tree)
+    in_mission = node_names(joined.build.tree())
+    return names | {uid: in_mission[number] for number, uid in joined.uids.items() if number in in_mission}
+
+
+def measured_in_store(store: str, name: str, label: str | None = None) -> Measurement:
+    """What skills did in the runs of a mission that a store keeps.
+
+    Args:
+        name: of the mission, as the store has it.
+        label: of the runs that count; None: all.
+
+    Raises:
+        NoEngine: DuckDB is missing, or the store has no sets or a damaged one.
+    """
+    rows = asked(store, label)(_ACTIVATIONS.format(mission=quoted(name)))
+    runs: list[list[MeasuredActivation]] = []
+    for _, of_run in groupby(rows, key=lambda row: (row["log"], row["run"])):
+        runs.append(
+            [
+                MeasuredActivation(row["node"], row["kind"], _RESULTS.get(row["outcome"], RUNNING), row["us"] / 1e6)
+                for row in of_run
+                if row["timing"] not in _UNKNOWN
+            ]
+        )
+    left_out = sum(row["timing"] in _UNKNOWN for row in rows)
+    latest = sum(row["timing"] == "latest" for row in rows)
+    return Measurement(MeasuredSkills(runs), 0, left_out, latest)
+
+
+_ACTIVATIONS: Final = """
+    SELECT log, run, node, kind, outcome, timing, end_us - start_us AS us
+    FROM activations
+    WHERE leaf AND mission = {mission}
+    ORDER BY log, run, start_us, uid, end_us
+"""
+_UNKNOWN: Final = (*BEGUN_BEFORE, "broken")
+_RESULTS: Final = {"S": SUCCESS, "F": FAILURE, OUTCOMES["S"]: SUCCESS, OUTCOMES["F"]: FAILURE}
