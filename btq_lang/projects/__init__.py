@@ -10,6 +10,7 @@ their contents.  Of command lines, only options are known here.
     cpp_files.py     C++ sources as files with the models of their nodes; `node_writers.py` writes such models
     scenario_files.py   the files with scenarios of requested missions
     external_files.py   files with the requirements of other tools
+    simulated_names.py   whether the names in `[simulate]` of a project file are those of its missions
     opening.py       a folder as a workspace
     building.py      a mission as XML, in memory, and what prevents a build
     build_files.py, import_files.py   missions on the disk as XML, and XML as missions; `messages.py`: their output

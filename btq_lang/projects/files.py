@@ -157,6 +157,8 @@ class Files:
             of_project, problems = self._groups_of(tops, home, projects.of, for_checks)
             groups += (_with_cpp(group, folders) for group in of_project)
             projects.problems += problems
+            if for_checks and home.project.simulation is not None:
+                projects.problems += self._simulation_problems(home, of_project, folders)
         for path in (*self.nav2_params, *self.project_files):
             projects.govern(path)
         for project_file, home in projects.governing.items():
@@ -215,6 +217,24 @@ class Files:
                 group = _with_created(self._with_pools(group, pools, project_of), tuple(pools))
             groups.append(group)
         return groups, problems
+
+    def _simulation_problems(
+        self, home: FoundProject, groups: Iterable[FileGroup], folders: Iterable[str]
+    ) -> list[LoadProblem]:
+        """What is wrong with the names in `[simulate]` of a project; `folders`: those that were requested."""
+        from btq_lang.projects.simulated_names import at_their_keys, checked_names  # few projects simulate runs
+
+        settings = home.project.simulation
+        assert settings is not None, "the caller has looked"
+        checked = checked_names(settings, [(group.workspace, group.given) for group in groups])
+        if checked.unknown and not f"{home.project.root.rstrip('/')}/".startswith(tuple(folders)):
+            parameter_files = [*self.parameter_files]
+            projects = _Projects(self.overlay, self._with_imports)
+            tops = self._requested([home.project.root], projects, with_xml=True).get(home.path or "", {})
+            all_groups, _ = self._groups_of(tops, home, projects.of, True)
+            checked = checked_names(settings, [(group.workspace, group.given) for group in all_groups])
+            self.parameter_files[:] = parameter_files
+        return at_their_keys(home, (*checked.problems, *checked.unknown), self.overlay)
 
     def _may_be_xml(self, path: str) -> bool:
         text = self.overlay.get(path)

@@ -63,6 +63,7 @@ class SettingsReader:
     Attributes:
         problems: what is wrong, in order.
         unknown: the same of names that the mission lacks: another mission of the project may have them.
+        known: the keys of the names that it has.
     """
 
     def __init__(self, store: Store[Workspace], viewpoint: str) -> None:
@@ -70,6 +71,7 @@ class SettingsReader:
         self._viewpoint: Final = viewpoint
         self.problems: list[Problem] = []
         self.unknown: Final[list[Problem]] = []
+        self.known: Final[set[tuple[str, ...]]] = set()
 
     def skill(self, setting: SkillSetting) -> ResolvedSkill | None:
         """A setting of a skill; None if the mission lacks its nodes."""
@@ -103,6 +105,7 @@ class SettingsReader:
             likely = did_you_mean(near(setting.signal, names, 1))
             self.unknown.append((f"unknown signal `{setting.signal}`{likely}", keys))
             return None
+        self.known.add(keys)
         before = len(self.problems)
         start = self._value(setting.start, signal, (*keys, "start"))
         rate = self._rate(setting.rate, signal, (*keys, "rate")) if setting.rate is not None else 0.0
@@ -149,6 +152,8 @@ class SettingsReader:
             likely = did_you_mean(near(name, names, 1)) if "/" not in name else ""
             what = "unknown node" if "/" not in name else "no node matches"
             self.unknown.append((f"{what} `{name}`{likely}", keys))
+        else:
+            self.known.add(keys)
         return targets
 
     def _reader(self) -> ScenarioReader | None:

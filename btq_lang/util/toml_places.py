@@ -12,7 +12,9 @@ from collections.abc import Iterator
 from btq_lang.util.text import LineIndex, Position
 
 _LONG_STRING = re.compile(r""""{3}.*?"{3}|'{3}.*?'{3}""", re.DOTALL)
-_KEY_LINE = re.compile(r"""^[ \t]*(?:\[{1,2}([^\[\]\n]+)\]|([\w.\-"' \t]+?)[ \t]*=)""", re.MULTILINE)
+_KEY_LINE = re.compile(
+    r"""^[ \t]*(?:\[{1,2}([^\[\]\n]+)\]|((?:[\w.\- \t]|"[^"\n]*"|'[^'\n]*')+?)[ \t]*=)""", re.MULTILINE
+)
 _WORD = re.compile(r"""[\w\-]+|"[^"\n]*"|'[^'\n]*'|[^\r\n]*""")
 _NAME = re.compile(r"""[\w\-]+|"[^"]*"|'[^']*'""")
 

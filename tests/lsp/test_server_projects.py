@@ -210,3 +210,13 @@ def test_a_project_file_is_not_told_of_where_only_open_files_are_wanted(folder: 
     editor.shut("robot/btq.toml")
     assert editor.published("robot/btq.toml")["diagnostics"] == []
     assert editor.close() == ""
+
+
+def test_names_of_simulated_skills_are_told(folder: Path) -> None:
+    editor = Editor(folder)
+    editor.write("robot/btq.toml", '[simulate.skills]\nDock = { takes = "6 s" }\n"A/Dck" = { takes = "6 s" }\n')
+    assert said(editor.published("robot/btq.toml")["diagnostics"]) == [
+        ((1, 0, 4), "unknown node `Dock`"),
+        ((2, 0, 7), "no node matches `A/Dck`"),
+    ]
+    assert editor.close() == ""
