@@ -84,7 +84,7 @@ class Outages:
     """
 
     def __init__(self, fails: float, lasts: float, random: Stream) -> None:
-        """The stream is that of the run: nobody else takes numbers of it."""
+        """Begin a run; `random`: its stream, of which nothing else takes numbers."""
         self._random: Final = random
         self._lasts: Final = lasts
         self._works: Final = 1 / fails - lasts  # for how long, on average

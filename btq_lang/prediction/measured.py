@@ -83,7 +83,7 @@ class MeasuredSkill(Skill):
         return self._drawn[min(bisect_right(self._steps, random.next()), len(self._drawn) - 1)]
 
     def probability(self, result: int, within: float = float("inf")) -> float:
-        """That an activation which nobody halts has a result.
+        """The probability that an activation has a result if it is not halted.
 
         Args:
             result: SUCCESS, FAILURE; RUNNING: it is longer than all that ended.

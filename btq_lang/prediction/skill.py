@@ -1,4 +1,4 @@
-"""What a skill does in a drawn activation, whoever says so."""
+"""What a skill does in a drawn activation, by whatever source."""
 
 from __future__ import annotations
 

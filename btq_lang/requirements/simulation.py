@@ -187,7 +187,7 @@ class SettingsReader:
     def _rate(self, said: SaidValue, signal: ResolvedSignal, keys: tuple[str, ...]) -> float:
         """A rate in the unit of the signal and seconds."""
         if isinstance(said.value, bool | str) or signal.sort != "number":
-            self.problems.append((f"expected a number that changes, but `{signal.name}` is none", keys))
+            self.problems.append((f"`{signal.name}` cannot change with time, because it is not a number", keys))
             return 0.0
         own = signal.unit
         if own is None or said.unit is None:
