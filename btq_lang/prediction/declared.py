@@ -20,7 +20,7 @@ from btq_lang.requirements.simulation import (
 )
 from btq_lang.scenarios.mission import ScenarioMission
 from btq_lang.simulator.blackboard import type_of
-from btq_lang.simulator.nodes import FAILURE, SUCCESS, SimulatedNode
+from btq_lang.simulator.nodes import FAILURE, RUNNING, SUCCESS, SimulatedNode
 from btq_lang.simulator.scripts import evaluate
 from btq_lang.simulator.skills import Write
 from btq_lang.syntax.script.parser import parse_script
@@ -52,11 +52,16 @@ class DeclaredSkill(Skill):
         """Draw a duration and a result; each has a number of its own, whether it is needed or not."""
         place, chance = random.next(), random.next()
         base = self._base.draw(random) if self._base is not None else _AT_ONCE
+        if self._takes is None and base.result == RUNNING:
+            return base
         takes = base.takes if self._takes is None else round(quantile(self._takes, place) * 1000)
-        result = base.result
         if self._succeeds is not None:
-            result = SUCCESS if chance < self._succeeds else FAILURE
-        return DrawnActivation(result, takes, base.writes, base.is_guess)
+            return DrawnActivation(SUCCESS if chance < self._succeeds else FAILURE, takes, base.writes)
+        for _ in range(_MOST_DRAWS):  # one that runs on, which the declared duration excludes
+            if base.result != RUNNING or self._base is None:
+                break
+            base = self._base.draw(random)
+        return DrawnActivation(base.result, takes, base.writes)
 
     def writes(self, node: SimulatedNode, drawn: DrawnActivation, has_real_truth: bool) -> tuple[Write, ...] | None:
         """The values of its scripts, where it succeeds."""
@@ -171,11 +176,6 @@ def declared_world(
     return DeclaredWorld(skills, conditions, signals, tuple(reader.problems))
 
 
-def declared_skills(settings: SimulationSettings, mission: ScenarioMission) -> dict[int, Skill]:
-    """What is declared of the actions of a mission, by the numbers of the nodes."""
-    return declared_world(settings, mission).skills
-
-
 def _skill(settings: list[SkillSetting], measured: Skill | None) -> DeclaredSkill:
     """What the settings of an action say, the most specific one first."""
     takes = next((each.takes for each in settings if each.takes is not None), None)
@@ -196,5 +196,6 @@ def _condition(resolved: list[ResolvedSkill]) -> DeclaredCondition:
 
 
 _AT_ONCE: Final = DrawnActivation(SUCCESS, 0, ())
+_MOST_DRAWS: Final = 100
 _NORMAL: Final = NormalDist()
 _P95: Final = _NORMAL.inv_cdf(0.95)

@@ -6,6 +6,7 @@ splittable pseudorandom number generators, OOPSLA 2014 (SplitMix64).
 
 from __future__ import annotations
 
+from functools import lru_cache
 from hashlib import blake2b
 from typing import Final
 
@@ -17,8 +18,7 @@ class Stream:
 
     def __init__(self, seed: int, skill: str, run: int) -> None:
         """Begin the stream of a run; `skill`: a name, as the path of its node."""
-        name = blake2b(f"{seed}\0{skill}".encode(), digest_size=8).digest()
-        self._state = _mixed(int.from_bytes(name, "little") ^ _mixed(run * _STEP & _MASK))
+        self._state = _mixed(_hashed(seed, skill) ^ _mixed(run * _STEP & _MASK))
 
     def activation(self, number: int) -> Stream:
         """The stream of an activation of the run, by its number."""
@@ -30,6 +30,11 @@ class Stream:
         """The next number."""
         self._state = (self._state + _STEP) & _MASK
         return ((_mixed(self._state) >> _UNUSED) + 0.5) * _SCALE
+
+
+@lru_cache(1024)
+def _hashed(seed: int, skill: str) -> int:
+    return int.from_bytes(blake2b(f"{seed}\0{skill}".encode(), digest_size=8).digest(), "little")
 
 
 def _mixed(bits: int) -> int:

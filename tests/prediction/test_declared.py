@@ -10,12 +10,13 @@ import pytest
 
 from btq_lang.catalog.units import Unit
 from btq_lang.prediction.declared import DeclaredCondition, DeclaredSkill, DeclaredWorld, Outages, declared_world
+from btq_lang.prediction.measured import MeasuredActivation, MeasuredSkill
 from btq_lang.prediction.skill import AssumedSkill, DrawnActivation, Skill
 from btq_lang.prediction.streams import Stream
 from btq_lang.requirements.model import All, Compare, NodeTarget, Quantity, signals_in
 from btq_lang.scenarios.mission import ScenarioMission, as_program
 from btq_lang.simulator.blackboard import DOUBLE, Board
-from btq_lang.simulator.nodes import FAILURE, SUCCESS, SimulatedNode
+from btq_lang.simulator.nodes import FAILURE, RUNNING, SUCCESS, SimulatedNode
 from btq_lang.simulator.skills import Write
 from btq_lang.workspace.config import parse_project
 from btq_lang.workspace.project_simulation import Spread
@@ -155,20 +156,27 @@ def test_writes_are_computed_where_it_succeeds() -> None:
     assert skill.writes(node(board), failure, True) == ()
 
 
-class Measured(Skill):
-    def draw(self, random: Stream) -> DrawnActivation:
-        return DrawnActivation(FAILURE, 77, None, True)
+def measured(*activations: tuple[int, float]) -> MeasuredSkill:
+    return MeasuredSkill([(MeasuredActivation("Pick", "Pick", result, seconds), 1) for result, seconds in activations])
 
 
 def test_what_is_not_declared_is_measured() -> None:
-    (stream,) = [Stream(1, "x", 0).activation(0)]
-    only_writes = DeclaredSkill(writes=[("tubes", "1")], base=Measured("measured"))
-    assert (only_writes.source, only_writes.draw(stream)) == ("measured", DrawnActivation(FAILURE, 77, None, True))
-    with_time = DeclaredSkill(Spread("fixed", 2, 2), base=Measured("measured"))
-    assert (with_time.source, with_time.draw(stream)) == ("measured", DrawnActivation(FAILURE, 2_000, None, True))
-    whole = DeclaredSkill(Spread("fixed", 2, 2), 1.0, base=Measured("measured"))
+    base = measured((FAILURE, 7))
+    stream = Stream(1, "x", 0).activation(0)
+    only_writes = DeclaredSkill(writes=[("tubes", "1")], base=base)
+    assert (only_writes.source, only_writes.draw(stream)) == ("measured", DrawnActivation(FAILURE, 7_000))
+    with_time = DeclaredSkill(Spread("fixed", 2, 2), base=base)
+    assert (with_time.source, with_time.draw(stream)) == ("measured", DrawnActivation(FAILURE, 2_000))
+    whole = DeclaredSkill(Spread("fixed", 2, 2), 1.0, base=base)
     assert (whole.source, whole.draw(stream)) == ("declared", DrawnActivation(SUCCESS, 2_000, ()))
     assert AssumedSkill().draw(stream) == DrawnActivation(SUCCESS, 0, ())
+
+
+def test_a_measured_skill_that_runs_on_ends_only_if_its_duration_is_declared() -> None:
+    base = measured((FAILURE, 7), (RUNNING, 8), (RUNNING, 9))
+    guess = DrawnActivation(RUNNING, 9_000, None, True)
+    assert {*drawn(DeclaredSkill(succeeds=1.0, base=base))} == {guess, DrawnActivation(SUCCESS, 7_000)}
+    assert {*drawn(DeclaredSkill(Spread("fixed", 2, 2), base=base))} == {DrawnActivation(FAILURE, 2_000)}
 
 
 def test_conditions_are_read_over_signals_and_entries(mission: ScenarioMission) -> None:
