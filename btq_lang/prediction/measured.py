@@ -16,9 +16,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import accumulate, groupby
 from typing import Final, Literal, TypeAlias
 
+from btq_lang.evidence.model import SampleValue
 from btq_lang.prediction.skill import DrawnActivation, Skill
 from btq_lang.prediction.streams import Stream
+from btq_lang.simulator.blackboard import BOOL, type_of
 from btq_lang.simulator.nodes import RUNNING
+from btq_lang.simulator.skills import Write
 from btq_lang.util.record import Record
 
 Scope: TypeAlias = Literal["path", "kind"]
@@ -32,12 +35,14 @@ class MeasuredActivation(Record):
         kind: the name under which the skill is registered.
         result: SUCCESS or FAILURE; RUNNING: it was halted, or the log ends.
         seconds: how long it took, or had taken by then.
+        writes: the values of entries when it ended, by the ports that name them, as far as they are known.
     """
 
     node: str
     kind: str
     result: int
     seconds: float
+    writes: tuple[tuple[str, SampleValue], ...] = ()
 
 
 class MeasuredSkill(Skill):
@@ -66,7 +71,7 @@ class MeasuredSkill(Skill):
             ends = [(each, times) for each, times in weighed if each.result != RUNNING]
             for each, times in ends:  # before the halts of this time, which could have seen them
                 masses.append(mass * times / at_risk)
-                drawn.append(DrawnActivation(each.result, _milliseconds(each)))
+                drawn.append(DrawnActivation(each.result, _milliseconds(each), _writes(each)))
             mass *= 1 - sum(times for _, times in ends) / at_risk
             at_risk -= sum(times for _, times in weighed)
         self.by: Final = by
@@ -145,6 +150,18 @@ class MeasuredSkills:
             drawn = [(each, times[run]) for each, run in self._by[key] if run in times]
             activations = drawn or activations
         return MeasuredSkill(activations, key[0])
+
+
+def _writes(activation: MeasuredActivation) -> tuple[Write, ...] | None:
+    """What is known of the values that it wrote; None: nothing is."""
+    values = [(port, value, isinstance(value, bool)) for port, value in activation.writes]
+    return (
+        tuple(
+            Write(port, int(value) if is_bool else value, BOOL if is_bool else type_of(value))
+            for port, value, is_bool in values
+        )
+        or None
+    )
 
 
 def _milliseconds(activation: MeasuredActivation) -> int:

@@ -5,14 +5,14 @@ One invariant: a run counts once, however often it is given, and what a log does
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from itertools import groupby
 from typing import Final
 
 from btq_lang.evidence.identity import Joined
 from btq_lang.evidence.judging import Means, rows_of
-from btq_lang.evidence.model import BEGUN_BEFORE, ROOT, Activation, LogSession
+from btq_lang.evidence.model import BEGUN_BEFORE, ROOT, Activation, LogSession, SampleSeries, SampleValue
 from btq_lang.evidence.named_runs import joined_sessions
 from btq_lang.evidence.readers import NotALog, read
 from btq_lang.evidence.repeats import LoggedRuns, notes, repeated, without_copies
@@ -25,6 +25,7 @@ from btq_lang.prediction.measured import MeasuredActivation, MeasuredSkills
 from btq_lang.requirements.simulation import is_condition, is_skill
 from btq_lang.scenarios.mission import ScenarioMission
 from btq_lang.simulator.nodes import FAILURE, RUNNING, SUCCESS
+from btq_lang.simulator.ports import key_of
 from btq_lang.util.record import Record
 from btq_lang.workspace.loader import shown
 
@@ -63,7 +64,7 @@ def measured_in_logs(logs: Sequence[str], mission: ScenarioMission) -> Measureme
     """What skills did in the runs of a mission that logs hold."""
     means = Means([mission.joined.mission])
     wanted, copies = without_copies(logs)
-    reading = _Reading()
+    reading = _Reading(mission.outputs)
     problems: list[str] = []
     for log in wanted:
         try:
@@ -90,7 +91,9 @@ class _Reading:
         runs: the activations in each run, with its log, the number of its session there, and its own in that.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, outputs: Mapping[str, tuple[str, ...]]) -> None:
+        """outputs: the ports through which skills write, by their kinds."""
+        self._outputs: Final = outputs
         self.sessions: Final[list[LoggedRuns]] = []
         self.runs: Final[list[tuple[tuple[str, int, int], list[MeasuredActivation]]]] = []
         self.foreign = 0
@@ -106,21 +109,26 @@ class _Reading:
         runs = LoggedRuns(log, number, (joined.mission.path, None), session.robot)
         self.sessions.append(runs)
         names = _names(joined)
+        entries = dict(_entries(joined, self._outputs))
         of_run: list[MeasuredActivation] = []
         for activation in activations(session):
-            if activation.uid in session.tree.leaves:
-                of_run += self._measured(activation, names[activation.uid], session.tree.nodes[activation.uid].kind)
+            uid = activation.uid
+            if uid in session.tree.leaves and self._is_known(activation):
+                writes = _written(activation, entries.get(uid, {}), session.samples)
+                result = _RESULTS.get(activation.outcome, RUNNING)
+                kind = session.tree.nodes[uid].kind
+                of_run.append(MeasuredActivation(names[uid], kind, result, activation.seconds, writes))
             if activation.uid == ROOT:
                 self.runs.append(((log, number, len(runs.begins)), of_run))
                 runs.add(activation)
                 of_run = []
 
-    def _measured(self, activation: Activation, node: str, kind: str) -> Iterator[MeasuredActivation]:
-        if activation.timing in _UNKNOWN:
-            self.left_out += 1
-            return
+    def _is_known(self, activation: Activation) -> bool:
+        """Whether the log shows how long it took, at least."""
+        is_known = activation.timing not in _UNKNOWN
+        self.left_out += not is_known
         self.latest += activation.timing == "latest"
-        yield MeasuredActivation(node, kind, _RESULTS.get(activation.outcome, RUNNING), activation.seconds)
+        return is_known
 
 
 def _names(joined: Joined) -> dict[int, str]:
@@ -128,6 +136,30 @@ def _names(joined: Joined) -> dict[int, str]:
     names = node_names(joined.tree)
     in_mission = node_names(joined.build.tree())
     return names | {uid: in_mission[number] for number, uid in joined.uids.items() if number in in_mission}
+
+
+def _entries(joined: Joined, outputs: Mapping[str, tuple[str, ...]]) -> Iterator[tuple[int, dict[str, str]]]:
+    """The entries into which the nodes in a log write, by their ports."""
+    for instance, _ in joined.build.running.all:
+        uid = joined.uids.get(instance.uid or 0)
+        ports = outputs.get(joined.tree.nodes[uid].kind, ()) if uid is not None else ()
+        keys = {port: key for port in ports if (key := key_of(instance.element.get(port) or "", port)) is not None}
+        if uid is not None and keys:
+            yield uid, {port: key.removeprefix("@") for port, key in keys.items()}
+
+
+def _written(
+    activation: Activation, entries: Mapping[str, str], samples: Mapping[str, SampleSeries]
+) -> tuple[tuple[str, SampleValue], ...]:
+    """The values of entries with the row by which an activation ended: an earlier sample may be from before it, and a
+    later one from another node.
+    """
+    values: list[tuple[str, SampleValue]] = []
+    for port, key in entries.items():
+        sample = samples[key].at(activation.end) if key in samples else None
+        if sample is not None and sample[0] == activation.end and sample[1] is not None:
+            values.append((port, sample[1]))
+    return tuple(values)
 
 
 def measured_in_store(store: str, name: str, label: str | None = None) -> Measurement:

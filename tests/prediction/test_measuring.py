@@ -10,6 +10,7 @@ from pathlib import Path
 from statistics import median, variance
 
 import pytest
+from evidence_logs import as_logged, rows, write_db3
 from in_process import run_btq
 
 from btq_lang.prediction.measured import MeasuredActivation, MeasuredSkill, MeasuredSkills
@@ -18,7 +19,9 @@ from btq_lang.prediction.streams import Stream
 from btq_lang.projects.files import Files
 from btq_lang.scenarios.mission import ScenarioMission, as_program
 from btq_lang.simulator.nodes import FAILURE, RUNNING, SUCCESS
+from btq_lang.simulator.skills import Write
 from btq_lang.util.record import replace
+from btq_lang.workspace.workspace import Workspace
 
 TREES = {"lab": ("lab.xml", "mainTree"), "nav": ("nav.xml", "NavigateToPoseWReplanningAndRecovery")}
 LOGS = {"lab": "lab", "nav": "nav", "nav_noidle": "nav"}
@@ -125,6 +128,32 @@ def test_halted_activations_are_kept(shared: Path, mission_of: Mission) -> None:
         skill = measurement.skills.of_nodes(actions_of(mission))[plan]
         assert (skill.by, skill.number, skill.number - skill.ended) == ("path", number, halted)
     assert measurement.latest > 0
+
+
+def test_entries_are_drawn_with_the_activation(tmp_path: Path) -> None:
+    """As far as the logger's callback notes them with the row of the result."""
+    text = (
+        "Action Count\n    output tubes : int\n    output full : bool\n    output pose : string\n\n"
+        "BehaviorTree Main\n    ->\n        Count (tubes = {@left} full = {is_full} pose = {pose})\n"
+    )
+    (tmp_path / "main.btq").write_text(text, encoding="utf-8")
+    assert run_btq("build", "main.btq", cwd=tmp_path)[0] == 0
+    xml = as_logged((tmp_path / "main.xml").read_text(encoding="utf-8"))
+    transitions = rows("1R 2R 10 2S 1S 1I 100 1R 2R 120 2F 1F 1I")
+    extra = {
+        1: '{"left": 9}',  # when it begins
+        2: '{"left": 3, "is_full": true, "other": 1}',
+        7: '{"left": 2}',
+    }
+    write_db3(tmp_path / "run.db3", xml, [transitions], extra)
+    workspace = Workspace.of({"main.btq": text})
+    mission = ScenarioMission(as_program(workspace, "main.btq", "Main"), "main.btq", "Main")
+    (skill,) = measured_in_logs([str(tmp_path / "run.db3")], mission).skills.of_nodes(actions_of(mission)).values()
+    draws = {skill.draw(Stream(1, "x", run).activation(0)) for run in range(100)}
+    assert {(each.result, each.writes) for each in draws} == {
+        (SUCCESS, (Write("tubes", 3, "long"), Write("full", 1, "bool"))),
+        (FAILURE, (Write("tubes", 2, "long"),)),
+    }
 
 
 # ---- one half predicts the other (foresight §7) ----
