@@ -193,7 +193,7 @@ QUERIES: Final = {
                     PARTITION BY {by_verdicts}, verdicts.requirement, verdicts.clause, verdicts.node
                     ORDER BY runs.start_us DESC, verdicts.end_us DESC, runs.log DESC, runs.run DESC
                 ) AS judgements_back,
-                MAX(runs.end_us) OVER (PARTITION BY {by_verdicts}) AS last_us
+                runs.last_us AS last_us
             FROM verdicts
             JOIN (
                 SELECT DISTINCT log, mission, robot, requirement, clause, last_number, last_of, last_seconds
@@ -203,7 +203,8 @@ QUERIES: Final = {
                 ON verdicts.log = windows.log AND verdicts.mission = windows.mission
                 AND verdicts.robot = windows.robot AND verdicts.requirement = windows.requirement
                 AND verdicts.clause = windows.clause
-            JOIN runs ON verdicts.log = runs.log AND verdicts.run = runs.run
+            JOIN (SELECT *, MAX(end_us) OVER (PARTITION BY {by}) AS last_us FROM runs) AS runs
+                ON verdicts.log = runs.log AND verdicts.run = runs.run
         ) AS placed
         WHERE (last_of = 'runs' AND runs_back <= last_number)
             OR (last_of = 'activations' AND judgements_back <= last_number)
