@@ -1,4 +1,4 @@
-"""A fleet: logs of many robots with several versions of their software, made by the model of the engine that the tests
+"""A fleet: logs of many robots with several versions of their software, made in the model of the engine that scenarios
 have, and what it takes to judge them, to keep the verdicts, to compare the last two versions and to write the overview.
 
     python bench/fleet.py [--robots N] [--twins N] [--days N] [--runs N] [--jobs N] [--keep FOLDER] [--json]
@@ -25,12 +25,14 @@ from report import ENVIRONMENT, as_data, machine, options
 from robot_log import FETCH, SECONDS, logged_xml, skill_of
 
 # robot_log has put the tests on the path
-from engine_simulator import FAILURE, IDLE, SUCCESS  # isort: skip
 from evidence_logs import Row, btlog  # isort: skip
 from random_runs import START, LoggedRun  # isort: skip
+from simulated_runs import bare  # isort: skip
 
 from btq_lang.evidence.identity import Candidate
+from btq_lang.evidence.model import FAILURE, SUCCESS
 from btq_lang.evidence.store.tables import ROWS
+from btq_lang.scenarios.mission import ScenarioMission
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
@@ -65,17 +67,15 @@ DAY = 86_400_000_000  # µs
 class VersionRun(LoggedRun):
     """A run with a version of the software."""
 
-    def __init__(self, mission: Candidate, version: str, seed: int, rows: list[Row]) -> None:
-        root = mission.requirements.mission
-        assert root is not None
-        super().__init__(mission, root, random.Random(seed), rows, resets=True)
+    def __init__(self, mission: ScenarioMission, version: str, seed: int, rows: list[Row]) -> None:
+        super().__init__(mission, random.Random(seed), rows, resets=True)
         seconds, fails = VERSIONS[version]
         self.seconds, self.fails = {**SECONDS, **seconds}, {**FAILS, **fails}
 
     def drawn(self, leaf: ResolvedNode) -> float:
         return self.seconds[skill_of(leaf)] * self.chance.uniform(0.7, 1.3)
 
-    def ended(self, leaf: ResolvedNode) -> str:
+    def ended(self, leaf: ResolvedNode) -> int:
         return FAILURE if self.chance.random() < self.fails[skill_of(leaf)] else SUCCESS
 
 
@@ -87,9 +87,9 @@ def write_logs(folder: Path, robots: int, versions: list[str], days: int, runs: 
     """
     (folder / "fetch.btq").write_text(MISSION, encoding="utf-8")
     mission = Candidate(Workspace.of({"fetch.btq": MISSION}), "fetch.btq", "fetch", None)
-    xml = logged_xml(mission)
+    xml, written = logged_xml(mission), bare(mission)
     for number, version in enumerate(versions):
-        base = [_rows(mission, version, number * BASE + seed) for seed in range(min(BASE, robots * days * runs))]
+        base = [_rows(written, version, number * BASE + seed) for seed in range(min(BASE, robots * days * runs))]
         for robot in range(robots):
             chance = random.Random(robot * len(versions) + number)
             pace = 0.98 + 0.04 * random.Random(robot).random()  # no two robots are alike
@@ -101,12 +101,10 @@ def write_logs(folder: Path, robots: int, versions: list[str], days: int, runs: 
                 (target / f"{day + 1:02}.btlog").write_bytes(btlog(xml, rows, start))
 
 
-def _rows(mission: Candidate, version: str, seed: int) -> list[Row]:
+def _rows(mission: ScenarioMission, version: str, seed: int) -> list[Row]:
     """The rows of a run; those of one tick are 20 µs apart."""
     rows: list[Row] = []
-    run = VersionRun(mission, version, seed, rows)
-    run.mission()
-    run.write(run.root, IDLE)
+    VersionRun(mission, version, seed, rows).run()
     return [(time - START + 20 * index, uid, status) for index, (time, uid, status) in enumerate(rows)]
 
 

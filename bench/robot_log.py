@@ -1,5 +1,5 @@
 """Missions with ten requirements, and what the engine logs of them: a tiny one, whose runs have nine rows, and one as
-large as robots' missions are, run by the model of the engine that the tests have."""
+large as robots' missions are, run in the model of the engine that scenarios have."""
 
 from __future__ import annotations
 
@@ -11,14 +11,15 @@ from itertools import cycle
 from pathlib import Path
 
 sys.path.extend(str(Path(__file__).resolve().parents[1] / folder) for folder in ("tests", "tests/evidence"))
-from engine_simulator import IDLE
 from evidence_logs import Row, as_logged
 from random_runs import START, LoggedRun
+from simulated_runs import bare
 
 from btq_lang.btcpp.document import write as xml_of
 from btq_lang.btcpp.export import export
 from btq_lang.evidence.identity import Candidate
 from btq_lang.evidence.model import SampleSeries
+from btq_lang.scenarios.mission import ScenarioMission
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
@@ -159,7 +160,8 @@ def tiny() -> Robot:
 def fetching() -> Robot:
     """A robot that fetches things: loops, retries, and driving that stops when the way is not clear."""
     mission = Candidate(Workspace.of({"a.btq": FETCH}), "a.btq", "a", None)
-    return Robot(mission, logged_xml(mission), [_run(mission, random.Random(seed)) for seed in range(RUNS)])
+    written = bare(mission)
+    return Robot(mission, logged_xml(mission), [_run(written, random.Random(seed)) for seed in range(RUNS)])
 
 
 def battery(until: int) -> dict[str, SampleSeries]:
@@ -179,14 +181,10 @@ def logged_xml(mission: Candidate) -> str:
     return as_logged(xml_of(export(mission.workspace, mission.path).document))
 
 
-def _run(mission: Candidate, chance: random.Random) -> list[Row]:
+def _run(mission: ScenarioMission, chance: random.Random) -> list[Row]:
     """The rows of a run; those of one tick are 20 µs apart."""
-    root = mission.requirements.mission
-    assert root is not None
     rows: list[Row] = []
-    run = _Timed(mission, root, chance, rows, resets=True)
-    run.mission()
-    run.write(run.root, IDLE)
+    _Timed(mission, chance, rows, resets=True).run()
     return [(time - START + 20 * index, uid, status) for index, (time, uid, status) in enumerate(rows)]
 
 

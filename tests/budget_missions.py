@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
+import random
+import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from hypothesis import strategies as st
 from requirement_problems import problems_of
+from simulated_runs import SimulatedRuns
 
 from btq_lang.catalog.nav2 import FILES
+from btq_lang.requirements.model import Quantity
 from btq_lang.requirements.resolve import Requirements, requirements
+from btq_lang.scenarios.mission import ScenarioMission
+from btq_lang.simulator.blackboard import BOOL
+from btq_lang.simulator.nodes import FAILURE, SKIPPED, SimulatedNode
+from btq_lang.simulator.ports import write
+from btq_lang.simulator.ticking import reset_child
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.file import File
+from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
 NAV2 = File(FILES["lyrical"], Path(FILES["lyrical"]).read_text(encoding="utf-8"))
@@ -28,7 +38,7 @@ GROUPS = {
     "other": ("IfThenElse", "WhileDoElse", "TryCatch", "Switch"),
     "many of Nav2": ("PipelineSequence", "RoundRobin", "NonblockingSequence", "PersistentSequence"),
     "two of Nav2": ("RecoveryNode",),
-    "one of Nav2": ("RateController", "DistanceController", "GoalUpdater", "PathLongerOnApproach", "SingleTrigger"),
+    "one of Nav2": ("RateController", "DistanceController", "PathLongerOnApproach", "SingleTrigger"),
     "leaf": ("SubTree",),
 }
 
@@ -71,7 +81,10 @@ def tree(draw: st.DrawFn, depth: int, sub: bool, may_skip: bool = True, top: str
         head, children = one_of(GROUPS["order"]), below(draw(st.integers(1, 3)))
     elif group == "reactive":
         head = one_of(GROUPS["reactive"])
-        children = [["Condition C"] for _ in range(draw(st.integers(0, 2)))] + below(draw(st.integers(1, 2)))
+        first, *others = below(draw(st.integers(1, 2)))
+        for other in others:
+            other[0] = other[0].replace("A->", "->")  # the engine refuses two that are asynchronous
+        children = [["Condition C"] for _ in range(draw(st.integers(0, 2)))] + [first, *others]
     elif group == "parallel":
         count = draw(st.integers(1, 3))
         children = below(count)
@@ -87,8 +100,8 @@ def tree(draw: st.DrawFn, depth: int, sub: bool, may_skip: bool = True, top: str
         choices += ["Inverter", "ForceSuccess", "ForceFailure", "KeepRunningUntilFailure", "RunOnce"]
         choices += [
             "RunOnce (then_skip = false)",
-            'Precondition (if = "@x" else = SKIPPED)',
-            'Precondition (if = "@x")',
+            'Precondition (if = "!@x" else = SKIPPED)',
+            'Precondition (if = "!@x")',
         ]
         head = one_of(choices)
         children = below(skipping=may_skip)
@@ -106,10 +119,12 @@ def tree(draw: st.DrawFn, depth: int, sub: bool, may_skip: bool = True, top: str
     if group not in ("leaf", "one") and not may_skip:
         return ["Condition C"]
     if may_skip and not head.startswith("SubTree") and draw(st.integers(0, 5)) == 0:
-        attribute = draw(st.sampled_from(["_skipIf", "_while", "_failureIf", "_successIf"]))
-        head = f'{head[:-1]} {attribute} = "@x")' if head.endswith(")") else head
+        attribute = draw(
+            st.sampled_from(['_skipIf = "@x"', '_while = "!@x"', '_failureIf = "@x"', '_successIf = "@x"'])
+        )
+        head = f"{head[:-1]} {attribute})" if head.endswith(")") else head
         if head == "Condition C":
-            head = f'Condition C ({attribute} = "@x")'
+            head = f"Condition C ({attribute})"
     return [head, *(f"    {line}" for child in children for line in child)]
 
 
@@ -119,6 +134,8 @@ def draw_of_nav2(
     """The head of a node of Nav2, and its children."""
     if kind == "RecoveryNode":
         return f"{kind} (number_of_retries = {draw(st.integers(0, 2))})", below(2, True)
+    if kind == "PathLongerOnApproach":
+        return f"{kind} (path = {{p}})", below(1, True)
     if kind in GROUPS["one of Nav2"]:
         return kind, below(1, True)
     children = below(draw(st.integers(1, 3)), kind != "NonblockingSequence")  # which throws if one is skipped
@@ -133,13 +150,76 @@ def draw_of_nav2(
 def missions(draw: st.DrawFn, top: str = "") -> str:
     lines = ["BehaviorTree Main", *(f"    {line}" for line in tree(draw, 3, True, top=top))]
     lines += ["BehaviorTree Sub", *(f"    {line}" for line in tree(draw, 1, False))]
-    numbered = (line.replace("@ takes", f"q{number} takes") for number, line in enumerate(lines))
+    numbered = (
+        _OWN.sub(rf"\g<1>{number}", line.replace("@ takes", f"q{number} takes")) for number, line in enumerate(lines)
+    )
     return "\n".join(numbered) + "\n"
 
 
+_OWN = re.compile(r"(@x|\{v|\{at|\{p)\b")  # entries, of which each node has one of its own
+
+
+class WildRuns(SimulatedRuns):
+    """Runs in which leaves take what their `takes between` allows, and entries and the robot change at random.
+
+    What budgets leave out does not occur: a RateController that its parent has not reset lets its child begin, a timer
+    is not that of an activation before, which was skipped, and a DistanceController halts its child when it fails.
+    """
+
+    def __init__(self, mission: ScenarioMission, seed: int) -> None:
+        chance = random.Random(seed)
+        super().__init__(mission, chance, is_stateful=chance.random() < 0.5)
+        self.limits = {applied.node: applied.requirement.claims[0].limit for applied in mission.requirements.applied}
+        self.entries = re.findall(r"@(x\d+)", mission.workspace.files[mission.path].source)
+        for node in self.machine.nodes:
+            write(node, "current_child_idx", 0, "int")
+        self.change()
+
+    def change(self) -> None:
+        """The world is another one."""
+        self.machine.world.position = (self.chance.random() * 1e6, 0.0) if self.chance.random() < 0.9 else None
+        for entry in self.entries:
+            self.machine.root.board.write(entry, int(self.chance.random() < 0.3), BOOL)
+
+    def drawn(self, leaf: ResolvedNode) -> float:
+        """A duration that the leaf's `takes between` allows, often one of the ends."""
+        limit = self.limits[leaf]
+        assert limit is not None
+        assert isinstance(limit.value, Quantity)
+        assert isinstance(limit.upper, Quantity)
+        low, high = limit.value.si, limit.upper.si
+        return self.chance.choice([low, high, self.chance.randint(int(low * 4), int(high * 4)) / 4])
+
+    def ticked(self, node: SimulatedNode) -> int:
+        if node.id == "RateController" and node.uid not in self.started:
+            node.due = self.machine.now
+        self.change()
+        result = super().ticked(node)
+        if result == SKIPPED and node.rules.is_timed:
+            reset_child(self.machine, node)
+        elif result == FAILURE and node.id == "DistanceController":
+            reset_child(self.machine, node.child)
+        return result
+
+    def began(self, node: SimulatedNode) -> None:
+        super().began(node)
+        if node.id == "PathLongerOnApproach":
+            length = self.chance.choice([2, 5, 12])
+            write(node, "path", f"{length};{length};0;0", "nav_msgs::msg::Path")
+
+
+def mission_of(text: str) -> ScenarioMission:
+    """A mission as it is written, without guards."""
+    return ScenarioMission(workspace_with_nav2(text), "main.btq", "Main", is_enforced=False)
+
+
 def resolved(text: str) -> Requirements:
-    workspace = Workspace({"main.btq": File("main.btq", text), NAV2.path: NAV2}, Project(node_files=(NAV2.path,)))
-    assert workspace.files["main.btq"].parsed.diagnostics == ()
-    found = requirements(workspace, "main.btq")
+    found = requirements(workspace_with_nav2(text), "main.btq")
     assert not problems_of(found)
     return found
+
+
+def workspace_with_nav2(text: str) -> Workspace:
+    workspace = Workspace({"main.btq": File("main.btq", text), NAV2.path: NAV2}, Project(node_files=(NAV2.path,)))
+    assert workspace.files["main.btq"].parsed.diagnostics == ()
+    return workspace

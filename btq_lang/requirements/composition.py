@@ -1,8 +1,10 @@
 """How long a node takes, given how long its children take: a rule for each flow.
 
-One invariant: every run of the engine is within the ranges, if the children are within theirs.  Four things are left
+One invariant: every run of the engine is within the ranges, if the children are within theirs.  Five things are left
 out: the time between two ticks, that the variable of a switch changes while a case runs, how long a node that its
-parent has not reset holds its child back, and that 4.8.3 and 4.8.4 wait in no Delay.  The rules of decorators are
+parent has not reset holds its child back, what goes on of an activation that nobody has halted (the timer of a Delay or
+Timeout that was skipped, the child of a DistanceController that does not know where the robot is), and that 4.8.3 and
+4.8.4 wait in no Delay.  The rules of decorators are
 here, those of control nodes in `control_budgets` and `nav2_budgets`.  Requirements are for `budgets`.
 """
 
@@ -83,7 +85,7 @@ def _again(
 
 
 def _timeout(node: ResolvedNode, child: Budget) -> Budget:
-    """It can interrupt only what returns RUNNING."""
+    """It can interrupt only what returns RUNNING.  A child that ends just when the time has passed may be too late."""
     limit = port_seconds(node)
     longest = child.running
     if limit == 0 or not child.waits:
@@ -92,7 +94,7 @@ def _timeout(node: ResolvedNode, child: Budget) -> Budget:
         return replace(child, failure=hull(child.failure, longest))
     runs_out = Range(limit, limit, tuple(replace(term, seconds=limit) for term in longest.terms[:1]))
     limited = mapped(child, lambda each: cut(each, limit))
-    failure = hull(limited.failure, runs_out if longest.high > limit else None)
+    failure = hull(limited.failure, runs_out if longest.high >= limit else None)
     return replace(limited, failure=failure, endless=False)
 
 

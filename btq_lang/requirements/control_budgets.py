@@ -128,8 +128,12 @@ def choice(node: ResolvedNode, children: Sequence[Budget]) -> Budget | None:
 
 
 def _if_then_else(children: Sequence[Budget]) -> Budget:
+    """Without a third child, IfThenElse does not reset a condition that fails: an action then keeps its failure, and is
+    not begun again by the next activation."""
     condition, then = children[0], children[1]
     otherwise = children[2] if len(children) == 3 else Budget(None, ZERO, None, False)
+    if len(children) == 2:
+        condition = replace(condition, failure=from_zero(condition.failure))
     return replace(
         combined(
             children,

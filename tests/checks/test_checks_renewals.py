@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
 from contextlib import suppress
 
 import pytest
-from budget_missions import missions, resolved
+from budget_missions import WildRuns, mission_of, missions
 from check_asserts import findings, problems
-from engine_simulator import Endless, Run, Sim
 from hypothesis import given
 from hypothesis import strategies as st
+from simulated_runs import Endless
 
 from btq_lang.checks import check
+from btq_lang.scenarios.mission import ScenarioMission
+from btq_lang.simulator.nodes import SimulatedNode
 from btq_lang.workspace.workspace import Workspace
 
 RULE = "guard-never-renewed"
@@ -198,33 +199,30 @@ def test_no_run_writes_what_is_said_to_stay(text: str, seed: int, data: st.DataO
         assert not _writes_meanwhile(trees, seed)
 
 
+@pytest.mark.parametrize(("parent", "expected"), [("R->", True), ("->", False)])
+def test_runs_show_who_writes_meanwhile(parent: str, *, expected: bool) -> None:
+    writer = 'Condition C (w = {@n} _onSuccess = "@n := 1.0")'
+    action = "Action L tags g satisfies QualityReq q takes between 1 s and 2 s"
+    assert _writes_meanwhile(f"BehaviorTree Main\n    {parent}\n        {writer}\n        {action}\n", 0) is expected
+
+
 def _writes_meanwhile(text: str, seed: int) -> bool:
     """Whether, in some runs, the writer is ticked while the node with the tag runs."""
-    found = resolved(text)
-    (guarded,) = found.nodes.tagged("g")
-    root = found.nodes.find(("Main",))[0].node
-    run = Run(found, root, seed, lambda _source, _status, _seconds: None)
-    sims = [*_below(run.root)]
-    targets = [sim for sim in sims if sim.source is guarded]
-    seen: list[bool] = []
-    for sim in sims:
-        if sim.source.node.attribute("w") is not None:
-            sim.execute = _noting(sim.execute, lambda: seen.append(any(each.started is not None for each in targets)))  # type: ignore[method-assign]  # of this one alone
+    runs = _WatchedRuns(mission_of(text), seed)
     with suppress(Endless):
         for _ in range(5):
-            run.mission()
-    return any(seen)
+            runs.run()
+    return runs.writes_meanwhile
 
 
-def _noting(execute: Callable[[], str], note: Callable[[], None]) -> Callable[[], str]:
-    def noting() -> str:
-        note()
-        return execute()
+class _WatchedRuns(WildRuns):
+    def __init__(self, mission: ScenarioMission, seed: int) -> None:
+        super().__init__(mission, seed)
+        self.writes_meanwhile = False
+        (guarded,) = mission.requirements.nodes.tagged("g")
+        self.guarded = {uid for uid, node in mission.written.items() if node is guarded}
 
-    return noting
-
-
-def _below(sim: Sim) -> Iterator[Sim]:
-    yield sim
-    for child in sim.children:
-        yield from _below(child)
+    def ticked(self, node: SimulatedNode) -> int:
+        if "w" in node.ports and self.guarded & self.started.keys():
+            self.writes_meanwhile = True
+        return super().ticked(node)

@@ -8,15 +8,17 @@ from __future__ import annotations
 
 import random
 from bisect import bisect_right
-from math import inf
+from math import ceil
+from sys import maxsize
 
-import engine_simulator as engine
 from evidence_logs import btlog
 from random_runs import START, LoggedRun
 from robot_log import logged_xml
+from simulated_runs import bare
 
 from btq_lang.evidence.identity import Candidate
-from btq_lang.evidence.model import Transition
+from btq_lang.evidence.model import FAILURE, SUCCESS, Transition
+from btq_lang.simulator.blackboard import DOUBLE
 from btq_lang.workspace.resolved import ResolvedNode
 
 SEED = 7
@@ -41,23 +43,20 @@ PAUSE = 15.0  # s after each run
 
 def campaign(mission: Candidate, kind: type[Robot]) -> tuple[bytes, str]:
     """The .btlog of a robot of a kind, and the CSV file of the signals."""
-    root = mission.requirements.mission
-    assert root is not None
     rows: list[Transition] = []
-    robot = kind(mission, root, random.Random(SEED), rows, resets=True)
+    robot = kind(bare(mission), random.Random(SEED), rows, resets=True)
     reports = []
     for _ in range(RUNS):
         first = len(rows)
         robot.tubes = robot.chance.choice([6, 6, 6, 5])
-        robot.mission()
-        robot.write(robot.root, engine.IDLE)
+        robot.run()
         # Those of one tick have the same time in the model.
         rows[first:] = [
             (time - START + 20 * index, uid, status) for index, (time, uid, status) in enumerate(rows[first:])
         ]
         reports.append(robot.now + PAUSE / 2)
         robot.spend(PAUSE, OTHERWISE)
-        robot.now += PAUSE
+        robot.wait(round(PAUSE * 1000))
     lines = [
         f"{MONDAY + second},{robot.battery(second):.1f},{REPORT * bisect_right(reports, second):g}"
         for second in range(0, int(robot.now), PERIOD)
@@ -74,37 +73,42 @@ class Robot(LoggedRun):
         changes: of the battery: from when on (s), from which level (%), and by how much per s.
     """
 
-    last = inf
+    last = maxsize
     tubes = 0
     changes: tuple[tuple[float, float, float], ...] = ((0.0, FULL, OTHERWISE),)
+
+    @property
+    def now(self) -> float:
+        """The time, in s."""
+        return self.machine.now / 1000
 
     def drawn(self, leaf: ResolvedNode) -> float:
         name = self.name_of(leaf)
         if name == "Charge":  # until it is halted
-            seconds, rate = (FULL - self.battery(self.now)) / CHARGING, CHARGING
+            seconds, rate = ceil((FULL - self.battery(self.now)) / CHARGING * 1000) / 1000, CHARGING
         else:
             bounds = DETOUR if name == "ToCharger" and self.chance.random() < DETOURS else SECONDS[name]
             seconds, rate = round(self.chance.uniform(*bounds), 2), DRIVING if name.startswith("To") else OTHERWISE
         self.spend(seconds, rate)
         return seconds
 
-    def ended(self, leaf: ResolvedNode) -> str:
+    def ended(self, leaf: ResolvedNode) -> int:
         name = self.name_of(leaf)
         if self.chance.random() < FAILURES.get(name, 0.0):
-            return engine.FAILURE
+            return FAILURE
         self.tubes -= name == "Pick"
-        return engine.SUCCESS
+        return SUCCESS
 
-    def answer(self, condition: ResolvedNode) -> str:
+    def answer(self, condition: ResolvedNode) -> int:
         level = self.battery(self.now)
+        self.machine.root.board.write("battery_level", level, DOUBLE)  # SensorsAlive does, which is asked at every tick
         holds = {
             "SensorsAlive": True,
-            "BatteryOk": level >= LOW,
             "BatteryLow": level < LOW,
             "BatteryFull": level >= FULL,
             "MicroplateNotEmpty": self.tubes > 0,
         }[self.name_of(condition)]
-        return engine.SUCCESS if holds else engine.FAILURE
+        return SUCCESS if holds else FAILURE
 
     def spend(self, seconds: float, rate: float) -> None:
         """The battery changes for a while, and then as it does otherwise."""
@@ -146,9 +150,9 @@ class Inspector(Robot):
     def spend(self, seconds: float, rate: float) -> None:
         super().spend(seconds, ARM if rate == OTHERWISE else rate)
 
-    def mission(self) -> None:
+    def run(self) -> None:
         self.tubes += 1 - self.tubes // 6  # the plate; after the sixth tube Retry gives up
-        super().mission()
+        super().run()
 
     def name_of(self, leaf: ResolvedNode) -> str:
         name = super().name_of(leaf)

@@ -14,11 +14,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-import engine_simulator as engine
 from check_asserts import workspace_of
 from random_guards import Guarded
 from random_states import of_states
 from requirement_problems import problems_of
+from simulated_runs import Endless, SimulatedRuns, bare
 
 from btq_lang.btcpp.marks import MARK
 from btq_lang.diagnostics.rules import Severity
@@ -32,12 +32,15 @@ from btq_lang.evidence.model import (
     LoggedTree,
     SampleSeries,
 )
+from btq_lang.scenarios.mission import ScenarioMission
+from btq_lang.simulator.errors import EngineError
+from btq_lang.simulator.nodes import SimulatedNode
+from btq_lang.simulator.ticking import halt_node
 from btq_lang.workspace.resolved import ResolvedNode
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import SampleValue, Transition
 
-STATUS = {engine.IDLE: IDLE, engine.RUNNING: RUNNING, engine.SUCCESS: SUCCESS, engine.FAILURE: FAILURE}
 ACTIONS = ("Move", "Pick", "Look")
 START = 1_795_209_740_000_000  # µs since the epoch
 MOST_NODES = 40
@@ -86,16 +89,15 @@ def case(seed: int) -> Case:
         assert not any(each.severity == Severity.ERROR for each in problems), (text, problems)
         build = next(candidate.builds())
         elements = [each.element for each, _ in build.running.all]
-        if len(elements) <= MOST_NODES:
+        written = bare(candidate)
+        if len(elements) <= MOST_NODES and is_loaded(written):
             break
-    root = candidate.requirements.mission
-    assert root is not None
     made = as_case(text, candidate)
     tree = made.joined.tree
-    now = 0.0
+    now = 0
     sessions: list[list[Transition]] = []
     while not sessions or chance.random() < 0.2:
-        now, rows = runs(candidate, root, chance, now + 1.0)
+        now, rows = runs(written, chance, now + 1000)
         rows = as_logged(chance, tree, Guarded(tree, made.guards, chance).of(rows))
         sessions.insert(chance.choice([0, len(sessions)]), rows)  # files may be read in any order
     return replace(made, sessions=sessions, samples=samples(chance, sorted(itertools.chain(*sessions))))
@@ -372,63 +374,55 @@ def condition(chance: random.Random, labels: list[str], depth: int = 2) -> str:
 # ---- Logs -----------------------------------------------------------------------------------------------------------
 
 
-class LoggedRun(engine.Run):
+class LoggedRun(SimulatedRuns):
     """A run whose changes of status are written down.
 
     Attributes:
-        uids: of its nodes, numbered as the engine does in a tree without guards: depth first.
+        resets: whether parents make children IDLE that have ended.
     """
 
-    def __init__(
-        self, mission: Candidate, root: ResolvedNode, chance: random.Random, rows: list[Transition], resets: bool
-    ) -> None:
-        super().__init__(mission.requirements, root, chance.randrange(1 << 30), lambda *_: None)
+    def __init__(self, mission: ScenarioMission, chance: random.Random, rows: list[Transition], resets: bool) -> None:
+        super().__init__(mission, random.Random(chance.randrange(1 << 30)))
         self.rows = rows
         self.resets = resets
-        self.uids: dict[engine.Sim, int] = {}
-        self.status: dict[engine.Sim, str] = {}
-        self.number(self.root)
-
-    def number(self, node: engine.Sim) -> None:
-        self.uids[node] = len(self.uids) + 1
-        for child in node.children:
-            self.number(child)
 
     def drawn(self, leaf: ResolvedNode) -> float:
         """A duration; the first tick, which asks for it, takes a while itself."""
-        self.now += self.chance.choice([0.0, 0.0, 0.003, 0.04, 0.25, 1.25])
+        self.machine.now += round(self.chance.choice([0.0, 0.0, 0.003, 0.04, 0.25, 1.25]) * 1000)
         return self.chance.choice([0.0, 0.25, 0.5, 1.0, 1.0, 2.0, 3.5])
 
-    def change(self, node: engine.Sim, status: str) -> None:
-        for each in node.children if status != engine.RUNNING and self.resets else ():
-            self.write(each, engine.IDLE)
-        self.write(node, engine.IDLE if status == engine.SKIPPED else status)
-
-    def write(self, node: engine.Sim, status: str) -> None:
-        if status != self.status.get(node, engine.IDLE):
-            self.status[node] = status
-            self.rows.append((START + round(self.now * 1e6), self.uids[node], STATUS[status]))
+    def changed(self, node: SimulatedNode, before: int, status: int) -> None:
+        super().changed(node, before, status)
+        if status != IDLE or before == RUNNING or self.resets:
+            self.rows.append((START + self.machine.now * 1000, node.uid, status))
 
 
-def runs(mission: Candidate, root: ResolvedNode, chance: random.Random, now: float) -> tuple[float, list[Transition]]:
-    """When some runs from a time on have ended, and their rows."""
+def is_loaded(mission: ScenarioMission) -> bool:
+    """Whether the engine takes the tree."""
+    try:
+        SimulatedRuns(mission, random.Random())
+    except EngineError:
+        return False
+    return True
+
+
+def runs(mission: ScenarioMission, chance: random.Random, now: int) -> tuple[int, list[Transition]]:
+    """When some runs from a time on have ended, and their rows; times are in milliseconds."""
     resets = chance.random() < 0.7
     rows: list[Transition] = []
     for _ in range(chance.randint(1, 8)):
-        run = LoggedRun(mission, root, chance, rows, resets)
-        run.now = now
+        run = LoggedRun(mission, chance, rows, resets)
+        run.wait(now)
         first = len(rows)
         try:
-            run.mission()
-        except engine.Endless:
+            run.run()
+        except Endless:
             if chance.random() < 0.5:
-                run.root.halt()
+                halt_node(run.machine, run.machine.root)
         if len(rows) - first > MOST_ROWS or chance.random() < 0.15:
             del rows[first + chance.randint(0, min(len(rows) - first, MOST_ROWS)) :]
-        elif resets:
-            run.write(run.root, engine.IDLE)
-        now = run.now + chance.choice([0.0, 0.25, 1.0])
-    return run.now, rows
+        now = run.machine.now + chance.choice([0, 250, 1000])
+    return run.machine.now, rows
 
 
 def as_logged(chance: random.Random, tree: LoggedTree, rows: list[Transition]) -> list[Transition]:

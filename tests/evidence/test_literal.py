@@ -12,12 +12,12 @@ CASES = 150
 USUAL = 600
 # With these every verb comes to every verdict: each one has a verdict that no other case below has.
 RARE = (
-    *(37, 104),  # from … until
-    *(182, 302, 325, 396, 456),  # shares of time
-    *(58, 255, 357, 839),  # counts
-    *(159, 515, 518, 1940, 2729, 4470),  # means
-    *(445, 543, 1759),  # failure rates
-    *(861, 1292),  # followed, visits
+    *(272, 773, 1386),  # from … until, sums, never
+    *(302, 325, 1977, 2040),  # shares of time
+    *(15, 357, 777, 1940),  # counts
+    *(515, 518, 1265, 2663, 4470),  # means
+    *(445, 543, 1656),  # failure rates
+    *(329,),  # visits
 )
 # In these the two judges once differed.
 DIFFERED = (
