@@ -377,6 +377,16 @@ def is_asked_for(workspace: Workspace, viewpoint: str, name: str) -> bool:
 
 
 @of_viewpoint
+def is_asked_for_by_scenarios(workspace: Workspace, viewpoint: str, name: str) -> bool:
+    """Whether a file of scenarios that includes this one names it."""
+    return any(
+        name in file.names_used("asked_for") and viewpoint in workspace.closure(path)
+        for path, file in workspace.files.items()
+        if file.has_only_scenarios
+    )
+
+
+@of_viewpoint
 def asked_for_in_vain(workspace: Workspace, viewpoint: str) -> frozenset[str]:
     """The names in the file's conditions, bounds and arguments that are neither signals nor contexts."""
     find = workspace.scope(viewpoint).find

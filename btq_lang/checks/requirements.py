@@ -145,6 +145,8 @@ def unused_word(view: View) -> Iterator[Diagnostic]:
         return  # a file of signals, or a library: their users may be anywhere
     if not view.defines_here(kind, name.text) or view.ask(lookups.is_asked_for, name.text):
         return
+    if view.ask(lookups.is_asked_for_by_scenarios, name.text):
+        return
     if not view.ask(_is_meant, name.text) and view.is_read:  # else its user may be on a line that could not be read
         rule, users = ("unused-signal", "clause") if kind is Kind.SIGNAL else ("unused-context", "condition")
         message = f"no {users} uses the {kind.value} `{name.text}`"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from check_asserts import assert_clean, assert_problems
+from check_asserts import assert_clean, assert_problems, findings
 
 NODE = "BehaviorTree Main\n    Action X satisfies rq1\n"
 
@@ -90,3 +90,18 @@ def test_a_file_without_trees_and_one_that_others_include_are_for_others() -> No
         BehaviorTree Dock
             Action X
     """)
+
+
+@pytest.mark.parametrize("scenarios", ["given battery = 3 %", "when battery < 50 %: mission halts"])
+def test_a_signal_is_asked_for_in_a_file_of_scenarios(scenarios: str) -> None:
+    mission = "signal battery : % from {b} level\ncontext low : battery < 20 %\nBehaviorTree Main\n    Action X\n"
+    steps = f'include "main.btq"\nscenario "s"\n    {scenarios}\n    expect mission succeeds\n'
+    unused = "2 hint «low» no condition uses the context `low`"
+    assert findings(mission, "unused-signal", "unused-context", steps=steps) == [unused]
+    assert findings(mission, "unused-signal", "unused-context", steps=steps.replace("50 %", "50 % and low")) == (
+        [unused] if "when" not in scenarios else []
+    )
+    without = steps.replace(scenarios, "given X succeeds")
+    assert findings(mission.replace("context low : battery < 20 %\n", ""), "unused-signal", steps=without) == [
+        "1 hint «battery» no clause uses the signal `battery`"
+    ]
