@@ -48,6 +48,11 @@ def run(options: GraphOptions, messages: CommandOutput) -> int:
     refuse(usage_problem(options.paths) or form_problem(options.format, options.output, FORMATS))
     groups, problems = Files().groups(options.paths, options.stdin_filename)
     requested = [(group.workspace, path) for group in groups for path in group.given]
+    if len(options.paths) == 1:  # in a folder, the scenarios of a mission are beside it
+        with_trees = [
+            (workspace, path) for workspace, path in requested if not workspace.files[path].has_only_scenarios
+        ]
+        requested = with_trees or requested
     if len(requested) > 1:
         problems += (LoadProblem(requested[1][1], "expected one file to draw, found more"),)
     messages.problems(problems)

@@ -309,6 +309,11 @@ def test_what_the_command_cannot_draw(tmp_path: Path, capfd: pytest.CaptureFixtu
     (tmp_path / "b.btq").write_text(MISSION)
     assert main(["graph", str(tmp_path)]) == 2
     assert capfd.readouterr().err.endswith("b.btq: expected one file to draw, found more\n")
+    (tmp_path / "a.btq").write_text('include "b.btq"\nscenario "s"\n    expect mission succeeds\n')
+    assert main(["graph", str(tmp_path / "a.btq")]) == 2
+    assert capfd.readouterr().err.endswith("a.btq has no trees\n")
+    assert main(["graph", str(tmp_path)]) == 0  # scenarios are beside the one mission
+    assert capfd.readouterr().out.startswith("<svg")
     assert main(["graph", str(tmp_path / "none.btq")]) == 2
     assert main(["graph", str(tmp_path / "b.btq"), "-o", str(tmp_path / "b.btq" / "c")]) == 2
     assert "cannot be written" in capfd.readouterr().err
