@@ -244,6 +244,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
     syntax.Scenario: (
         trees.unknown_tree,
         names.empty_text,
+        scenarios.duplicate_title,
         scenarios.unknown_requirement,
         scenarios.expects_nothing,
         scenarios.ambiguous_given,

@@ -11,6 +11,7 @@ from btq_lang.checks.chain import is_external, may_be_external
 from btq_lang.checks.known_ports import known_ports
 from btq_lang.checks.view import View, near_names
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix, write_fix
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax import scenarios as syntax
 from btq_lang.syntax.tokens import BRACED
 from btq_lang.syntax.tree import Amount, Claim, Pair, Path, Word, shape, written
@@ -52,6 +53,19 @@ def expects_nothing(view: View) -> Iterator[Diagnostic]:
     span = scenario.title.span if scenario.title is not None else Span(scenario.start, scenario.start)
     note = "add what must be true of the run, such as `expect mission succeeds`"
     yield Diagnostic("expects-nothing", span, "this scenario expects nothing", notes=(note,))
+
+
+def duplicate_title(view: View) -> Iterator[Diagnostic]:
+    """A scenario with the title of an earlier one of its file."""
+    title = view.item.title if isinstance(view.item, syntax.Scenario) else None
+    if title is None:
+        return
+    first = view.ask(_titles)[title.text]
+    if first is not view.facts and isinstance(first.item, syntax.Scenario) and first.item.title is not None:
+        related = (Related(Place(first.item.title.span, view.path, first.item), "the first one"),)
+        message = f"duplicate title of a scenario: `{title.text}`"
+        notes = ("editors and `btq test -k` know scenarios by their titles",)
+        yield Diagnostic("duplicate-definition", title.span, message, related, notes, severity=Severity.WARNING)
 
 
 def ambiguous_given(view: View) -> Iterator[Diagnostic]:
@@ -267,6 +281,15 @@ class _Stated(Record):
     nodes: frozenset[int]
     values: dict[str, str]
     aspects: dict[str, object]
+
+
+def _titles(store: Store[Workspace], viewpoint: str) -> dict[str, Facts]:
+    """The first scenario of the file with each title."""
+    titles: dict[str, Facts] = {}
+    for facts in View(store, viewpoint).ask(lookups.items):
+        if isinstance(facts.item, syntax.Scenario) and facts.item.title is not None:
+            titles.setdefault(facts.item.title.text, facts)
+    return titles
 
 
 def _ties_of_file(store: Store[Workspace], viewpoint: str) -> dict[int, list[Diagnostic]]:

@@ -223,3 +223,12 @@ def test_a_signal_that_a_scenario_reads_is_used() -> None:
         "signal near : bool from {near}\nBehaviorTree T\n    A (near = {near})\n"
         'scenario "S"\n    when 3 s have passed: near = true\n    expect succeeds\n'
     )
+
+
+def test_two_scenarios_of_one_file_have_two_titles() -> None:
+    scenario = 'scenario "S" of T\n    expect mission succeeds\n'
+    assert_problems(
+        f"//- main.btq\nBehaviorTree T\n    A\n{scenario}{scenario}{scenario.replace('S', 'R')}"
+        f'//- other.btq\ninclude "main.btq"\n{scenario}',
+        'main.btq:5:10 warning duplicate-definition «"S"» duplicate title of a scenario: `S`',
+    )
