@@ -241,7 +241,9 @@ def test_which_run_is_written_and_with_which_verdict(
 ) -> None:
     written = run_btq("verify", "runs.btlog", "--show", *options, "-o", "case.btq", cwd=laboratory)
     assert written == (0, "", f"{which} is in case.btq: run it with btq test case.btq --no-enforce\n")
-    assert (laboratory / "case.btq").read_text(encoding="utf-8").splitlines()[-1].strip() == last
+    lines = (laboratory / "case.btq").read_text(encoding="utf-8").splitlines()
+    assert lines[0] == "# The log is of a build without guards, which btq test --no-enforce runs."
+    assert lines[-1].strip() == last
     assert run_btq("test", "case.btq", "--no-enforce", cwd=laboratory)[0] == 0
 
 
