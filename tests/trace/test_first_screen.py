@@ -119,54 +119,65 @@ def test_a_mission_that_ran(tmp_path: Path) -> None:
     }
 
 
-def test_two_missions_without_evidence() -> None:
-    assert first_screen(page_of(ROOT / "examples/hospital")) == {
-        "headline": "9 requirements: 9 not judged. No log has been judged: there is no evidence yet.",
-        "qualities": [
-            ["hygiene Safety", "DisinfectRoom: -> DeliverMedicine: -> Delivery", "□ 1 not judged: wiped"],
-            ["discretion Security", "DeliverMedicine: -> Delivery, MoveBase ToWard", "□ 1 not judged: locked"],
-            [
-                "quiet Interaction capability",
-                "EnoughBattery: MoveBase ToCharger DeliverMedicine: MoveBase ToPharmacy, MoveBase ToWard "
-                "DisinfectRoom: MoveBase ToRoom",
-                "□ 1 not judged: hush",
-            ],
-            [
-                "Time behaviour Performance efficiency",
-                "DeliverMedicine: MoveBase ToWard, OpenDrawer AtPharmacy, OpenDrawer AtWard DisinfectRoom: "
-                "MoveBase ToRoom, R-> Radiate",
-                "□ 2 not judged: on_time, round_trip",
-            ],
-            [
-                "Operational constraint Safety",
-                "EnoughBattery: MoveBase ToCharger DeliverMedicine: MoveBase ToPharmacy, MoveBase ToWard "
-                "DisinfectRoom: MoveBase ToRoom, R-> Radiate",
-                "□ 2 not judged: slow, dark",
-            ],
-            [
-                "energy autonomy Performance efficiency",
-                "DeliverMedicine: MoveBase ToWard DisinfectRoom: MoveBase ToRoom",
-                "□ 1 not judged: reserve",
-            ],
-            ["Reliability", "DeliverMedicine: -> Delivery", "□ 1 not judged: dependable"],
-        ],
-        "legend": ["□ not judged", "concern"],
+# Of examples/hospital: each quality and where it matters, in the order of the screen.
+HOSPITAL = (
+    ("hygiene Safety", "DisinfectRoom: -> DeliverMedicine: -> Delivery"),
+    ("discretion Security", "DeliverMedicine: -> Delivery, MoveBase ToWard"),
+    (
+        "quiet Interaction capability",
+        "EnoughBattery: MoveBase ToCharger DeliverMedicine: MoveBase ToPharmacy, MoveBase ToWard "
+        "DisinfectRoom: MoveBase ToRoom",
+    ),
+    (
+        "Time behaviour Performance efficiency",
+        "DeliverMedicine: MoveBase ToWard, OpenDrawer AtPharmacy, OpenDrawer AtWard DisinfectRoom: "
+        "MoveBase ToRoom, R-> Radiate",
+    ),
+    (
+        "Operational constraint Safety",
+        "EnoughBattery: MoveBase ToCharger DeliverMedicine: MoveBase ToPharmacy, MoveBase ToWard "
+        "DisinfectRoom: MoveBase ToRoom, R-> Radiate",
+    ),
+    ("energy autonomy Performance efficiency", "DeliverMedicine: MoveBase ToWard DisinfectRoom: MoveBase ToRoom"),
+    ("Reliability", "DeliverMedicine: -> Delivery"),
+)
+
+
+def screen_of_hospital(
+    headline: str, states: list[str], legend: list[str], nodes: dict[str, list[str]]
+) -> dict[str, object]:
+    """The first screen of examples/hospital; `states`: of the requirements of each quality."""
+    return {
+        "headline": headline,
+        "qualities": [[*quality, state] for quality, state in zip(HOSPITAL, states, strict=True)],
+        "legend": legend,
         "buttons": [
-            "all",
-            "hygiene",
-            "discretion",
-            "quiet",
-            "Time behaviour",
-            "Operational constraint",
-            "energy autonomy",
-            "Reliability",
+            *("all", "hygiene", "discretion", "quiet", "Time behaviour", "Operational constraint"),
+            *("energy autonomy", "Reliability"),
         ],
         "trees": [
             "The tree DeliverMedicine: 10 nodes, 8 requirements",
             "The tree DisinfectRoom: 9 nodes, 6 requirements",
             "The tree EnoughBattery: 5 nodes, 2 requirements",
         ],
-        "nodes": {
+        "nodes": nodes,
+    }
+
+
+def test_two_missions_without_evidence() -> None:
+    assert first_screen(page_of(ROOT / "examples/hospital")) == screen_of_hospital(
+        "9 requirements: 9 not judged. No log has been judged: there is no evidence yet.",
+        [
+            "□ 1 not judged: wiped",
+            "□ 1 not judged: locked",
+            "□ 1 not judged: hush",
+            "□ 2 not judged: on_time, round_trip",
+            "□ 2 not judged: slow, dark",
+            "□ 1 not judged: reserve",
+            "□ 1 not judged: dependable",
+        ],
+        ["□ not judged", "concern"],
+        {
             "-> Delivery": ["is-not-judged", "dependable: not judged", "wiped: not judged", "satisfices discretion"],
             "MoveBase ToPharmacy (place = pharmacy)": ["is-not-judged", "slow: not judged", "hush: not judged"],
             "OpenDrawer AtPharmacy (for = pharmacist)": ["is-not-judged", "round_trip: not judged"],
@@ -190,57 +201,23 @@ def test_two_missions_without_evidence() -> None:
             "R-> Radiate": ["is-not-judged", "on_time: not judged", "dark: not judged"],
             "MoveBase ToCharger (place = charger)": ["is-not-judged", "slow: not judged", "hush: not judged"],
         },
-    }
+    )
 
 
 def test_two_missions_one_of_which_ran(tmp_path: Path) -> None:
-    assert first_screen(page_of(judged_example(tmp_path, "hospital"))) == {
-        "headline": "9 requirements: 1 satisfied, 6 unknown, 1 undecided, 1 open. Verdicts of 1 run on 2026-11-20.",
-        "qualities": [
-            ["hygiene Safety", "DisinfectRoom: -> DeliverMedicine: -> Delivery", "○ 1 open: wiped"],
-            ["discretion Security", "DeliverMedicine: -> Delivery, MoveBase ToWard", "? 1 unknown: locked"],
-            [
-                "quiet Interaction capability",
-                "EnoughBattery: MoveBase ToCharger DeliverMedicine: MoveBase ToPharmacy, MoveBase ToWard "
-                "DisinfectRoom: MoveBase ToRoom",
-                "? 1 unknown: hush",
-            ],
-            [
-                "Time behaviour Performance efficiency",
-                "DeliverMedicine: MoveBase ToWard, OpenDrawer AtPharmacy, OpenDrawer AtWard DisinfectRoom: "
-                "MoveBase ToRoom, R-> Radiate",
-                "2 requirements: ✔ 1 satisfied: round_trip ? 1 unknown: on_time",
-            ],
-            [
-                "Operational constraint Safety",
-                "EnoughBattery: MoveBase ToCharger DeliverMedicine: MoveBase ToPharmacy, MoveBase ToWard "
-                "DisinfectRoom: MoveBase ToRoom, R-> Radiate",
-                "? 2 unknown: slow, dark",
-            ],
-            [
-                "energy autonomy Performance efficiency",
-                "DeliverMedicine: MoveBase ToWard DisinfectRoom: MoveBase ToRoom",
-                "? 1 unknown: reserve",
-            ],
-            ["Reliability", "DeliverMedicine: -> Delivery", "~ 1 undecided: dependable"],
+    assert first_screen(page_of(judged_example(tmp_path, "hospital"))) == screen_of_hospital(
+        "9 requirements: 1 satisfied, 6 unknown, 1 undecided, 1 open. Verdicts of 1 run on 2026-11-20.",
+        [
+            "○ 1 open: wiped",
+            "? 1 unknown: locked",
+            "? 1 unknown: hush",
+            "2 requirements: ✔ 1 satisfied: round_trip ? 1 unknown: on_time",
+            "? 2 unknown: slow, dark",
+            "? 1 unknown: reserve",
+            "~ 1 undecided: dependable",
         ],
-        "legend": ["✔ satisfied", "? unknown", "~ undecided", "∅ never exercised", "○ open", "□ not judged", "concern"],
-        "buttons": [
-            "all",
-            "hygiene",
-            "discretion",
-            "quiet",
-            "Time behaviour",
-            "Operational constraint",
-            "energy autonomy",
-            "Reliability",
-        ],
-        "trees": [
-            "The tree DeliverMedicine: 10 nodes, 8 requirements",
-            "The tree DisinfectRoom: 9 nodes, 6 requirements",
-            "The tree EnoughBattery: 5 nodes, 2 requirements",
-        ],
-        "nodes": {
+        ["✔ satisfied", "? unknown", "~ undecided", "∅ never exercised", "○ open", "□ not judged", "concern"],
+        {
             "-> Delivery": ["is-undecided", "dependable: undecided", "wiped: open", "satisfices discretion"],
             "MoveBase ToPharmacy (place = pharmacy)": ["is-unknown", "slow: unknown", "hush: unknown"],
             "OpenDrawer AtPharmacy (for = pharmacist)": ["is-satisfied", "round_trip: satisfied"],
@@ -268,7 +245,7 @@ def test_two_missions_one_of_which_ran(tmp_path: Path) -> None:
                 "hush: never exercised",
             ],
         },
-    }
+    )
 
 
 def test_states_have_signs_of_their_own() -> None:
