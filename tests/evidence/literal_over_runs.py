@@ -104,6 +104,22 @@ class Spent:
     is_stopped: bool = False
 
 
+@dataclass(frozen=True)
+class InRun:
+    """What a verb of OF_RUNS is judged by.
+
+    Attributes:
+        uid: of the instance of a node.
+        own: its activations in the run.
+    """
+
+    uid: int
+    own: Sequence[Activation]
+    run: Activation
+    claim: ResolvedClaim
+    requirement: ResolvedRequirement
+
+
 class OverRuns(OfActivations):
     """A session, and what each run of it comes to."""
 
@@ -113,41 +129,36 @@ class OverRuns(OfActivations):
         found = []
         for run in self.runs:
             own = [each for each in self.of(uid) if each.run == run.run]
-            verdicts = judge(uid, own, run, claim, requirement)
+            verdicts = judge(InRun(uid, own, run, claim, requirement))
             found += [Judged(run.run, uid, verdict, run.end, decided) for verdict, decided in verdicts]
         return found
 
-    def tries(
-        self,
-        uid: int,
-        own: Sequence[Activation],
-        run: Activation,
-        claim: ResolvedClaim,
-        requirement: ResolvedRequirement,
-    ) -> list[Decided]:
+    def tries(self, at: InRun) -> list[Decided]:
         """How many starts, or results of a kind, lie in each activation of the other node, or in the run."""
-        assert not isinstance(claim.per, Quantity)
-        around = [ROOT] if claim.per is None else self.nearest(uid, self.uids(claim.per))
+        assert not isinstance(at.claim.per, Quantity)
+        around = [ROOT] if at.claim.per is None else self.nearest(at.uid, self.uids(at.claim.per))
         refused = [
             check
-            for verb, guard, check in self.refusals(uid)
-            if verb == claim.verb and self.guards[guard.uid] == requirement.name and check.run == run.run
+            for verb, guard, check in self.refusals(at.uid)
+            if verb == at.claim.verb and self.guards[guard.uid] == at.requirement.name and check.run == at.run.run
         ]
         found: list[Decided] = []
-        for p in (each for other in around for each in self.of(other) if each.run == run.run):
-            counted_outcomes = COUNTED.get(claim.verb, "SFHO")
-            moments = {id(x): x.stop if claim.verb in COUNTED else x.shown for x in own}
-            of_kind = [x for x in own if x.outcome in counted_outcomes]
-            inside = [(x, self.counts(x, requirement)) for x in of_kind if p.shown <= moments[id(x)] <= p.stop]
-            meanwhile = [self.counts(x, requirement) for x in own if x.shown <= p.stop and p.shown <= x.stop]
+        for p in (each for other in around for each in self.of(other) if each.run == at.run.run):
+            counted_outcomes = COUNTED.get(at.claim.verb, "SFHO")
+            moments = {id(x): x.stop if at.claim.verb in COUNTED else x.shown for x in at.own}
+            of_kind = [x for x in at.own if x.outcome in counted_outcomes]
+            inside = [(x, self.counts(x, at.requirement)) for x in of_kind if p.shown <= moments[id(x)] <= p.stop]
+            meanwhile = [self.counts(x, at.requirement) for x in at.own if x.shown <= p.stop and p.shown <= x.stop]
             sure = [x for x, counts in inside if counts]
             numbers = {len(sure), sum(counts is not False for _, counts in inside)}
-            verdicts = {self.tried(p, number, claim) for number in numbers}
-            if claim.verb in COUNTED and claim.limit is not None and claim.limit.relation in ("<", "<="):
+            verdicts = {self.tried(p, number, at.claim) for number in numbers}
+            if at.claim.verb in COUNTED and at.claim.limit is not None and at.claim.limit.relation in ("<", "<="):
                 # that it did not come to such a result counts where it was active
-                at_none = self.within(0, claim.limit, p)[0]
+                at_none = self.within(0, at.claim.limit, p)[0]
                 none: list[Verdict] = [OPEN if at_none and p.outcome == "O" else at_none]
-                verdicts = {each for number in numbers for each in ([self.tried(p, number, claim)] if number else none)}
+                verdicts = {
+                    each for number in numbers for each in ([self.tried(p, number, at.claim)] if number else none)
+                }
                 if True not in meanwhile:
                     verdicts = {OUT} if not any(each is None for each in meanwhile) else {*verdicts, OUT}
             verdict = verdicts.pop() if len(verdicts) == 1 else None
@@ -156,7 +167,7 @@ class OverRuns(OfActivations):
                 refused = [each for each in refused if each not in one_more]
                 found.append((False, one_more[0].end))
                 continue
-            too_many = [x for number, x in enumerate(sure, 1) if self.within(number, claim.limit, p)[0] is False]
+            too_many = [x for number, x in enumerate(sure, 1) if self.within(number, at.claim.limit, p)[0] is False]
             found.append((verdict, too_many[0].shown[0] if verdict is False and too_many else p.end))
         return [*found, *((False, each.end) for each in refused)]  # those that no activation holds: a case each
 
@@ -174,52 +185,44 @@ class OverRuns(OfActivations):
             return OUT
         return not_above if not_above is not False or p.is_exact else None
 
-    def visits(
-        self,
-        uid: int,
-        own: Sequence[Activation],
-        run: Activation,
-        claim: ResolvedClaim,
-        requirement: ResolvedRequirement,
-    ) -> list[Decided]:
+    def visits(self, at: InRun) -> list[Decided]:
         """Whether each of the nodes has succeeded in an activation that has ended, their first successes in order."""
         found: list[Decided] = []
-        for p in own:
+        for p in at.own:
             firsts = []
-            for visit in claim.visits:
+            for visit in at.claim.visits:
                 (node,) = visit.nodes
                 assert not node.values, "random ports have none"
-                of = [each for near in self.nearest(uid, self.uids(node.target)) for each in self.of(near)]
+                of = [each for near in self.nearest(at.uid, self.uids(node.target)) for each in self.of(near)]
                 ends = [each.stop for each in of if each.outcome == "S" and p.shown <= each.stop <= p.stop]
                 firsts.append(min(ends, default=None))
             times = [first for first in firsts if first is not None]
-            verdict: Verdict = len(times) == len(firsts) and (not claim.in_order or times == sorted(times))
+            verdict: Verdict = len(times) == len(firsts) and (not at.claim.in_order or times == sorted(times))
             verdict = OPEN if p.outcome == "O" else OUT if p.outcome == "H" else verdict
-            found.append((counted(self.counts(p, requirement), verdict), p.end))
+            found.append((counted(self.counts(p, at.requirement), verdict), p.end))
         return found
 
-    def rate(
-        self,
-        uid: int,
-        own: Sequence[Activation],
-        run: Activation,
-        claim: ResolvedClaim,
-        requirement: ResolvedRequirement,
-    ) -> list[Decided]:
+    def rate(self, at: InRun) -> list[Decided]:
         """runs every d, runs at least m per d: in each stretch of a run that counts."""
-        scopes = [each.condition for each in requirement.scopes if each.word == "while"]
-        when = record.replace(requirement, scopes=tuple(each for each in requirement.scopes if each.word == "when"))
+        scopes = [each.condition for each in at.requirement.scopes if each.word == "while"]
+        when = record.replace(
+            at.requirement, scopes=tuple(each for each in at.requirement.scopes if each.word == "when")
+        )
         found: list[Decided] = []
-        for stretch, is_sure in self.stretches(scopes, replace(run, uid=uid)):
-            inside = [(x, self.counts(x, when)) for x in own if stretch.start <= x.start <= stretch.stop]
+        for stretch, is_sure in self.stretches(scopes, replace(at.run, uid=at.uid)):
+            inside = [(x, self.counts(x, when)) for x in at.own if stretch.start <= x.start <= stretch.stop]
             inside = [(x, counts) for x, counts in inside if counts is not False]
             if not is_sure or any(counts is None for _, counts in inside):
                 found.append((None, stretch.begin))
                 continue
             times = [x.begin for x, _ in inside]
-            is_open = run.outcome == "O" and stretch.stop == run.stop
+            is_open = at.run.outcome == "O" and stretch.stop == at.run.stop
             part = replace(stretch, outcome="O" if is_open else "S")
-            found += self.evenly(claim, part, [x for x, _ in inside]) if claim.every else self.often(claim, part, times)
+            found += (
+                self.evenly(at.claim, part, [x for x, _ in inside])
+                if at.claim.every
+                else self.often(at.claim, part, times)
+            )
         return found
 
     def evenly(self, claim: ResolvedClaim, stretch: Activation, starts: list[Activation]) -> list[Decided]:
@@ -256,33 +259,26 @@ class OverRuns(OfActivations):
         worst = numbers.index(max(numbers) if is_above else min(numbers))
         return [(False, inside[worst] + length)]
 
-    def share(
-        self,
-        uid: int,
-        own: Sequence[Activation],
-        run: Activation,
-        claim: ResolvedClaim,
-        requirement: ResolvedRequirement,
-    ) -> list[Decided]:
+    def share(self, at: InRun) -> list[Decided]:
         """keeps φ in at least p of time: each piece of the time counts, may count, or does not."""
         pieces = [
-            (time, counts, negated(self.holds(claim.condition, moment, seen), claim.verb == "never of time"))
-            for a in own
-            for time, counts, moment, seen in self.pieces(a, requirement)
+            (time, counts, negated(self.holds(at.claim.condition, moment, seen), at.claim.verb == "never of time"))
+            for a in at.own
+            for time, counts, moment, seen in self.pieces(a, at.requirement)
         ]
         if not pieces:
-            return [(OUT, run.end)]
-        if run.outcome == "O":
-            return [(OPEN, run.end)]
+            return [(OUT, at.run.end)]
+        if at.run.outcome == "O":
+            return [(OPEN, at.run.end)]
         if not any(counts for _, counts, _ in pieces):
-            return [(None, run.end)]
+            return [(None, at.run.end)]
         shares = []
         for doubt in (False, True):  # what is in doubt is against the clause, or for it
             supposed = [(time, counts, doubt if holds is None else holds) for time, counts, holds in pieces]
             counted_ones = [(time, holds) for time, counts, holds in supposed if counts or holds is doubt]
             shares.append(sum(time for time, holds in counted_ones if holds) / sum(time for time, _ in counted_ones))
-        verdicts = {both(*self.within(share, claim.limit, run)) for share in shares}
-        return [(verdicts.pop() if len(verdicts) == 1 else None, run.end)]
+        verdicts = {both(*self.within(share, at.claim.limit, at.run)) for share in shares}
+        return [(verdicts.pop() if len(verdicts) == 1 else None, at.run.end)]
 
     def pieces(self, a: Activation, requirement: ResolvedRequirement) -> list[tuple[int, Truth, Moment, Activation]]:
         """The time of an activation between two changes: how long, whether it counts, when, and as it is seen then."""
@@ -350,27 +346,20 @@ class OverRuns(OfActivations):
                 found.append(Spent(at, until[0], counts, event.is_sure, bool(answers), not is_exact, least, most))
         return found
 
-    def follows(
-        self,
-        uid: int,
-        own: Sequence[Activation],
-        run: Activation,
-        claim: ResolvedClaim,
-        requirement: ResolvedRequirement,
-    ) -> list[Decided]:
+    def follows(self, at: InRun) -> list[Decided]:
         """An event since the start before, or since the run began."""
-        assert claim.event is not None
-        by_rows = claim.event.condition is None
-        events = self.events(claim.event, replace(run, uid=uid))
-        before: Moment = (run.begin, -2)  # also what happens as it begins
+        assert at.claim.event is not None
+        by_rows = at.claim.event.condition is None
+        events = self.events(at.claim.event, replace(at.run, uid=at.uid))
+        before: Moment = (at.run.begin, -2)  # also what happens as it begins
         found: list[Decided] = []
-        for x in own:
+        for x in at.own:
             start = x.placed(by_rows)
             maybe = [each for each in events if before < each.by and each.after <= start]
             is_sure = any(each.has_happened and before < each.after and each.by <= start for each in maybe)
             verdict: Verdict = True if is_sure else None if maybe else False
             verdict = OPEN if is_sure and x.outcome == "O" else verdict
-            found.append((counted(self.counts(x, requirement), verdict), x.shown[0]))
+            found.append((counted(self.counts(x, at.requirement), verdict), x.shown[0]))
             before = start
         return found
 
