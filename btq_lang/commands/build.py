@@ -62,8 +62,6 @@ def run(options: BuildCommandOptions, messages: CommandOutput) -> int:
 
 
 def _usage_problem(options: BuildCommandOptions) -> str | None:
-    if options.watch and STDIN in options.paths:
-        return "--watch cannot watch standard input"
     if STDIN in options.paths and (len(options.paths) > 1 or options.output or options.check):
         return "btq builds standard input to standard output; give no other path, no -o and no --check"
-    return usage_problem(options.paths)
+    return usage_problem(options.paths, options.watch)

@@ -55,13 +55,13 @@ def run(options: CheckOptions, messages: CommandOutput) -> int:
 
 
 def _usage_problem(options: CheckOptions) -> str | None:
-    if options.watch and STDIN in options.paths:
-        return "--watch cannot watch standard input"
     if options.jobs < 0:
         return f"--jobs {options.jobs}: expected a number of processes, or 0 to let btq choose"
     rules = _rule_names(options.select) + _rule_names(options.ignore)
     unknown = next(filter(None, map(unknown_rule, rules)), None)
-    return usage_problem(options.paths) or unknown or report_problem(options) or _writing_problem(options)
+    return (
+        usage_problem(options.paths, options.watch) or unknown or report_problem(options) or _writing_problem(options)
+    )
 
 
 def _writing_problem(options: CheckOptions) -> str | None:

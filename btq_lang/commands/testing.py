@@ -10,7 +10,7 @@ from functools import partial
 from btq_lang import scenarios
 from btq_lang.commands.output import form_of, form_problem, is_coloured, write_file, write_output
 from btq_lang.projects.building import for_target
-from btq_lang.projects.files import STDIN, Files, usage_problem
+from btq_lang.projects.files import Files, usage_problem
 from btq_lang.projects.messages import CommandOutput
 from btq_lang.projects.options import refuse
 from btq_lang.scenarios.parallel import result_of, results
@@ -65,13 +65,12 @@ def run(options: ScenarioOptions, messages: CommandOutput) -> int:
 
 
 def _usage_problem(options: ScenarioOptions) -> str | None:
-    if options.watch and STDIN in options.paths:
-        return "--watch cannot watch standard input"
     if options.jobs < 0:
         return f"--jobs {options.jobs}: expected a number of processes, or 0 to let btq choose"
     if options.mutants is not None and options.mutants < 0:
         return f"--mutants {options.mutants}: expected how many at most, or no number for all"
-    return usage_problem(options.paths) or form_problem(options.format, options.output, scenarios.FORMATS)
+    unwritable = form_problem(options.format, options.output, scenarios.FORMATS)
+    return usage_problem(options.paths, options.watch) or unwritable
 
 
 def _run(options: ScenarioOptions, files: Files, messages: CommandOutput) -> tuple[int, tuple[str, ...]]:

@@ -66,18 +66,21 @@ def parse_source(cursor: Cursor) -> Source:
 
 def parse_refines(cursor: Cursor) -> Refines:
     """ "refines" Name { "," Name }"""
-    start = cursor.take().start
-    cursor.skip_sign(":", "=")
-    names = cursor.listed(lambda cursor: parse_requirement_id(cursor, "the ID of a requirement"), list_goes_on)
+    start, names = _ids(cursor, "the ID of a requirement")
     return Refines(start, cursor.last_end(), names)
 
 
 def parse_mitigates(cursor: Cursor) -> Mitigates:
     """ "mitigates" Name { "," Name }"""
+    start, names = _ids(cursor, "the ID of a hazard")
+    return Mitigates(start, cursor.last_end(), names)
+
+
+def _ids(cursor: Cursor, meant: str) -> tuple[int, tuple[Word, ...]]:
+    """Where a clause begins, and the IDs after its word."""
     start = cursor.take().start
     cursor.skip_sign(":", "=")
-    names = cursor.listed(lambda cursor: parse_requirement_id(cursor, "the ID of a hazard"), list_goes_on)
-    return Mitigates(start, cursor.last_end(), names)
+    return start, cursor.listed(lambda cursor: parse_requirement_id(cursor, meant), list_goes_on)
 
 
 def parse_priority(cursor: Cursor) -> Priority:

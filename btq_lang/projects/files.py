@@ -73,8 +73,10 @@ class FileGroup(Record):
         )
 
 
-def usage_problem(paths: Iterable[str]) -> str | None:
+def usage_problem(paths: Sequence[str], is_watching: bool = False) -> str | None:
     """The usage error in the paths of a command line, without accessing the disk."""
+    if is_watching and STDIN in paths:
+        return "--watch cannot watch standard input"
     return "empty path; `.` is this folder" if "" in paths else None
 
 
