@@ -2,10 +2,10 @@
 
 One invariant: every run of the engine is within the ranges, if the children are within theirs.  Five things are left
 out: the time between two ticks, that the variable of a switch changes while a case runs, how long a node that its
-parent has not reset holds its child back, what goes on of an activation that nobody has halted (the timer of a Delay or
-Timeout that was skipped, the child of a DistanceController that does not know where the robot is), and that 4.8.3 and
-4.8.4 wait in no Delay.  The rules of decorators are
-here, those of control nodes in `control_budgets` and `nav2_budgets`.  Requirements are for `budgets`.
+parent has not reset holds its child back, activations that continue because their parent did not halt them (the timer
+of a Delay or Timeout that was skipped, the child of a DistanceController without a position of the robot), and that
+4.8.3 and 4.8.4 wait in no Delay.  The rules of decorators are here, those of control nodes in `control_budgets` and
+`nav2_budgets`.  Requirements are for `budgets`.
 """
 
 from __future__ import annotations
