@@ -26,7 +26,7 @@ def coverage(
             words[place] = words.get(place, {}) | dict.fromkeys(possible)
     nodes = [
         CoveredNode(place, tuple(CoveredOutcome(word, counts[place, word]) for word in possible))
-        for place, possible in sorted(words.items(), key=lambda item: _in_order(item[0]))
+        for place, possible in sorted(words.items(), key=lambda item: item[0].position)
     ]
     return CoverageReport(tuple(nodes), _unused(missions))
 
@@ -42,8 +42,4 @@ def _unused(missions: Sequence[tuple[ScenarioMission, NodeOutcomes]]) -> tuple[O
                 name = tree.name.text if tree.name is not None else None
                 if (path, name) not in used:
                     places[OutcomePlace(*position_of(mission.workspace, path, tree, tree.start), name or "")] = None
-    return tuple(sorted(places, key=_in_order))
-
-
-def _in_order(place: OutcomePlace) -> tuple[str, int, int]:
-    return place.file, place.line, place.column
+    return tuple(sorted(places, key=lambda place: place.position))

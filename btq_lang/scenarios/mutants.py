@@ -36,7 +36,7 @@ def mutants(mission: ScenarioMission, outcomes: NodeOutcomes) -> tuple[NamedMuta
     """The mutants of a mission."""
     maker = _Maker(mission, outcomes)
     named = [*maker.of_nodes(), *maker.of_guards()]
-    return tuple(sorted(named, key=lambda each: (each.place.file, each.place.line, each.place.column)))
+    return tuple(sorted(named, key=lambda each: each.place.position))
 
 
 class _Maker:

@@ -43,7 +43,7 @@ def tested(suites: Sequence[Suite], scenarios: Iterable[TestedScenario], limit: 
             of_mutant = trials.setdefault((named.place, named.what), [])
             if any(uid in scenario.begun for uid, _ in named.mutant.changes):
                 of_mutant.append(_Trial(scenario.suite, scenario.place, named.mutant))
-    names = sorted(trials, key=lambda name: (name[0].file, name[0].line, name[0].column))
+    names = sorted(trials, key=lambda name: name[0].position)
     if 0 < limit < len(names):
         names = [names[index * len(names) // limit] for index in range(limit)]
     noticed = results(suites, _noticed_by, [tuple(trials[name]) for name in names], jobs)

@@ -78,7 +78,7 @@ class NodeOutcomes:
             words |= {word: None for word, _, _ in self._branches(uid)}
         for place in self.guards.values():
             possible.setdefault(place, dict.fromkeys(_OF_GUARD))
-        in_order = sorted(possible, key=lambda place: (place.file, place.line, place.column))
+        in_order = sorted(possible, key=lambda place: place.position)
         return {place: tuple(possible[place]) for place in in_order}
 
     def _may_be_halted(self, uid: int) -> bool:

@@ -62,7 +62,7 @@ def _mutants(report: MutantReport) -> PageData:
 
 
 def _by_file(rows: Iterable[tuple[OutcomePlace, str, str]]) -> Iterator[tuple[str, list[tuple[int, str, str, str]]]]:
-    in_order = sorted(rows, key=lambda row: (row[0].file, row[0].line, row[0].column))
+    in_order = sorted(rows, key=lambda row: row[0].position)
     files = grouped((place.file, (place.line, place.node, missed, met)) for place, missed, met in in_order)
     yield from files.items()
 

@@ -85,6 +85,11 @@ class OutcomePlace(Record):
     column: int
     node: str
 
+    @property
+    def position(self) -> tuple[str, int, int]:
+        """By which places are in the order of the text."""
+        return self.file, self.line, self.column
+
 
 class CoveredOutcome(Record):
     """An outcome that a node may have; `scenarios`: how many have met it."""

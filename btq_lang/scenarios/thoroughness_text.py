@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 
 from btq_lang.render.cells import printable
 from btq_lang.scenarios.results import CoverageReport, MutantReport, MutantResult, OutcomePlace
@@ -47,7 +47,6 @@ def _table(rows: Iterable[tuple[OutcomePlace, str]]) -> Iterator[str]:
     """Rows by file: the line, the node, a text."""
     for file, of_file in grouped((place.file, (place, text)) for place, text in rows).items():
         yield printable(file)
-        in_order: Sequence[tuple[OutcomePlace, str]] = sorted(of_file, key=lambda row: (row[0].line, row[0].column))
-        width = max(len(place.node) for place, _ in in_order)
-        for place, text in in_order:
+        width = max(len(place.node) for place, _ in of_file)
+        for place, text in sorted(of_file, key=lambda row: row[0].position):
             yield printable(f"{place.line:>6}  {place.node.ljust(width)}  {text}")
