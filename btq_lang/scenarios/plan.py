@@ -40,7 +40,7 @@ class WatchedEvent(Record):
         word: starts, succeeds, fails, finishes or halts.
         uids: the nodes.
         values: which values their ports have at the start.
-        number: for the how manieth time.
+        number: of its occurrences, the one that counts, from 1.
     """
 
     word: str

@@ -81,7 +81,6 @@ def plan_of(mission: ScenarioMission, scenario: Scenario, common: Sequence[Given
         mistakes.append(ScenarioMistake(own.line(scenario.start), "it expects nothing"))
     if mistakes:
         raise ScenarioMistakes(mistakes)
-    parts = tuple(change.trigger for change in own.changes), tuple(each.expected for each in own.expectations)
     names = {each.expected.name for each in own.expectations if isinstance(each.expected, plan.WantedVerdict)}
     judged = [applied for applied in mission.requirements.applied if applied.requirement.name in names]
     return plan.Plan(
@@ -89,16 +88,20 @@ def plan_of(mission: ScenarioMission, scenario: Scenario, common: Sequence[Given
         tuple(value for reader in (*readers, own) for value in reader.values),
         tuple(own.changes),
         tuple(own.expectations),
-        tuple(dict.fromkeys(signals_in((*_records(parts), *_of_applied(judged))))),
+        tuple(dict.fromkeys(signals_in((*_conditions(own), *_of_applied(judged))))),
     )
 
 
-def _records(parts: tuple[tuple[object, ...], ...]) -> tuple[object, ...]:
-    """The parts of requirements in triggers and expectations."""
-    triggers, expected = parts
-    conditions = [each.condition for each in expected if isinstance(each, plan.ExpectedEnd)]
-    applied = [part for each in expected if isinstance(each, plan.ExpectedClaims) for part in _of_applied(each.applied)]
-    return (*(each for each in triggers if not isinstance(each, int | plan.WatchedEvent)), *conditions, *applied)
+def _conditions(reader: _ItemReader) -> Iterator[object]:
+    """What triggers and expectations have of requirements, in which signals are named."""
+    for change in reader.changes:
+        if not isinstance(change.trigger, int | plan.WatchedEvent):
+            yield change.trigger
+    for expected in [each.expected for each in reader.expectations]:
+        if isinstance(expected, plan.ExpectedEnd):
+            yield expected.condition
+        elif isinstance(expected, plan.ExpectedClaims):
+            yield from _of_applied(expected.applied)
 
 
 def _of_applied(applied: Iterable[Applied]) -> Iterator[object]:

@@ -21,6 +21,8 @@ from btq_lang.util.record import Record
 from btq_lang.workspace.workspace import Workspace
 
 _Head: TypeAlias = tuple[str, str, int, str, tuple[str, ...]]  # of a result
+# What a result begins with, the tree that a scenario runs, and what it says; its result if it cannot run.
+_Prepared: TypeAlias = "ScenarioResult | tuple[_Head, ScenarioMission, Plan]"
 
 
 class ScenarioPlace(Record):
@@ -40,7 +42,7 @@ class Suite:
         self._named: Final[dict[str, Workspace]] = {}
         self._programs: Final[dict[tuple[str, str], _Program]] = {}
         self._missions: Final[dict[tuple[str, str], ScenarioMission]] = {}
-        self._prepared: Final[dict[ScenarioPlace, ScenarioResult | tuple[_Head, ScenarioMission, Plan]]] = {}
+        self._prepared: Final[dict[ScenarioPlace, _Prepared]] = {}
 
     def __reduce__(self) -> tuple[object, ...]:
         """How a process that does not share memory with this one makes it again: missions know nodes by identity."""
@@ -78,8 +80,8 @@ class Suite:
         )
         return Ran(result, mission, ran)
 
-    def planned(self, place: ScenarioPlace) -> ScenarioResult | tuple[_Head, ScenarioMission, Plan]:
-        """What its result begins with, the tree that a scenario runs, and what it says; its result if it cannot run."""
+    def planned(self, place: ScenarioPlace) -> _Prepared:
+        """A scenario, ready to be run; its result if it cannot run."""
         if place not in self._prepared:
             self._prepared[place] = self._prepare(place)
         return self._prepared[place]
@@ -89,8 +91,7 @@ class Suite:
         planned = self.planned(place)
         return None if isinstance(planned, ScenarioResult) else planned[1]
 
-    def _prepare(self, place: ScenarioPlace) -> ScenarioResult | tuple[_Head, ScenarioMission, Plan]:
-        """What a scenario says, and the tree that it runs; its result if it cannot be run."""
+    def _prepare(self, place: ScenarioPlace) -> _Prepared:
         entry = self._entries(place.path)[place.number]
         scenario = entry.item
         assert isinstance(scenario, Scenario), "only these are listed"
@@ -105,7 +106,7 @@ class Suite:
         common = [each for each in self.workspace.files[place.path].parsed.entries if isinstance(each.item, Given)]
         program = self._program(place.path, tree)
         if program.refused:  # which may be why its nodes are unknown
-            return ScenarioResult(*head, "failed", "is refused", 0.0, program.refused, (), (), ())
+            return _refused(head, program.refused)
         items = {id(each.item) for each in (*common, entry)}
         if mistakes := [mistake for item, mistake in program.mistakes if item in items]:
             return _wrong(head, mistakes)
@@ -113,7 +114,7 @@ class Suite:
             mission = self._mission(program, place.path, tree)
             plan = plan_of(mission, scenario, [each.item for each in common if isinstance(each.item, Given)])
         except NotRunnable as error:
-            return ScenarioResult(*head, "failed", "is refused", 0.0, str(error), (), (), ())
+            return _refused(head, str(error))
         except ScenarioMistakes as wrong:
             return _wrong(head, wrong.mistakes)
         return head, mission, plan
@@ -192,6 +193,11 @@ def _checked(workspace: Workspace) -> _Program:
 
 def _title(scenario: Scenario) -> str:
     return scenario.title.text if scenario.title is not None else ""
+
+
+def _refused(head: _Head, why: str) -> ScenarioResult:
+    """A scenario whose tree the engine refuses."""
+    return ScenarioResult(*head, "failed", "is refused", 0.0, why, (), (), ())
 
 
 def _wrong(head: _Head, mistakes: Sequence[ScenarioMistake]) -> ScenarioResult:
