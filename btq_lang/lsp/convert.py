@@ -116,6 +116,11 @@ class Converter:
         start, end = (lines.position(offset, self.encoding) for offset in span)
         return types.Range(types.Position(*start), types.Position(*end))
 
+    def position(self, workspace: Workspace, path: str, line: int, column: int) -> types.Position:
+        """The position of a character of the original file, both from 0."""
+        lines = workspace.files[path].source_lines
+        return types.Position(*lines.position(lines.offset(Position(line, column), "code-points"), self.encoding))
+
     def location(self, workspace: Workspace, path: str, span: Span) -> types.Location:
         return types.Location(self.uri(path), self.range(workspace, path, span))
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 import asyncio
 import json
 import os
-from collections.abc import AsyncGenerator
+from collections.abc import AsyncGenerator, Sequence
 from contextlib import aclosing, suppress
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from lsprotocol import types
 
@@ -22,8 +22,12 @@ from btq_lang.lsp.processes import start_python
 from btq_lang.lsp.progress import progress
 from btq_lang.util.text import counted
 
+if TYPE_CHECKING:
+    from btq_lang.workspace.workspace import Workspace
+
 LIST = "btq.server.scenarios"
 RUN = "btq.server.runScenarios"
+COVER = "btq.server.coverScenarios"
 SHOW = "btq.server.showScenarios"
 
 
@@ -52,6 +56,31 @@ async def listed(server: Server, document: types.TextDocumentIdentifier | None) 
 @handlers.command(RUN)
 async def run(server: Server, document: types.TextDocumentIdentifier, *titles: str) -> list[dict[str, Any]]:
     """Run the scenarios of a document that have one of these titles, or all; what a run shows becomes diagnostics."""
+    return (await _ran(server, document, titles, is_covered=False))[0]
+
+
+@handlers.command(COVER)
+async def cover(server: Server, document: types.TextDocumentIdentifier, *titles: str) -> dict[str, object]:
+    """Run scenarios, and tell what they have met of all that can happen to nodes."""
+    results, coverage = await _ran(server, document, titles, is_covered=True)
+    return {"results": results, "coverage": coverage}
+
+
+@handlers.command(SHOW)
+async def show(server: Server, document: types.TextDocumentIdentifier, *titles: str) -> None:
+    """Run scenarios for an editor without a list of their results: a message has them."""
+    results = await run(server, document, *titles)
+    words = [f"{each['outcome']}: {each['title']}\n{each['message']}".strip() for each in results]
+    kind = types.MessageType.Info
+    if any(each["outcome"] != "passed" for each in results):
+        kind = types.MessageType.Warning
+    server.window_show_message(types.ShowMessageParams(kind, "\n".join(words)))
+
+
+async def _ran(
+    server: Server, document: types.TextDocumentIdentifier, titles: Sequence[str], *, is_covered: bool
+) -> tuple[list[dict[str, Any]], list[dict[str, object]]]:
+    """What comes of scenarios, and the coverage by file if it is wanted."""
     workspace, path = mission_at(server, document)
     scenarios = features.scenarios.listed(workspace, path)
     number = sum(not titles or each.title in titles for each in scenarios)
@@ -59,10 +88,14 @@ async def run(server: Server, document: types.TextDocumentIdentifier, *titles: s
         raise RequestRefused("this document has no such scenario" if titles else "this document has no scenario")
     folder = server.session.folders[0] if server.session.folders else os.path.dirname(path)
     texts = {**server.session.open, path: workspace.files[path].source}  # as they are now
-    asked: dict[str, object] = {"path": path, "texts": texts, "titles": titles}
+    asked: dict[str, object] = {"path": path, "texts": texts, "titles": titles, "covers": is_covered}
     results: list[dict[str, Any]] = []
+    coverage: list[dict[str, object]] = []
     async with progress(server, "running scenarios") as report, aclosing(_run(folder, asked)) as running:
         async for ran in running:
+            if "coverage" in ran:
+                coverage = _coverage(server, workspace, folder, ran["coverage"])
+                continue
             scenario = scenarios[ran["number"]]
             failures = features.scenarios.failures(scenario, folder, ran)
             written = [server.convert.failure(workspace, path, each) for each in failures]
@@ -82,18 +115,22 @@ async def run(server: Server, document: types.TextDocumentIdentifier, *titles: s
             )
             report(100 * len(results) // number, f"{len(results)} of {counted(number, 'scenario')}")
     server.schedule.check_soon((path,))
-    return results
+    return results, coverage
 
 
-@handlers.command(SHOW)
-async def show(server: Server, document: types.TextDocumentIdentifier, *titles: str) -> None:
-    """Run scenarios for an editor without a list of their results: a message has them."""
-    results = await run(server, document, *titles)
-    words = [f"{each['outcome']}: {each['title']}\n{each['message']}".strip() for each in results]
-    kind = types.MessageType.Info
-    if any(each["outcome"] != "passed" for each in results):
-        kind = types.MessageType.Warning
-    server.window_show_message(types.ShowMessageParams(kind, "\n".join(words)))
+def _coverage(
+    server: Server, workspace: Workspace, folder: str, coverage: dict[str, list[dict[str, Any]]]
+) -> list[dict[str, object]]:
+    """What scenarios have met, by file, with positions in the editor."""
+    from btq_lang.workspace.loader import absolute  # it imports workspaces, which are not needed to start
+
+    by_file: dict[str, dict[str, list[dict[str, Any]]]] = {}
+    for kind, places in coverage.items():
+        for place in places:
+            path = absolute(os.path.join(folder, place.pop("file")))
+            position = server.convert.position(workspace, path, place.pop("line") - 1, place.pop("column") - 1)
+            by_file.setdefault(path, {"nodes": [], "unused": []})[kind].append({"position": position, **place})
+    return [{"uri": server.convert.uri(path), **places} for path, places in by_file.items()]
 
 
 async def _run(folder: str, asked: dict[str, object]) -> AsyncGenerator[dict[str, Any], None]:

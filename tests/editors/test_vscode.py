@@ -293,6 +293,70 @@ def test_the_test_explorer_lists_and_runs_scenarios(code: Workbench, artifacts: 
     assert code.problems("the mission fails, and the node has not run with it")[0].endswith("[Ln 8, Col 5]")
 
 
+TWICE = """\
+include "fetch.btq"
+
+scenario "E is closed" of Deliver
+    given MoveTo (location = "E") fails
+    expect mission succeeds
+
+scenario "E is closed" of Deliver
+    given MoveTo fails
+    expect mission fails
+"""
+ONCE = """\
+include "fetch.btq"
+
+scenario "it leaves" of Leave
+    expect mission succeeds
+"""
+FETCHED = """\
+BehaviorTree Deliver
+    ?
+        MoveTo (location = "E")
+        MoveTo (location = "B")
+        Charge
+
+BehaviorTree Leave
+    Charge
+
+BehaviorTree Never
+    Charge
+"""
+
+
+def test_what_scenarios_meet_is_in_the_gutter_and_two_may_have_one_title(code: Workbench, artifacts: Path) -> None:
+    code.write("fetch.btq", FETCHED)
+    code.write("once.btq", ONCE)
+    code.write("twice.btq", TWICE)
+    code.open("twice.btq")
+    code.see(".codelens-decoration a:text-is('run')")
+    code.command("Testing: Focus on Test Explorer View")
+    code.see(".test-explorer .monaco-list-row:has-text('twice.btq') .monaco-tl-twistie").click()
+    rows = code.page.locator(".test-explorer .monaco-list-row:has-text('E is closed')")
+    code.until(lambda: rows.count() == 2, lambda: str(rows.all_inner_texts()))
+    code.command("Test: Run All Tests with Coverage")
+    for state in ("passed", "failed"):
+        code.see(f".test-explorer .monaco-list-row:has-text('E is closed') .codicon-testing-{state}-icon")
+    code.open("fetch.btq")
+    lines = code.page.locator(".line-numbers.coverage-deco-gutter")
+
+    def met() -> dict[str, str]:
+        classes = ((each.inner_text(), str(each.get_attribute("class"))) for each in lines.all())
+        return {line: " ".join(word for word in ("hit", "miss") if f"-{word}" in of) for line, of in classes}
+
+    expected = {"2": "hit miss", "3": "hit miss", "4": "hit", "5": "hit miss", "8": "hit miss", "10": "miss"}
+    code.until(lambda: met() == expected, lambda: str(met()))
+    code.shot(artifacts / "vscode-coverage.png")
+    code.keys("Control+;", "Control+Shift+i")  # Toggle Inline Coverage
+    code.cursor(3, 9)
+    code.keys("Control+k", "Control+i")
+    code.see(".monaco-hover:not(.hidden):has-text('Branch MoveTo succeeds in')")
+    code.shot(artifacts / "vscode-coverage-hover.png")
+    code.keys("Escape")
+    code.keys("Control+;", "Control+Shift+i")
+
+
 @pytest.mark.scheduled
 def test_enter_indents_below_what_has_a_block_and_leaves_it_at_the_second(code: Workbench) -> None:
     code.write("typed.btq", "")
