@@ -6,11 +6,9 @@ what a run has shown of an earlier text is in its answer, but in no diagnostic.
 
 from __future__ import annotations
 
-import asyncio
-import json
 import os
-from collections.abc import AsyncGenerator, Sequence
-from contextlib import aclosing, suppress
+from collections.abc import Sequence
+from contextlib import aclosing
 from typing import TYPE_CHECKING, Any, Final
 
 from lsprotocol import types
@@ -18,7 +16,7 @@ from lsprotocol import types
 from btq_lang import ide as features
 from btq_lang.lsp.commands import mission_at
 from btq_lang.lsp.editor import Handlers, RequestRefused, Server
-from btq_lang.lsp.processes import start_python
+from btq_lang.lsp.processes import answers_of
 from btq_lang.lsp.progress import progress
 from btq_lang.util.text import counted
 
@@ -88,10 +86,13 @@ async def _ran(
         raise RequestRefused("this document has no such scenario" if titles else "this document has no scenario")
     folder = server.session.folders[0] if server.session.folders else os.path.dirname(path)
     texts = {**server.session.open, path: workspace.files[path].source}  # as they are now
-    asked: dict[str, object] = {"path": path, "texts": texts, "titles": titles, "covers": is_covered}
+    asked: dict[str, object] = {"path": path, "texts": texts, "titles": titles, "is_covered": is_covered}
     results: list[dict[str, Any]] = []
     coverage: list[dict[str, object]] = []
-    async with progress(server, "running scenarios") as report, aclosing(_run(folder, asked)) as running:
+    async with (
+        progress(server, "running scenarios") as report,
+        aclosing(answers_of(folder, _PROGRAM, asked)) as running,
+    ):
         async for ran in running:
             if "coverage" in ran:
                 coverage = _coverage(server, workspace, folder, ran["coverage"])
@@ -133,23 +134,4 @@ def _coverage(
     return [{"uri": server.convert.uri(path), **places} for path, places in by_file.items()]
 
 
-async def _run(folder: str, asked: dict[str, object]) -> AsyncGenerator[dict[str, Any], None]:
-    """The results of scenarios as they come; what runs ends with this iterator."""
-    process = await start_python(folder, _PROGRAM)
-    assert process.stdin is not None, "it is a pipe"
-    assert process.stdout is not None, "likewise"
-    assert process.stderr is not None, "likewise"
-    errors = asyncio.ensure_future(process.stderr.read())
-    try:
-        process.stdin.write(f"{json.dumps(asked)}\n".encode())
-        async for line in process.stdout:
-            yield json.loads(line)
-        if await process.wait():
-            reason = (await errors).decode(errors="replace").strip()
-            raise RequestRefused(f"the scenarios could not be run: {reason}")
-    finally:
-        with suppress(ProcessLookupError):
-            process.kill()
-
-
-_PROGRAM: Final = "from btq_lang.scenarios.process import main; main()"
+_PROGRAM: Final = "from btq_lang.scenarios.process import print_answers, run_titles; print_answers(run_titles)"

@@ -1,4 +1,4 @@
-"""A process that runs the scenarios of one file for an editor, whose texts count instead of those on the disk.
+"""A process that runs scenarios or explores missions for an editor, whose texts count instead of those on the disk.
 
 One invariant: it ends when its standard input does, however long a scenario takes, so it never outlives the server that
 started it.
@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from threading import Thread
 from typing import Any
 
@@ -24,14 +24,12 @@ from btq_lang.scenarios.suite import Suite
 from btq_lang.scenarios.text import scenario_lines, step_in_words
 
 
-def main() -> None:
-    """Read a line of JSON, run what it asks for, and print a line of JSON for each scenario as soon as it has run, and
-    one for the coverage if that is asked for.
-    """
+def print_answers(answers: Callable[..., Iterator[dict[str, Any]]]) -> None:
+    """Read a line of JSON, the arguments of a function, and print a line of JSON for each answer."""
     asked = json.loads(sys.stdin.readline())
     Thread(target=_end_with_input, daemon=True).start()
-    for result in run_titles(asked["path"], asked["texts"], asked["titles"], asked["covers"]):
-        print(json.dumps(result), flush=True)
+    for answer in answers(**asked):
+        print(json.dumps(answer), flush=True)
 
 
 def run_titles(path: str, texts: dict[str, str], titles: list[str], is_covered: bool) -> Iterator[dict[str, Any]]:

@@ -357,6 +357,55 @@ def test_what_scenarios_meet_is_in_the_gutter_and_two_may_have_one_title(code: W
     code.keys("Control+;", "Control+Shift+i")
 
 
+EXPLORED = """\
+QualityReq most : reliability "It looks twice"
+    Look tries at most 2
+
+BehaviorTree Main
+    Retry (num_attempts = 3)
+        Look
+"""
+EXPLORE = ".codelens-decoration a:text-is('how can this be violated?')"
+
+
+def test_a_run_that_violates_a_requirement_is_opened_and_run(code: Workbench, artifacts: Path) -> None:
+    code.write("look.btq", EXPLORED)
+    code.open("look.btq")
+    code.see(EXPLORE).click()
+    answer = "most `Look tries at most 2` can be violated: "
+    code.see(f".notification-toast:has-text('{answer}yes, in 3 ticks')")
+    code.command("Notifications: Clear All Notifications")
+    code.see(".tab.active.dirty:has-text('most_violated.btq')")
+    code.until(lambda: code.text()[3:4] == ["    given Look fails 2 times, then succeeds"], lambda: str(code.text()))
+    code.see(".editor-group-container.active .codelens-decoration a:text-is('run')").click()
+    (row,) = code.problems("started 3 times; expected most satisfied, bound 2")
+    code.shot(artifacts / "vscode-explored.png")
+    assert row.endswith("btq test [Ln 5, Col 5]")
+    code.see(".tab:has-text('most_violated.btq')").click()
+    code.save()
+    (code.folder / "most_violated.btq").unlink()  # it was saved there, beside the mission
+    code.open("look.btq")
+    code.cursor(5, 28)
+    code.keys("Backspace")
+    code.type("2")
+    code.cursor(1, 13)
+    code.fixes()
+    code.see(".action-widget .monaco-list-row:has-text('Explore how `most` can be violated')").click()
+    code.see(f".notification-toast:has-text('{answer}no, in all 2 states')")
+    code.command("Notifications: Clear All Notifications")
+
+
+def test_the_next_key_ends_a_long_search(code: Workbench) -> None:
+    branches = (f"        ->\n            A{number}\n            B{number}\n" for number in range(12))
+    code.write("long.btq", EXPLORED.replace("Retry (num_attempts = 3)", "ParallelAll") + "".join(branches))
+    code.open("long.btq")
+    code.see(EXPLORE).click()
+    code.see(".statusbar-item:has-text('exploring most')")
+    code.focus()
+    code.type(" ")
+    code.see(".statusbar-item:has-text('a text was edited: ask again whether `most` can be violated')")
+
+
 @pytest.mark.scheduled
 def test_enter_indents_below_what_has_a_block_and_leaves_it_at_the_second(code: Workbench) -> None:
     code.write("typed.btq", "")
