@@ -244,3 +244,24 @@ def test_entries_that_bt_navigator_sets_have_a_value(explore: Exploring) -> None
     )
     findings = explore.json()["missions"][0]["survey"]["findings"]
     assert [finding["text"] for finding in findings] == ["FollowPath::3 can read {path} before it has a value"]
+
+
+def test_a_node_that_the_engine_does_not_have_yet_is_refused(explore: Exploring) -> None:
+    explore.tree("<TryCatch>\n<Pick/>\n<Home/>\n</TryCatch>")
+    assert explore()[0] == 0
+    (explore.folder / "btq.toml").write_text('engine = "4.6"\n', encoding="utf-8")
+    assert explore() == (
+        2,
+        "",
+        "btq explore: tree.xml: the engine refuses the tree: tree.xml:3: `TryCatch` requires BehaviorTree.CPP 4.9; "
+        "4.6 does not have it\n",
+    )
+
+
+def test_a_node_of_the_program_may_have_the_name_of_a_later_one(explore: Exploring) -> None:
+    explore.tree("<TryCatch/>")
+    model = '<TreeNodesModel><Action ID="TryCatch"/></TreeNodesModel>'
+    text = (explore.folder / "tree.xml").read_text(encoding="utf-8").replace("</root>", f"{model}</root>")
+    explore.mission(text, "tree.xml")
+    (explore.folder / "btq.toml").write_text('engine = "4.6"\n', encoding="utf-8")
+    assert explore()[2] == ""
