@@ -127,6 +127,10 @@ class ExploredMission:
             return frozenset({1})
         return frozenset([each.uid for each in self.build.running.instances(target) if each.uid is not None])
 
+    def written(self, uid: int) -> ResolvedNode | None:
+        """A node as it is written; None: it only enforces a requirement."""
+        return self._written.get(uid)
+
     def place(self, uid: int) -> tuple[str, int] | None:
         """The file and the line of a node, from 1; None: it is not written."""
         node = self._written.get(uid)
