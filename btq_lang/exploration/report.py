@@ -68,7 +68,8 @@ def _lines(explored: Explored) -> Iterator[str]:
         yield f"  {seen} {counted(survey.states, 'state')} seen"
         yield from (f"    not known: {reason}" for reason in survey.unknown)
         for finding in survey.findings:
-            yield f"  {finding.kind}: {finding.text}{_at(mission, finding.uid)}"
+            rule = f"; btq check: {finding.rule}" if finding.rule else ""
+            yield f"  {finding.kind}: {finding.text}{_at(mission, finding.uid)}{rule}"
             yield from _run(mission, finding.witness, 1)
 
 
@@ -136,6 +137,7 @@ def _mission(explored: Explored) -> Json:
                     "kind": finding.kind,
                     "text": finding.text,
                     **_node(mission, finding.uid),
+                    **({"rule": finding.rule} if finding.rule else {}),
                     "witness": _ticks(mission, finding.witness),
                 }
                 for finding in survey.findings

@@ -177,8 +177,36 @@ BehaviorTree Main
         "  all 3 states seen",
         "  reads-unset: Go::6 can read {place} before it has a value  (mission.btq:13)",
         "  cannot-end: the mission cannot end",
-        "  never-runs: Never never runs  (mission.btq:15)",
+        "  never-runs: Never never runs  (mission.btq:15); btq check: unreachable-child",
         "  never-ends: Loop never ends  (mission.btq:16)",
+    ]
+
+
+def test_what_a_rule_reports_too_names_it(explore: Exploring) -> None:
+    explore.mission(
+        """
+Action Plan
+    output path : Path
+Action Follow
+    input path : Path
+    input speed : double
+
+BehaviorTree Main
+    ->
+        Follow (path = {path}, speed = {speed})
+        Plan (path = {path})
+        ?
+            Follow (path = {path}, speed = {next_speed})
+            Script (code = "next_speed := 1.0")
+        AlwaysFailure
+        Plan (path = {path})
+"""
+    )
+    (survey,) = [each["survey"] for each in explore.json()["missions"]]
+    assert [(each["text"], each["line"], each.get("rule")) for each in survey["findings"] if "uid" in each] == [
+        ("Follow::2 can read {path} before it has a value", 10, "unset-entry"),
+        ("Follow::5 can read {next_speed} before it has a value", 13, None),
+        ("Plan::8 never runs", 16, "unreachable-child"),
     ]
 
 
