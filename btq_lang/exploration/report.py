@@ -65,7 +65,7 @@ def _lines(explored: Explored) -> Iterator[str]:
     if explored.survey is not None:
         survey = explored.survey
         seen = "all" if survey.is_closed else "not all: the first"
-        yield f"  {seen} {counted(survey.states, 'state')} seen"
+        yield f"  {seen} {counted(survey.states, 'state')} seen{'' if survey.is_counted else _UNCOUNTED}"
         yield from (f"    not known: {reason}" for reason in survey.unknown)
         for finding in survey.findings:
             rule = f"; btq check: {finding.rule}" if finding.rule else ""
@@ -77,7 +77,7 @@ def _word(answer: Answer) -> str:
     if answer.word == "yes":
         return f"yes, in {counted(len(answer.witness) + len(answer.circle), 'tick')}"
     if answer.word == "no":
-        return f"no, in all {counted(answer.states, 'state')}"
+        return f"no, in all {counted(answer.states, 'state')}{'' if answer.is_counted else _UNCOUNTED}"
     return f"not found in {counted(answer.states, 'state')}"
 
 
@@ -132,6 +132,7 @@ def _mission(explored: Explored) -> Json:
             "states": survey.states,
             "closed": survey.is_closed,
             "unknown": list(survey.unknown),
+            "counted": survey.is_counted,
             "findings": [
                 {
                     "kind": finding.kind,
@@ -152,6 +153,7 @@ def _answer(mission: ExploredMission, answer: Answer) -> dict[str, Json]:
         "states": answer.states,
         "assumed": answer.is_assumed,
         "unknown": list(answer.unknown),
+        "counted": answer.is_counted,
         "witness": _ticks(mission, answer.witness),
         "circle": _ticks(mission, answer.circle),
     }
@@ -177,4 +179,5 @@ def _node(mission: ExploredMission, uid: int) -> dict[str, Json]:
     return {"uid": uid} if place is None else {"uid": uid, "file": shown(place[0]), "line": place[1]}
 
 
+_UNCOUNTED: Final = ", with any number of attempts"
 _VERSION: Final = 1

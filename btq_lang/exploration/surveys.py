@@ -11,7 +11,7 @@ from typing import Final
 
 from btq_lang.checks import check
 from btq_lang.diagnostics.model import Diagnostic, Place
-from btq_lang.exploration.answers import full_runs
+from btq_lang.exploration.answers import full_runs, without_counts
 from btq_lang.exploration.missions import ExploredMission
 from btq_lang.exploration.opened import Opened
 from btq_lang.exploration.outcomes import THROWN, UNKNOWN
@@ -47,12 +47,15 @@ class Survey(Record):
         states: how many were seen.
         is_closed: all.
         unknown: what is not known of the tree, so that not all was seen.
+        is_counted: attempts and cycles were counted; else the states are those with any number of them, in which no
+            more happens than in those that were counted.
     """
 
     states: int
     is_closed: bool
     findings: tuple[SurveyFinding, ...]
     unknown: tuple[str, ...] = ()
+    is_counted: bool = True
 
 
 def surveyed(mission: ExploredMission, budget: SearchBudget) -> Survey:
@@ -69,11 +72,18 @@ def surveyed(mission: ExploredMission, budget: SearchBudget) -> Survey:
     rules = _Rules(mission)
     findings = [*_thrown(opened, search, running), *_unset(opened, watch, rules)]
     findings += _shared(mission, opened, search, rules)
-    if search.is_closed:
-        never = [finding for finding in _never(opened, watch, rules) if mission.place(finding.uid) is not None]
-        findings += [*_missing_ends(search), *never]  # without nodes that only enforce requirements
     unknown = tuple([end.message for end in search.ends if end.result == UNKNOWN])
-    return Survey(search.states, search.is_closed, tuple(findings), unknown)
+    all_seen: tuple[Search, _Watch] | None = (search, watch)
+    if not search.is_closed:
+        all_seen = None if unknown else _without_counts(opened, running, budget)
+    if all_seen is None:
+        return Survey(search.states, False, tuple(findings), unknown)
+    rough, seen = all_seen
+    is_closed = rough is search or _happens(mission, opened, *all_seen) == _happens(mission, opened, search, watch)
+    never = [finding for finding in _never(opened, seen, rules) if mission.place(finding.uid) is not None]
+    findings += [*_missing_ends(rough), *never]  # without nodes that only enforce requirements
+    states = rough.states if is_closed else search.states
+    return Survey(states, is_closed, tuple(findings), unknown, rough is search or not is_closed)
 
 
 class _Watch:
@@ -95,6 +105,21 @@ class _Watch:
 
     def unset_read(self, node: SimulatedNode, key: str) -> None:
         self.unset[node.uid, key] = None
+
+
+def _without_counts(opened: Opened, running: frozenset[int], budget: SearchBudget) -> tuple[Search, _Watch] | None:
+    """All states with any number of attempts, and what happens in them; None: they are too many."""
+    watch = _Watch()
+    search = without_counts(opened, watch, running, budget)
+    return None if search is None else (search, watch)
+
+
+def _happens(mission: ExploredMission, opened: Opened, search: Search, watch: _Watch) -> object:
+    """All that a survey looks at."""
+    ends = {(end.result, end.message) for end in search.ends}
+    servers = [position for position, node in enumerate(opened.machine.nodes) if mission.server(node)]
+    together = {(one, other) for one in servers for other in servers if search.are_together(one, other)}
+    return watch.ran, watch.ended, set(watch.unset), ends, together
 
 
 class _Rules:

@@ -293,3 +293,34 @@ def test_a_node_of_the_program_may_have_the_name_of_a_later_one(explore: Explori
     explore.mission(text, "tree.xml")
     (explore.folder / "btq.toml").write_text('engine = "4.6"\n', encoding="utf-8")
     assert explore()[2] == ""
+
+
+MANY_ATTEMPTS = (
+    "<Sequence><ParallelAll>"
+    + "".join(f'<RetryUntilSuccessful num_attempts="100"><A name="{name}"/></RetryUntilSuccessful>' for name in "abc")
+    + "</ParallelAll><Home/></Sequence>"
+)
+
+
+def test_attempts_are_not_counted_if_that_takes_too_many_states(explore: Exploring) -> None:
+    explore.tree(MANY_ATTEMPTS)
+    few = ("--states", "500")
+    assert explore.can("Home starts before a succeeds", *few) == (
+        1,
+        "  can Home starts before a succeeds: no, in all 57 states, with any number of attempts\n",
+    )
+    assert explore.can("ParallelAll fails before a fails or b fails or c fails", *few) == (
+        1,
+        "  can ParallelAll fails before a fails or b fails or c fails: no, in all 64 states, "
+        "with any number of attempts\n",
+    )
+    code, out, _ = explore(*few)
+    assert (code, out.splitlines()[1:]) == (0, ["  all 57 states seen, with any number of attempts"])
+
+
+def test_what_happens_only_after_many_attempts_is_not_made_up(explore: Exploring) -> None:
+    explore.tree(MANY_ATTEMPTS)
+    assert explore.can("ParallelAll fails", "--states", "60") == (
+        1,
+        "  can ParallelAll fails: not found in 60 states\n",
+    )
