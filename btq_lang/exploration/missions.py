@@ -15,7 +15,7 @@ from btq_lang.catalog.nav2 import ENGINES, assumed_distribution, distribution_am
 from btq_lang.catalog.nav2.creation import SERVERS
 from btq_lang.catalog.nav2.navigator import ENTRIES
 from btq_lang.catalog.versions import is_before_4
-from btq_lang.checks import lookups
+from btq_lang.checks import cpp_lookups, lookups
 from btq_lang.checks.kinds import newer_engine_node
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.rules import Severity
@@ -98,6 +98,7 @@ class ExploredMission:
             NotExplored: the engine refuses it, or it has something whose effect is not known.
         """
         preset = [key for key, letters in ENTRIES.items() if self.dialect.nav2[:1] in letters and self.dialect.nav2]
+        preset += self.workspace.store.ask(cpp_lookups.set_in_cpp, self.path).names
         try:
             return Opened(list(self._documents), self.tree, self.dialect, self.kinds, asked, preset)
         except EngineError as error:

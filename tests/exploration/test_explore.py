@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from exploring import Exploring
 
 FETCH = """
@@ -215,6 +216,20 @@ def test_exceptions_of_the_engine(explore: Exploring) -> None:
     code, out, _ = explore()
     assert code == 1
     assert "throws: the engine can throw: Exception in node 'ScriptCondition::3' [ScriptCondition]" in out
+
+
+def test_entries_that_cpp_sets_have_a_value_before(explore: Exploring) -> None:
+    pytest.importorskip("tree_sitter_cpp", reason="the C++ grammar is not installed: pip install -e '.[cpp]'")
+    scripts = '<Script code="mode = 3"/><ScriptCondition code="speed &gt; 1"/><Script code="speed = 1"/>'
+    explore.tree(f"<Sequence>{scripts}</Sequence>")
+    assert "doesn't exist, yet" in explore()[1]
+    (explore.folder / "btq.toml").write_text('nodes = ["main.cpp"]\n', encoding="utf-8")
+    code = (
+        'void start(BT::BehaviorTreeFactory& factory, BT::Blackboard& board) { factory.registerSimpleAction("A", a);\n'
+        'board.set("mode", 1); board.set("speed", 2.0); }\n'
+    )
+    (explore.folder / "main.cpp").write_text(code, encoding="utf-8")
+    assert explore() == (0, "tree.xml: tree Main, BehaviorTree.CPP 4.10\n  all 1 state seen\n", "")
 
 
 def test_two_callers_of_a_server(explore: Exploring) -> None:
