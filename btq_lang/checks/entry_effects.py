@@ -43,7 +43,7 @@ def unset_without_effect(view: View) -> Iterator[Diagnostic]:
 
 
 def unnoticed_update(view: View) -> Iterator[Diagnostic]:
-    """A copy into an entry whose updates a node waits for, in a version in which that is no update."""
+    """A copy into an entry whose updates a node waits for, in a version in which that does not count as one."""
     if not view.is_pinned:
         return
     for resolved in view.seen.by_flow.get("succeeds", ()):
@@ -53,7 +53,7 @@ def unnoticed_update(view: View) -> Iterator[Diagnostic]:
 
             if at_least(view.engines[0], COPY_IS_UPDATE.since):
                 return
-            message = f"{watcher.shown} does not notice this copy: in {view.engines[0]} it is no update of `{key.text}`"
+            message = f"{watcher.shown} does not notice this copy: in {view.engines[0]} it does not update `{key.text}`"
             related = (Related(watcher.place, f"waits for updates of `{key.text}`"),)
             notes = (f"write `{key.text} := …` in a Script",)
             yield Diagnostic("unnoticed-update", resolved.node.head.span, message, related, notes)

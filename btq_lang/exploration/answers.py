@@ -34,7 +34,7 @@ class Answer(Record):
         circle: the ticks that a run can repeat without an end, if that was asked.
         is_assumed: the witness takes a value calculated from unknown ones to be something, which it may not be.
         unknown: what is not known of the tree, so that not all was seen.
-        is_counted: attempts and cycles were counted; else it is no with any number of them.
+        is_counted: attempts and cycles were counted; else the answer holds for any number of them.
     """
 
     word: Word

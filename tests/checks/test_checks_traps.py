@@ -488,7 +488,7 @@ def test_up_to_4_6_a_copy_of_an_entry_is_no_update() -> None:
     ).replace("{key}", "goal")
     watched = text.replace("{entry}", "goal")
     expected = [
-        "3 warning «SetBlackboard» `WaitValueUpdate` does not notice this copy: in 4.6 it is no update of `goal`"
+        "3 warning «SetBlackboard» `WaitValueUpdate` does not notice this copy: in 4.6 it does not update `goal`"
     ]
     assert findings(watched, update, project=Project(engines=("4.6",))) == expected
     assert findings(text.replace("{entry}", "{goal}"), update, project=Project(engines=("4.6", "4.8"))) == expected

@@ -234,7 +234,11 @@ _TABLE: tuple[str | Rule, ...] = (  # a string is the subject of the rules below
         "an action that is the condition of an IfThenElse or WhileDoElse, and not started again",
     ),
     Rule("unset-without-effect", _W, "the removal of an entry that belongs to another tree, and so stays"),
-    Rule("unnoticed-update", _W, "a copy into an entry whose updates a node waits for, which up to 4.6 is no update"),
+    Rule(
+        "unnoticed-update",
+        _W,
+        "a copy into an entry whose updates a node waits for; up to 4.6 it does not count as one",
+    ),
     Rule("isolated-node", _E, "a SubTree that does not pass the entries that nodes of Nav2 need to be created"),
     Rule("shared-server", _W, "two nodes of Nav2 that may call one action server at the same time"),
     Rule("default-instead", _W, "a value that a node never reads, so that its default counts"),
