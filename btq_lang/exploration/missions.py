@@ -15,7 +15,10 @@ from btq_lang.catalog.nav2 import ENGINES, assumed_distribution, distribution_am
 from btq_lang.catalog.nav2.creation import SERVERS
 from btq_lang.catalog.nav2.navigator import ENTRIES
 from btq_lang.catalog.versions import is_before_4
-from btq_lang.checks import lookups
+from btq_lang.checks import cpp_lookups, lookups
+from btq_lang.checks.kinds import newer_engine_node
+from btq_lang.checks.view import View
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.evidence.identity import Build, Candidate
 from btq_lang.exploration.leaves import LeafKind
 from btq_lang.exploration.opened import Opened
@@ -30,6 +33,7 @@ from btq_lang.simulator.versions import Dialect
 from btq_lang.syntax.tree import Path
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.workspace.engine_version import written_for
+from btq_lang.workspace.loader import shown
 from btq_lang.workspace.port_types import as_kind
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
@@ -78,6 +82,7 @@ class ExploredMission:
         nav2 = distribution or (assumed_distribution(is_old) if has_nav2 else "")
         self.dialect: Final = Dialect(ENGINES[nav2] if is_old and nav2 else version, nav2)
         if file.is_xml:
+            self._refuse_newer_nodes()
             self._documents: Sequence[Document] = self._plain()
         else:
             self._documents = build.running.documents
@@ -93,6 +98,7 @@ class ExploredMission:
             NotExplored: the engine refuses it, or it has something whose effect is not known.
         """
         preset = [key for key, letters in ENTRIES.items() if self.dialect.nav2[:1] in letters and self.dialect.nav2]
+        preset += self.workspace.store.ask(cpp_lookups.set_in_cpp, self.path).names
         try:
             return Opened(list(self._documents), self.tree, self.dialect, self.kinds, asked, preset)
         except EngineError as error:
@@ -122,6 +128,10 @@ class ExploredMission:
             return frozenset({1})
         return frozenset([each.uid for each in self.build.running.instances(target) if each.uid is not None])
 
+    def written(self, uid: int) -> ResolvedNode | None:
+        """A node as it is written; None: it only enforces a requirement."""
+        return self._written.get(uid)
+
     def place(self, uid: int) -> tuple[str, int] | None:
         """The file and the line of a node, from 1; None: it is not written."""
         node = self._written.get(uid)
@@ -136,6 +146,22 @@ class ExploredMission:
         own = node.ports.get("server_name", "")
         name = SERVERS.get(node.id, "") if self.dialect.nav2 else ""
         return (own.lstrip("/") or name) if name and key_of(own, "server_name") is None else ""
+
+    def _refuse_newer_nodes(self) -> None:
+        """Refuse nodes that the engine does not have yet; no build has looked for them in XML.
+
+        Raises:
+            NotExplored: there is one.
+        """
+        store = self.workspace.store
+        for path in self.workspace.registered_with(self.path):
+            file = self.workspace.files[path]
+            for tree in store.ask(lookups.trees, path) if file.is_xml else ():
+                for problem in newer_engine_node(View(store, path, tree)):
+                    if problem.effective_severity is Severity.ERROR:
+                        span = file.on_disk(problem.span.shifted(file.start_of(tree.item)))
+                        line = file.source_lines.position(span.start).line + 1
+                        raise NotExplored(f"the engine refuses the tree: {shown(path)}:{line}: {problem.message}")
 
     def _plain(self) -> Sequence[Document]:
         """The XML files as they are."""

@@ -1,7 +1,7 @@
 """A tree whose leaves are free, ready to be explored.
 
-One invariant: an entry that nothing in the tree writes, or that bt_navigator sets, is one that the program sets before:
-it has a value, which is unknown.  All others begin without one.
+One invariant: an entry that nothing in the tree writes, or that bt_navigator or C++ sets, is one that the program sets
+before: it has a value, which is unknown.  All others begin without one.
 """
 
 from __future__ import annotations
@@ -112,8 +112,8 @@ class Opened:
         read = {home for node in self.machine.nodes for home in self._read(node)}
         read |= {(id(root), name) for name in asked}
         written = {home for node in self.machine.nodes for home in self._written(node)}
-        written -= {(id(root), name) for name in preset}
-        for board, name in sorted(read - written, key=lambda home: home[1]):
+        before = {(id(root), name) for name in preset}
+        for board, name in sorted((read - written) | (before & (read | written)), key=lambda home: home[1]):
             if board == id(root):
                 entry = root.create(name)
                 if entry.value is None:
