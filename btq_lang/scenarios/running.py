@@ -147,7 +147,7 @@ class _Running:
         except EngineError as error:
             return self._record("is refused" if self._machine is None else "throws", str(error))
         except NotModelled as error:
-            return self._record("unknown", self._why(error))
+            return self._record("unknown", why_unknown(self._machine.nodes if self._machine is not None else (), error))
         except Unanswered as error:
             return self._record("unanswered", error.node.path)
 
@@ -183,15 +183,6 @@ class _Running:
     def _unused(self, machine: Machine) -> tuple[str, ...]:
         started = {start.uid for start in self._starts}
         return unused_lines(self._mission, self._plan, machine, started, self._skills.applied, self._waiting)
-
-    def _why(self, error: NotModelled) -> str:
-        """What is not known: of the value of an entry, who reads and who wrote it."""
-        nodes = self._machine.nodes if self._machine is not None else ()
-        reader = next((node for node in nodes if node.uid == error.uid), None)
-        if not isinstance(error, ValueNeeded) or not isinstance(error.value, Unsaid) or reader is None:
-            return str(error)
-        key = _key_read(reader, error.value) or error.value.key
-        return f"{reader.path} reads {{{key}}}, and {error.value.why}"
 
     def _is_over(self) -> bool:
         """Let the world change as planned; whether the program ticks no more."""
@@ -346,6 +337,15 @@ class _Running:
                 for (begin, end), value in zip(pairwise(times), [*series.values], strict=True):
                     for time in range(begin + step, end, step):
                         series.add(time, value)
+
+
+def why_unknown(nodes: Sequence[SimulatedNode], error: NotModelled) -> str:
+    """What is not known: of the value of an entry, who of some nodes reads and who wrote it."""
+    reader = next((node for node in nodes if node.uid == error.uid), None)
+    if not isinstance(error, ValueNeeded) or not isinstance(error.value, Unsaid) or reader is None:
+        return str(error)
+    key = _key_read(reader, error.value) or error.value.key
+    return f"{reader.path} reads {{{key}}}, and {error.value.why}"
 
 
 class _NodesNow(Nearby):

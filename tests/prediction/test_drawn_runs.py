@@ -1,0 +1,117 @@
+"""Drawn runs are those of the simulator's own driver, row by row, whatever is remembered between them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from random import Random
+
+import pytest
+from drawn_trees import drawn
+from plain_runs import plain_run
+from seeds import seeds
+
+from btq_lang.btcpp.opening import file_of
+from btq_lang.prediction.declared import declared_world
+from btq_lang.prediction.prepared import PreparedMission, prepared
+from btq_lang.prediction.runs import DrawnRun
+from btq_lang.scenarios.mission import NotRunnable, ScenarioMission, as_program, main_tree
+from btq_lang.simulator.errors import EngineError, NotModelled
+from btq_lang.simulator.nodes import RUNNING
+from btq_lang.workspace.config import Project, parse_project
+from btq_lang.workspace.workspace import Workspace
+
+LABORATORY = Path(__file__).parents[2] / "examples/laboratory/mission.btq"
+OF_LABORATORY = """
+[simulate.skills]
+MoveBase = { takes = { median = "12 s", p95 = "20 s" }, succeeds = "97 %" }
+Pick = { takes = ["4 s", "7 s"], succeeds = "97 %", writes = { "@tubes" = "@tubes - 1" } }
+ReadLabel = { takes = ["1.5 s", "3 s"] }
+Place = { takes = "5 s" }
+Charge = { takes = "1000 s" }
+BatteryFull = { is = "battery >= 95 %" }
+MicroplateNotEmpty = { is = "{tubes} > 0" }
+SensorsAlive = { fails = "1 per 1 h", for = "2 s" }
+[simulate.world]
+label_traffic = { start = "0 kB", rate = "0.001 kB/s", while = { ReadLabel = "0 kB/s" } }
+"{tubes}" = { start = 6 }
+[simulate.world.battery]
+start = "60 %"
+rate = "-0.1 %/s"
+while = { Charge = "+1 %/s", MoveBase = "-0.5 %/s" }
+between = ["0 %", "100 %"]
+"""
+MODELS = """<TreeNodesModel><Action ID="Act"><input_port name="in"/><output_port name="out" type="double"/></Action>
+<Action ID="Do"><input_port name="a"/></Action><Condition ID="Cond"><output_port name="out"/></Condition>
+</TreeNodesModel></root>"""
+OF_TREES = """
+[simulate.skills]
+Act = { takes = ["0 s", "0.04 s"], succeeds = "70 %", writes = { out = "x + 1" } }
+Do = { takes = { median = "0.05 s", p95 = "0.4 s" }, succeeds = "60 %" }
+Cond = { fails = "4 per 1 s", for = "0.05 s" }
+[simulate.world]
+"{x}" = { start = 0, rate = "10 1/s", while = { Do = "-5 1/s" }, between = [0, 5] }
+"""
+
+
+def mission_of(workspace: Workspace, path: str) -> ScenarioMission:
+    tree = main_tree(workspace, path)
+    return ScenarioMission(as_program(workspace, path, tree), path, tree)
+
+
+def with_settings(mission: ScenarioMission, text: str, with_all_rows: bool = True) -> PreparedMission:
+    project, problems = parse_project(text)
+    assert problems == ()
+    assert project.simulation is not None
+    world = declared_world(project.simulation, mission)
+    assert world.problems == ()
+    return prepared(mission, world, {}, {}, with_all_rows)
+
+
+def laboratory(with_all_rows: bool = True) -> PreparedMission:
+    workspace = Workspace.of({"mission.btq": LABORATORY.read_text(encoding="utf-8")}, Project())
+    return with_settings(mission_of(workspace, "mission.btq"), OF_LABORATORY, with_all_rows)
+
+
+def ends(run: DrawnRun) -> str:
+    words = {"succeeds": "SUCCESS", "fails": "FAILURE", "is skipped": "SKIPPED", "does not end": "RUNNING"}
+    return words.get(run.end, run.why)
+
+
+def changes(run: DrawnRun) -> list[tuple[int, int, int]]:
+    """The rows without those that begin a node, and without the end of a root that did not succeed."""
+    rows = [row for row in run.rows if row[2] != RUNNING]
+    return rows if run.end in ("succeeds", "fails") else [row for row in rows if row[1] != 1]
+
+
+def assert_same(mission: PreparedMission, seed: int, numbers: range) -> set[str]:
+    outcomes: set[str] = set()
+    for number in numbers:
+        run = mission.loaded.run(seed, number)
+        end, now, rows = plain_run(mission, seed, number)
+        assert (ends(run), run.now) == (end, now), number
+        plain = [row for row in rows if row[2] != RUNNING]
+        assert changes(run) == (plain if end in ("SUCCESS", "FAILURE") else [row for row in plain if row[1] != 1])
+        outcomes.add(run.end)
+    return outcomes
+
+
+def test_runs_of_the_laboratory() -> None:
+    assert assert_same(laboratory(), 1, range(1, 101)) == {"succeeds", "fails"}
+
+
+@pytest.mark.parametrize("seed", seeds(300))
+def test_runs_of_drawn_trees(seed: int) -> None:
+    xml = drawn(Random(seed)).replace("</root>", MODELS)
+    workspace = Workspace({"tree.xml": file_of("tree.xml", xml)}, Project())
+    try:
+        mission = with_settings(mission_of(workspace, "tree.xml"), OF_TREES)
+    except (NotRunnable, EngineError, NotModelled):
+        return
+    mission.loaded.limit = 2_000  # ms
+    assert_same(mission, seed, range(1, 6))
+
+
+def test_a_run_does_not_depend_on_those_before_it() -> None:
+    first, second = laboratory(), laboratory()
+    in_order = {number: first.loaded.run(3, number) for number in range(1, 31)}
+    assert {number: second.loaded.run(3, number) for number in reversed(range(1, 31))} == in_order
