@@ -31,6 +31,7 @@ class JudgedBlock(Record):
         why: why runs are unknown or threw an exception, and how many.
         guessed: in how many runs each skill did what was never measured.
         numbers: of the runs that were judged, in order.
+        times: how long those took that succeeded, in milliseconds.
     """
 
     runs: int
@@ -40,6 +41,7 @@ class JudgedBlock(Record):
     why: Counter[tuple[str, str]]
     guessed: Counter[str]
     numbers: tuple[int, ...]
+    times: tuple[int, ...]
 
 
 class Judge:
@@ -68,6 +70,7 @@ class Judge:
         why: Counter[tuple[str, str]] = Counter()
         guessed: Counter[str] = Counter()
         judged: list[int] = []
+        times: list[int] = []
 
         def runs() -> Iterator[DrawnRun]:
             for number in numbers:
@@ -76,13 +79,17 @@ class Judge:
                 guessed.update(run.guessed)
                 if run.why:
                     why[run.end, run.why] += 1
+                if run.end == "succeeds":
+                    times.append(run.now)
                 if run.end != "unknown":
                     judged.append(number)
                     yield run
 
         evaluation = self.evaluation()
         self.read(evaluation, runs())
-        return JudgedBlock(len(numbers), len(judged), evaluation.findings, ends, why, guessed, tuple(judged))
+        return JudgedBlock(
+            len(numbers), len(judged), evaluation.findings, ends, why, guessed, tuple(judged), tuple(times)
+        )
 
     def read(self, evaluation: MissionEvaluation, runs: Iterator[DrawnRun]) -> None:
         """Judge runs one after the other."""

@@ -56,16 +56,14 @@ class PreparedMission(Record):
 def prepared(
     mission: ScenarioMission,
     world: DeclaredWorld,
-    measured: Mapping[int, Skill],
-    answers: Mapping[int, AnsweringCondition],
+    known: Mapping[int, Skill],
     with_all_rows: bool = False,
 ) -> PreparedMission:
     """A mission with its skills.
 
     Args:
-        world: what is declared.
-        measured: the skills of actions that were measured, by the numbers of nodes; they do what is not declared.
-        answers: what conditions answer that were measured, likewise.
+        world: what is declared of conditions and signals.
+        known: what actions do of which something is declared or was measured, by the numbers of nodes.
         with_all_rows: the rows of all nodes are wanted, and not only those on which verdicts depend.
 
     Raises:
@@ -78,12 +76,8 @@ def prepared(
     courses = {each.signal.name: Course(_course(each, mission)) for each in world.signals}
     robot = Robot(list(courses.values()), _stream_names(mission))
     leaves = {uid: node for uid, node in mission.written.items() if is_skill(node)}
-    skills = {
-        uid: world.skills.get(uid) or measured.get(uid) or AssumedSkill()
-        for uid, node in leaves.items()
-        if not is_condition(node)
-    }
-    conditions = {**answers}
+    skills = {uid: known.get(uid) or AssumedSkill() for uid, node in leaves.items() if not is_condition(node)}
+    conditions: dict[int, AnsweringCondition] = {}
     for uid, declared in world.conditions.items():
         targets = [part.target for part in parts_in(declared.condition) if isinstance(part, Running)]
         uids = {id(target): frozenset(mission.uids(target)) for target in targets}

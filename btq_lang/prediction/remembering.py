@@ -239,8 +239,9 @@ class RememberedTree:
         return values[0] if len(values) == 1 else None
 
     def rows(self) -> Rows:
-        """The wanted rows of the last step that the simulator made; a node that ends at once has one more, of its
-        begin.
+        """The wanted rows of the last step that the simulator made.
+
+        If not all are wanted, a node that ends at once has one more, of its begin, as `with_begins` writes it.
         """
         rows: Rows = []
         reset = 0  # the node that the row before resets
@@ -250,7 +251,7 @@ class RememberedTree:
             is_end = before == RUNNING or (uid == reset and bool(node.children))
             reset = uid if after == IDLE and before == RUNNING else 0
             if self._wanted is None or uid in self._wanted:
-                if after in (SUCCESS, FAILURE) and not is_end:
+                if after in (SUCCESS, FAILURE) and not is_end and self._wanted is not None:
                     rows.append((uid, RUNNING))
                 if self._wanted is None or after != IDLE or before == RUNNING:
                     rows.append((uid, after))

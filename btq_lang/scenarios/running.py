@@ -78,7 +78,7 @@ class ScenarioRun(Record):
 
     def session(self, mission: ScenarioMission) -> LogSession:
         """The run as a log would hold it, with the begin of each node in a row of its own."""
-        rows = _with_begins(self.rows, mission.tree.leaves)
+        rows = with_begins(self.rows, mission.tree.leaves)
         return LogSession(mission.tree, rows, dict(self.entries), signals=self.signals)
 
 
@@ -362,7 +362,7 @@ class _NodesNow(Nearby):
         return any(node.status == RUNNING and node.uid in uids for node in self._machine.nodes)
 
 
-def _with_begins(rows: Sequence[Transition], leaves: frozenset[int]) -> Iterator[Transition]:
+def with_begins(rows: Sequence[Transition], leaves: frozenset[int]) -> Iterator[Transition]:
     """The rows, with one more where a node that ends at once begins."""
     running: set[int] = set()
     reset = 0  # the node that the row before resets
