@@ -535,12 +535,17 @@ def _add_nodes(parser: SuggestingParser) -> None:
     "exit codes: 0 written; 1 written, but of files that cannot be read whole; 2 usage or I/O\n\n"
     "examples:\n  btq schema xsd -o btq.xsd                an XSD with the nodes of the project in this folder\n"
     "  btq schema xsd missions --target 4.6     for an older engine\n"
-    "  btq schema project -o btq.schema.json    a JSON schema of btq.toml\n",
+    "  btq schema project -o btq.schema.json    a JSON schema of btq.toml\n"
+    "  btq schema simulate                      a JSON schema of btq simulate --format json\n",
 )
 def _add_schema(parser: SuggestingParser) -> None:
     from btq_lang.catalog.versions import targets  # as above
 
-    parser.add("format", choices=("xsd", "project"), help="an XSD of the nodes, or a JSON schema of btq.toml")
+    parser.add(
+        "format",
+        choices=("xsd", "project", "simulate"),
+        help="an XSD of the nodes, or a JSON schema: of btq.toml, or of what btq simulate writes",
+    )
     parser.add("paths", nargs="*", metavar="PATH", help="of xsd: files and folders with nodes; default: .")
     parser.add("--target", choices=targets(), help="the engine's version; default: the project's newest")
     parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")

@@ -10,6 +10,7 @@ from btq_lang import prediction
 from btq_lang.commands.output import form_of, form_problem, is_coloured, write_file, write_output
 from btq_lang.commands.progress import Progress
 from btq_lang.commands.recorded import verdict_of
+from btq_lang.evidence.identity import without_number
 from btq_lang.evidence.store.engine import NoEngine
 from btq_lang.evidence.store.sets import ABOUT
 from btq_lang.evidence.verifying import logs_below
@@ -18,7 +19,7 @@ from btq_lang.formatter import format_text
 from btq_lang.prediction.measuring import Measurement, measured_in_logs, measured_in_store
 from btq_lang.prediction.predicting import Predictor, Recipe, Unanswerable, predicted
 from btq_lang.prediction.report import PredictedRequirement, Prediction
-from btq_lang.prediction.shown_run import recorded_run, shown_run
+from btq_lang.prediction.shown_run import recorded_run, shown_run, signals_csv
 from btq_lang.prediction.template import template
 from btq_lang.projects.building import for_target
 from btq_lang.projects.files import FileGroup, Files, logs_of, no_mission_below, usage_problem
@@ -200,7 +201,7 @@ def _predict(predictor: Predictor, options: SimulateOptions, messages: CommandOu
 
             report = predicted(predictor, options.runs, jobs, options.check, options.label or "", reached)
     except Unanswerable as error:
-        names = ", ".join(error.conditions)
+        names = ", ".join(map(without_number, error.conditions))
         what = "this condition answers" if len(error.conditions) == 1 else "these conditions answer"
         raise Refused(f"nobody says what {what}: {names}; --template prints the lines for btq.toml") from None
     if not report.runs:
@@ -235,6 +236,11 @@ def _show(predictor: Predictor, report: Prediction, options: SimulateOptions, me
         return 0
     if options.output.endswith(".btlog"):
         write_file(options.output, as_btlog(full.mission.tree, ran))
+        if samples := signals_csv(full, drawn):
+            csv = f"{options.output.removesuffix('.btlog')}.csv"
+            write_file(csv, samples)
+            messages.remark(f"run {number} is in {options.output}: btq verify {options.output} --signals {csv}")
+            return 0
     else:
         folder = os.path.dirname(absolute(options.output))
         include = os.path.relpath(full.mission.path, folder).replace(os.sep, "/")

@@ -8,7 +8,7 @@ One invariant: an effect is what the simulator itself did; the simulator makes e
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import partial
 from typing import Any, Final, TypeAlias
 
@@ -96,6 +96,7 @@ class RememberedTree:
         dues: when each timer goes off in the run that goes on, in milliseconds; then, when the time has passed for
             which a node waits without one.
         timers: how many of these are timers.
+        wakes: when the next timer goes off; `NEVER`: none runs.
         read: the entries that signals read.
     """
 
@@ -119,6 +120,7 @@ class RememberedTree:
         self._changes: Final[list[tuple[SimulatedNode, int, int]]] = []
         self.dues: Final[list[int]] = [NEVER] * len(self._timed)
         self.timers: Final = len(machine.timed)
+        self.wakes = NEVER
         machine.passed = self._passed
         self.initial: Final = self._state()
 
@@ -129,6 +131,19 @@ class RememberedTree:
     def begin(self) -> None:
         """Begin a run: no timer runs."""
         self.dues[:] = [NEVER] * len(self.dues)
+        self.wakes = NEVER
+
+    def due(self) -> Iterator[int]:
+        """The timers that go off now, each as long as the one before has not stopped it."""
+        dues = self.dues
+        for timer in range(self.timers):
+            if dues[timer] == self.machine.now:
+                dues[timer] = NEVER
+                yield timer
+        self._look_at_timers()
+
+    def _look_at_timers(self) -> None:
+        self.wakes = min([due for due in self.dues[: self.timers] if due != NEVER], default=NEVER)
 
     def step(self, state: KnownState, number: int) -> Effect:
         """Make a step; all that belongs to the run is changed with it.
@@ -149,6 +164,7 @@ class RememberedTree:
             now, dues = self.machine.now, self.dues
             for timer, wait in effect.timers:
                 dues[timer] = now + wait if wait != NEVER else NEVER
+            self._look_at_timers()
         if effect.kept:
             values = [value.value() for _, value in effect.kept]
             for (own, _), value in zip(effect.kept, values, strict=True):

@@ -161,12 +161,10 @@ class LoadedRuns:
 
         As `tick_while_running`, which does not remember.
         """
-        tree, machine, robot = self._tree, self._machine, self.robot
+        tree, machine = self._tree, self._machine
         tree.begin()
         state = tree.initial
         self._note_state(state)
-        dues = tree.dues
-        timers = range(tree.timers)
         ticks = 0
         self._is_cut = False
         has_jumped = True
@@ -175,38 +173,32 @@ class LoadedRuns:
             state = self._noted(effect)
             if effect.result != RUNNING:
                 return effect.result
-            now = machine.now
             ticks += 1
             self._is_cut = ticks > _MOST_TICKS
-            if now >= self.limit or self._is_cut:
+            if machine.now >= self.limit or self._is_cut:
                 break
-            wakes = min([dues[timer] for timer in timers if dues[timer] != NEVER], default=NEVER)
-            if has_jumped or not effect.is_quiet:
-                has_jumped = False
-                until = now + _PERIOD
-                if wakes != NEVER and wakes < until:
-                    until = wakes
-            else:
-                has_jumped = True
-                changes = robot.next_change(now)
-                for due in dues[tree.timers :]:
-                    if now < due < ENDLESS and (changes == NEVER or due < changes):
-                        changes = due
-                if wakes == changes == NEVER:
-                    break
-                until = now - (now - changes) // _PERIOD * _PERIOD if changes != NEVER else NEVER
-                if until == NEVER or (wakes != NEVER and wakes < until):
-                    until = wakes
-            while wakes != NEVER and wakes <= until:
-                machine.now = wakes
-                for timer in timers:
-                    if dues[timer] == wakes:
-                        dues[timer] = NEVER
-                        state = self._noted(tree.step(state, timer))
-                wakes = min([dues[timer] for timer in timers if dues[timer] != NEVER], default=NEVER)
+            has_jumped = effect.is_quiet and not has_jumped
+            until = self._next_change(machine.now) if has_jumped else machine.now + _PERIOD
+            if tree.wakes != NEVER and (until == NEVER or tree.wakes < until):
+                until = tree.wakes
+            if until == NEVER or until > self.limit:
+                machine.now = self.limit if until != NEVER else machine.now
+                break
+            while NEVER != tree.wakes <= until:
+                machine.now = tree.wakes
+                for timer in tree.due():
+                    state = self._noted(tree.step(state, timer))
             machine.now = until
         self._noted(tree.step(state, HALT))
         return RUNNING
+
+    def _next_change(self, now: int) -> int:
+        """When the program ticks next, if nothing changes before by itself but timers; `NEVER`: nothing will."""
+        change = self.robot.next_change(now)
+        for due in self._tree.dues[self._tree.timers :]:
+            if now < due < ENDLESS and (change == NEVER or due < change):
+                change = due
+        return now - (now - change) // _PERIOD * _PERIOD if change != NEVER else NEVER
 
     def _noted(self, effect: Effect) -> KnownState:
         """Note what a step did; the state after it."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final
 
+from btq_lang.evidence.identity import without_number
 from btq_lang.evidence.wording import duration, share
 from btq_lang.prediction.report import PredictedClause, PredictedRequirement, Prediction
 from btq_lang.util.text import counted
@@ -32,7 +33,7 @@ def result(clause: PredictedClause, requirement: str, runs: int) -> str:
     if clause.word == "unknown":
         return clause.why or "unknown"
     if clause.word == "never run":
-        name = clause.of or clause.path.rpartition("/")[2]
+        name = clause.of or without_number(clause.path).rpartition("/")[2]
         return f"{name} ran in 0 of {number_of(runs)} runs" if name else clause.why
     parts: list[str] = []
     if clause.pooled:
@@ -77,7 +78,7 @@ def summary(prediction: Prediction) -> Iterator[str]:
         times = duration(prediction.median), duration(prediction.p95)
         line += f" · those that succeed take {times[0]}, and 95 % of them at most {times[1]}"
     yield line
-    assumed = [each.path for each in prediction.sources if each.source == "ASSUMED"]
+    assumed = [without_number(each.path) for each in prediction.sources if each.source == "ASSUMED"]
     if assumed:
         yield f"ASSUMED to succeed at once: {', '.join(assumed)}"
     for path, number in prediction.guessed:

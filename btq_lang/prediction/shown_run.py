@@ -37,3 +37,15 @@ def _series(run: DrawnRun) -> dict[str, SampleSeries]:
         for time, value in samples:
             series[name].add(START + time, value)
     return series
+
+
+def signals_csv(prepared: PreparedMission, run: DrawnRun) -> str:
+    """The samples of signals as `--signals` reads them: a line for each time at which there is one."""
+    series = {name: each for name, each in _series(run).items() if each.times}
+    times = sorted({time for each in series.values() for time in each.times})
+    rows = [",".join(("t", *series))]
+    for time in times:
+        values = (each.at(time) for each in series.values())
+        cells = ["" if value is None or value[1] is None else f"{value[1]}" for value in values]
+        rows.append(",".join((f"{time / 1e6:.6f}", *cells)))
+    return "\n".join(rows) + "\n" if series else ""
