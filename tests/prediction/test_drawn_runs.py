@@ -12,11 +12,14 @@ from seeds import seeds
 
 from btq_lang.btcpp.opening import file_of
 from btq_lang.prediction.declared import declared_world
+from btq_lang.prediction.judging import Judge
 from btq_lang.prediction.prepared import PreparedMission, prepared
 from btq_lang.prediction.runs import DrawnRun
 from btq_lang.scenarios.mission import NotRunnable, ScenarioMission, as_program, main_tree
+from btq_lang.scenarios.running import with_begins
 from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.nodes import RUNNING
+from btq_lang.util.record import replace
 from btq_lang.workspace.config import Project, parse_project
 from btq_lang.workspace.workspace import Workspace
 
@@ -32,7 +35,7 @@ BatteryFull = { is = "battery >= 95 %" }
 MicroplateNotEmpty = { is = "{tubes} > 0" }
 SensorsAlive = { fails = "1 per 1 h", for = "2 s" }
 [simulate.world]
-label_traffic = { start = "0 kB", rate = "0.001 kB/s", while = { ReadLabel = "0 kB/s" } }
+label_traffic = { start = "0 kB" }
 "{tubes}" = { start = 6 }
 [simulate.world.battery]
 start = "60 %"
@@ -40,6 +43,7 @@ rate = "-0.1 %/s"
 while = { Charge = "+1 %/s", MoveBase = "-0.5 %/s" }
 between = ["0 %", "100 %"]
 """
+IN_BETWEEN = 'rate = "0.001 kB/s", while = { ReadLabel = "0 kB/s" } }'  # of which guards copy the value
 MODELS = """<TreeNodesModel><Action ID="Act"><input_port name="in"/><output_port name="out" type="double"/></Action>
 <Action ID="Do"><input_port name="a"/></Action><Condition ID="Cond"><output_port name="out"/></Condition>
 </TreeNodesModel></root>"""
@@ -67,9 +71,9 @@ def with_settings(mission: ScenarioMission, text: str, with_all_rows: bool = Tru
     return prepared(mission, world, world.skills, with_all_rows)
 
 
-def laboratory(with_all_rows: bool = True) -> PreparedMission:
+def laboratory(with_all_rows: bool = True, settings: str = OF_LABORATORY) -> PreparedMission:
     workspace = Workspace.of({"mission.btq": LABORATORY.read_text(encoding="utf-8")}, Project())
-    return with_settings(mission_of(workspace, "mission.btq"), OF_LABORATORY, with_all_rows)
+    return with_settings(mission_of(workspace, "mission.btq"), settings, with_all_rows)
 
 
 def ends(run: DrawnRun) -> str:
@@ -101,7 +105,14 @@ def assert_same(mission: PreparedMission, seed: int, numbers: range) -> set[str]
 
 
 def test_runs_of_the_laboratory() -> None:
-    assert assert_same(laboratory(), 1, range(1, 9)) == {"succeeds", "fails"}
+    assert assert_same(laboratory(), 1, range(1, 21)) == {"succeeds", "fails"}
+
+
+def test_a_value_of_the_world_that_is_copied_and_calculated_with() -> None:
+    settings = OF_LABORATORY.replace(
+        'label_traffic = { start = "0 kB" }', f'label_traffic = {{ start = "0 kB", {IN_BETWEEN}'
+    )
+    assert assert_same(laboratory(settings=settings), 1, range(1, 3)) == {"succeeds", "fails"}
 
 
 @pytest.mark.parametrize("seed", seeds(300))
@@ -120,3 +131,35 @@ def test_a_run_does_not_depend_on_those_before_it() -> None:
     first, second = laboratory(), laboratory()
     in_order = {number: first.loaded.run(3, number) for number in range(1, 31)}
     assert {number: second.loaded.run(3, number) for number in reversed(range(1, 31))} == in_order
+
+
+def test_the_rows_that_are_kept_are_enough() -> None:
+    with_all, with_few = laboratory(), laboratory(with_all_rows=False)
+    judge = Judge(with_all.mission)
+    leaves = with_all.mission.tree.leaves
+    judged = []
+    for mission in (with_all, with_few):
+        runs = [mission.loaded.run(5, number) for number in range(1, 121)]
+        assert {run.end for run in runs} == {"succeeds", "fails"}
+        evaluation = judge.evaluation()
+        if mission is with_all:
+            runs = [replace(run, rows=[*with_begins(run.rows, leaves)]) for run in runs]
+        judge.read(evaluation, iter(runs))
+        judged.append(
+            [
+                (
+                    each.text,
+                    each.verdict,
+                    each.counted,
+                    each.violated,
+                    each.unknown,
+                    each.failed,
+                    each.halted,
+                    each.worst,
+                )
+                for verdict in evaluation.verdicts()
+                for each in verdict.clauses
+            ]
+        )
+    assert judged[0] == judged[1]
+    assert {each[1] for each in judged[0]} == {"violated", "satisfied"}
