@@ -8,12 +8,12 @@ from collections.abc import Callable
 from functools import cache
 from typing import Final, TypeAlias
 
+from btq_lang.commands.simulate_options import add_simulate_options
 from btq_lang.commands.suggesting_parser import SuggestingParser
 from btq_lang.commands.verify_options import VerifyOptions, add_verify_options
 from btq_lang.evidence.compare import FORMATS as COMPARISON_FORMATS
 from btq_lang.graph import DIRECTIONS
 from btq_lang.graph import FORMATS as GRAPH_FORMATS
-from btq_lang.prediction import FORMATS as PREDICTION_FORMATS
 from btq_lang.projects.options import CheckOptions, add_server_options
 from btq_lang.render import FORMATS
 from btq_lang.scenarios import FORMATS as SCENARIO_FORMATS
@@ -412,30 +412,8 @@ def _add_explore(parser: SuggestingParser) -> None:
     "  btq simulate --check                           in CI\n",
 )
 def _add_simulate(parser: SuggestingParser) -> None:
-    from btq_lang.catalog.versions import targets  # as above
-
     _add_paths(parser)
-    parser.add("--tree", metavar="ID", help="the tree that the program creates; default: the main tree")
-    parser.add("--runs", type=int, default=10_000, metavar="N", help="how many runs; default: 10000")
-    parser.add("--seed", type=int, default=1, metavar="N", help="of what is drawn; default: 1")
-    parser.add(
-        "--from",
-        action="append",
-        default=[],
-        dest="measured",
-        metavar="PATH",
-        help="a log, a folder of logs, or a store, that shows what skills do; may be repeated; default: " + _OF_PROJECT,
-    )
-    parser.add("--label", metavar="NAME", help="only runs in the store with this label")
-    parser.add("--target", choices=targets(), help="the engine's version; default: the project's newest")
-    parser.flag("--no-enforce", "run the tree as btq build --no-enforce writes it")
-    parser.flag("--check", "exit 1 where a demand will be missed; stop as soon as all demands are decided")
-    parser.flag("--template", "print the lines of btq.toml for the skills of which nothing is said")
-    parser.add("--show", metavar="ID", help="draw a run that misses this requirement, or comes closest")
-    parser.add("--jobs", type=int, default=0, metavar="N", help="run in N processes; default: by their number")
-    parser.add("--format", choices=PREDICTION_FORMATS, help="default: as the file of -o ends, else text")
-    help_text = "where to write; default: standard output; with --show FILE.btlog: a log, FILE.btq: a scenario"
-    parser.add("-o", "--output", metavar="FILE", help=help_text)
+    add_simulate_options(parser, _OF_PROJECT)
     _add_config(parser)
     _add_color(parser)
 

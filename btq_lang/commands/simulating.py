@@ -10,6 +10,7 @@ from btq_lang import prediction
 from btq_lang.commands.output import form_of, form_problem, is_coloured, write_file, write_output
 from btq_lang.commands.progress import Progress
 from btq_lang.commands.recorded import verdict_of
+from btq_lang.commands.simulate_options import SimulateOptions
 from btq_lang.evidence.identity import without_number
 from btq_lang.evidence.store.engine import NoEngine
 from btq_lang.evidence.store.sets import ABOUT
@@ -30,40 +31,7 @@ from btq_lang.scenarios.drawing import drawing
 from btq_lang.scenarios.mission import NotRunnable, ScenarioMission, as_program, main_tree, with_named_tree
 from btq_lang.scenarios.recording import as_scenario
 from btq_lang.simulator.errors import EngineError, NotModelled
-from btq_lang.util.record import Record
 from btq_lang.workspace.loader import absolute, shown
-
-
-class SimulateOptions(Record):
-    """The options of `btq simulate`.
-
-    Attributes:
-        paths: the mission, or a folder with one.
-        tree: the tree that the program creates; None: the main tree.
-        measured: logs, or a store, that show what skills do; none: those of the project.
-        label: of the runs in a store that count.
-        check: exit 1 where a demand will be missed, and stop when all is decided.
-        template: print the table of btq.toml for skills of which nothing is known.
-        show: a requirement of which a run is drawn that misses it, or that comes closest.
-        jobs: the number of processes; 0: as many as there are processors.
-    """
-
-    paths: Sequence[str]
-    stdin_filename: str | None
-    tree: str | None
-    runs: int
-    seed: int
-    measured: Sequence[str]
-    label: str | None
-    target: str | None
-    no_enforce: bool
-    check: bool
-    template: bool
-    show: str | None
-    jobs: int
-    format: str | None
-    output: str | None
-    color: str
 
 
 def run(options: SimulateOptions, messages: CommandOutput) -> int:
@@ -223,8 +191,8 @@ def _show(predictor: Predictor, report: Prediction, options: SimulateOptions, me
     if number is None:
         messages.remark(f"btq simulate: --show {options.show}: no run misses it, and nothing is measured")
         return 1
-    full = predictor.full()
-    drawn = full.loaded.run(options.seed, number)
+    full = predictor.full
+    (drawn,) = predictor.again((number,))
     ran = shown_run(full, drawn)
     missed = any(clause.held < clause.counted for clause in requirement.clauses)
     how = "misses" if missed else "comes closest to missing"

@@ -62,7 +62,7 @@ class DeclaredAnswers:
         self._outages: Outages | None = None
         self._is_out = False  # until:
         self._until = 0
-        self.ask_is_out: Final = self.is_out  # a bound method is made anew each time
+        self.ask_is_out: Final = self.is_out  # one object: questions are compared
         self._robot: Final = robot
         self.is_timely: Final = declared.fails > 0
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final
+from collections.abc import Callable, Sequence
+from typing import Final, TypeAlias
 
 from btq_lang.evidence.model import ROOT
 from btq_lang.evidence.verdicts import CauseLink, ClauseVerdict, Violation
@@ -15,16 +15,19 @@ from btq_lang.scenarios.mission import ScenarioMission
 from btq_lang.scenarios.running import with_begins
 from btq_lang.util.record import replace
 
-if TYPE_CHECKING:
-    from btq_lang.prediction.predicting import Predictor
+Again: TypeAlias = Callable[[Sequence[int]], Sequence[DrawnRun]]
 
 
 def with_causes(
-    predictor: Predictor, clauses: Sequence[tuple[ClauseVerdict, PredictedClause]], numbers: Sequence[int]
+    mission: ScenarioMission,
+    again: Again,
+    clauses: Sequence[tuple[ClauseVerdict, PredictedClause]],
+    numbers: Sequence[int],
 ) -> list[PredictedClause]:
     """The clauses of a requirement, each with the main cause of its misses, and with the numbers that runs have.
 
     Args:
+        again: makes runs again, by their numbers, with all rows.
         numbers: of the judged runs; violations count these from 1.
     """
     explained: list[PredictedClause] = []
@@ -33,17 +36,15 @@ def with_causes(
         clause = replace(clause, worst_run=run)
         if verdict.violations:
             missing = [numbers[number - 1] for number in dict.fromkeys(each.run for each in verdict.violations)]
-            clause = replace(clause, cause=_cause(predictor, missing[:_LOOKED], verdict))
+            clause = replace(clause, cause=_cause(mission, again(missing[:_LOOKED]), verdict))
         explained.append(clause)
     return explained
 
 
-def _cause(predictor: Predictor, numbers: Sequence[int], verdict: ClauseVerdict) -> Cause | None:
+def _cause(mission: ScenarioMission, runs: Sequence[DrawnRun], verdict: ClauseVerdict) -> Cause | None:
     """The main cause of the violations of a clause in some runs."""
-    full = predictor.full()
-    runs = [full.loaded.run(predictor.recipe.seed, number) for number in numbers]
-    leaves = predictor.mission.tree.leaves
-    judge = Judge(predictor.mission)
+    leaves = mission.tree.leaves
+    judge = Judge(mission)
     evaluation = judge.evaluation()
     judge.read(evaluation, (replace(run, rows=[*with_begins(run.rows, leaves)]) for run in runs))
     clauses = (clause for each in evaluation.verdicts() for clause in each.clauses)
@@ -52,9 +53,7 @@ def _cause(predictor: Predictor, numbers: Sequence[int], verdict: ClauseVerdict)
         return None
     first = {violation.run: violation for violation in reversed(again.violations)}
     causes = Counter(
-        text
-        for number, violation in sorted(first.items())
-        if (text := _text(predictor.mission, runs[number - 1], violation))
+        text for number, violation in sorted(first.items()) if (text := _text(mission, runs[number - 1], violation))
     )
     if not causes:
         return None

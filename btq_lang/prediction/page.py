@@ -17,7 +17,7 @@ def render(prediction: Prediction, colour: bool = False) -> str:
             "title": requirement.title,
             "clause": clause.text,
             "path": clause.path,
-            "share": None if clause.share is None else round(clause.share * 100, 2),
+            "share": "" if clause.share is None else f"{clause.share * 100:.4g}",
             "result": result(clause, requirement.id, prediction.runs),
             "cause": cause(clause),
         }

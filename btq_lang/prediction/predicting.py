@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cached_property
 from typing import Final
 
 from btq_lang.evidence.evaluate import MissionEvaluation
@@ -20,6 +21,7 @@ from btq_lang.prediction.measured import MeasuredSkills
 from btq_lang.prediction.measuring import actions_of
 from btq_lang.prediction.prepared import PreparedMission, prepared
 from btq_lang.prediction.report import WORST_FIRST, Ended, PredictedRequirement, Prediction, Word
+from btq_lang.prediction.runs import DrawnRun
 from btq_lang.prediction.skill import Skill
 from btq_lang.prediction.streams import Stream
 from btq_lang.prediction.words import Uncertainty, predicted_clause
@@ -50,7 +52,7 @@ class Recipe(Record):
 
 
 class Unanswerable(Exception):
-    """No run can be made, for nobody says what some conditions answer.
+    """No run can be made: what some conditions answer is not given.
 
     Attributes:
         conditions: their paths.
@@ -117,9 +119,14 @@ class Predictor:
         finally:
             self.prepared.loaded.robot.exchange(self._known(self._skills))
 
+    @cached_property
     def full(self) -> PreparedMission:
         """The mission with all rows of its runs."""
         return prepared(self.mission, self.world, self._skills, with_all_rows=True)
+
+    def again(self, numbers: Sequence[int]) -> Sequence[DrawnRun]:
+        """Runs by their numbers, with all rows."""
+        return [self.full.loaded.run(self.recipe.seed, number) for number in numbers]
 
     def _known(self, skills: dict[int, Skill]) -> dict[int, Skill]:
         """Those of skills that are in the tree that runs."""
@@ -148,7 +155,7 @@ def predicted(
         made: called with the number of runs after each block; a KeyboardInterrupt there ends the runs.
 
     Raises:
-        Unanswerable: nobody says what some conditions answer.
+        Unanswerable: what some conditions answer is not given.
     """
     if predictor.prepared.unanswered:
         raise Unanswerable(predictor.prepared.unanswered)
@@ -258,7 +265,7 @@ class _Sum:
                 known = predicted_clause(clause, self._odds(verdict), unknown, Uncertainty(number, shares))
                 clauses.append((clause, known))
                 place += 1
-            with_cause = with_causes(predictor, clauses, self._numbers)
+            with_cause = with_causes(predictor.mission, predictor.again, clauses, self._numbers)
             words: list[Word] = [each.word for each in with_cause]
             word = min(words, key=WORST_FIRST.index, default=_NO_CLAUSE)
             requirements.append(PredictedRequirement(verdict.id, verdict.title, word, tuple(with_cause)))

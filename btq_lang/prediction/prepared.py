@@ -1,4 +1,4 @@
-"""A mission ready for runs: who says what each of its skills does, and of which conditions nobody says anything.
+"""A mission ready for runs: who says what each of its skills does, and of which conditions nothing is said.
 
 One invariant: each leaf of the program has exactly one source, and a condition without one keeps the mission from
 running.
@@ -44,7 +44,7 @@ class PreparedMission(Record):
 
     Attributes:
         sources: of each leaf of the program.
-        unanswered: the paths of the conditions of which nobody says anything; with any, no run can be made.
+        unanswered: the paths of the conditions of which nothing is said; with any, no run can be made.
     """
 
     mission: ScenarioMission

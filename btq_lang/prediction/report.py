@@ -1,6 +1,6 @@
 """What is predicted, as data.
 
-One invariant: writers compute nothing from it; and a prediction has words of its own, for it is no verdict.
+One invariant: writers compute nothing from it; and a prediction is not called a verdict: it has other words.
 """
 
 from __future__ import annotations

@@ -197,7 +197,7 @@ class _Action:
         self.stream: Stream | None = None
         self.end = NEVER
         self.outcome: Outcome = RUNNING
-        # Kept, for bound methods are made anew each time, and these are compared as questions.
+        # One object each: questions are compared.
         self.begin: Final[Callable[[], Outcome]] = self._begun
         self.go_on: Final[Callable[[], Outcome]] = self._gone_on
 

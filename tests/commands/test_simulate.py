@@ -195,7 +195,7 @@ def test_other_formats(project: Path) -> None:
     )
     assert run_btq("simulate", "--runs", "300", "-o", "page.html", cwd=project) == (0, "", "")
     page = (project / "page.html").read_text(encoding="utf-8")
-    assert '<meter min="0" max="100" value="82.0">82.0 %</meter>' in page
+    assert '<meter min="0" max="100" value="82">82 %</meter>' in page
     assert json.loads(run_btq("schema", "simulate", cwd=project)[1]) == SCHEMA
 
 
