@@ -158,22 +158,16 @@ def _write_template(predictor: Predictor, options: SimulateOptions, messages: Co
 
 def _predict(predictor: Predictor, options: SimulateOptions, messages: CommandOutput) -> int:
     jobs = options.jobs or (os.cpu_count() or 1 if options.runs >= _MANY else 1)
-    made = 0
     try:
-        with Progress(options.runs, "run") as progress:
-
-            def reached(runs: int) -> None:
-                nonlocal made
-                made = runs
-                progress.reached(runs)
-
-            report = predicted(predictor, options.runs, jobs, options.check, options.label or "", reached)
+        with Progress(options.runs, "simulating", "runs") as progress:
+            label = options.label or ""
+            report = predicted(predictor, options.runs, jobs, options.check, label, progress.reached)
     except Unanswerable as error:
         names = ", ".join(map(without_number, error.conditions))
         what = "this condition answers" if len(error.conditions) == 1 else "these conditions answer"
         raise Refused(f"nobody says what {what}: {names}; --template prints the lines for btq.toml") from None
-    if not report.runs:
-        raise Refused("no run was made")
+    if report.is_stopped:
+        messages.remark(f"btq simulate: stopped after {report.runs} of {options.runs} runs")
     if options.show is not None:
         return _show(predictor, report, options, messages)
     form = form_of(options.format, options.output, prediction.FORMATS)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
+from signal import SIG_IGN, SIGINT, signal
 from typing import Final
 
 from btq_lang.evidence.evaluate import MissionEvaluation
@@ -152,7 +153,9 @@ def predicted(
         jobs: how many processes.
         stops_early: look after 200, 400, 800 … runs, and stop when each demand is decided.
         label: of the runs that were measured.
-        made: called with the number of runs after each block; a KeyboardInterrupt there ends the runs.
+        made: called with the number of runs after each block.
+
+    A KeyboardInterrupt ends the runs after the first block, and what there is counts.
 
     Raises:
         Unanswerable: what some conditions answer is not given.
@@ -164,6 +167,7 @@ def predicted(
     more = range(_RESAMPLES) if is_measured else range(0)
     number = -(-runs // BLOCK)
     work = [*((False, each, runs) for each in range(number)), *((True, each, runs) for each in more)]
+    is_stopped = False
     looks = _looks(runs) if stops_early and not is_measured else ()
     try:
         for (is_other, _, _), block in zip(work, _blocks(predictor, work, jobs), strict=True):
@@ -175,10 +179,12 @@ def predicted(
             if sum_of.runs in looks and sum_of.is_decided():
                 break
     except KeyboardInterrupt:
-        pass
+        if not sum_of.runs:
+            raise
+        is_stopped = True
     except Unanswered as error:
         raise Unanswerable((error.node.path,)) from None
-    return sum_of.prediction(runs, label)
+    return sum_of.prediction(runs, label, is_stopped)
 
 
 def _looks(runs: int) -> Sequence[int]:
@@ -243,7 +249,7 @@ class _Sum:
         odds = self._predictor.mission.requirements.all[verdict.id].odds
         return odds.probability if odds is not None else None
 
-    def prediction(self, wanted: int, label: str) -> Prediction:
+    def prediction(self, wanted: int, label: str, is_stopped: bool) -> Prediction:
         """What the blocks say."""
         predictor = self._predictor
         unknown = next(
@@ -288,6 +294,7 @@ class _Sum:
             times[-(-len(times) * 95 // 100) - 1] / 1000 if times else None,
             tuple(self._guessed.most_common()),
             tuple(requirements),
+            is_stopped,
         )
 
 
@@ -312,6 +319,7 @@ def _blocks(predictor: Predictor, work: Sequence[tuple[bool, int, int]], jobs: i
 
 
 def _begin(recipe: Recipe) -> None:
+    signal(SIGINT, SIG_IGN)  # the process that adds up the blocks ends this one
     global _predictor
     _predictor = Predictor(recipe)
 

@@ -96,6 +96,7 @@ class Prediction(Record):
         measured: how many runs were measured; 0: none.
         median, p95: how long runs take that succeed, in seconds; None: none does.
         guessed: the skills that did what was never measured, each with the number of runs.
+        is_stopped: somebody has ended the runs.
     """
 
     file: str
@@ -113,6 +114,7 @@ class Prediction(Record):
     p95: float | None
     guessed: tuple[tuple[str, int], ...]
     requirements: tuple[PredictedRequirement, ...]
+    is_stopped: bool = False
 
     def has(self, word: Word) -> bool:
         """Whether a requirement has a word."""

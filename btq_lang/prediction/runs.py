@@ -18,7 +18,7 @@ from btq_lang.prediction.world import Course, LiveValue, crossings
 from btq_lang.requirements.model import ResolvedSignal
 from btq_lang.scenarios.mission import ScenarioMission
 from btq_lang.scenarios.running import why_unknown
-from btq_lang.simulator.blackboard import DOUBLE, Board, Unknown, Value, type_of
+from btq_lang.simulator.blackboard import BOOL, DOUBLE, Board, Unknown, Value, type_of
 from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.loading import load
 from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Machine, SimulatedNode
@@ -115,7 +115,8 @@ class LoadedRuns:
         if not settings.entry:
             return
         if settings.is_constant:
-            board.define(settings.entry, settings.start, type_of(settings.start))
+            start = int(settings.start) if isinstance(settings.start, bool) else settings.start
+            board.define(settings.entry, start, BOOL if isinstance(settings.start, bool) else type_of(start))
         else:
             board.define(settings.entry, self.robot.live[settings.name], DOUBLE)
 

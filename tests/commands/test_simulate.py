@@ -11,6 +11,7 @@ from in_process import run_btq
 from json_schema import violations
 
 import btq_lang.prediction
+from btq_lang.commands.progress import Progress
 
 MISSION = """Root Deliver
 
@@ -214,3 +215,26 @@ def test_other_formats(project: Path) -> None:
 )
 def test_usage(project: Path, options: tuple[str, ...], message: str) -> None:
     assert run_btq("simulate", *options, cwd=project) == (2, "", f"btq simulate: {message}\n")
+
+
+def test_ctrl_c_ends_with_the_table_so_far(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def stop(self: Progress, runs: int, more: str = "") -> None:
+        if runs == 300:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(Progress, "reached", stop)
+    code, out, err = run_btq("simulate", "--jobs", "1", cwd=project)
+    assert (code, err) == (0, "btq simulate: stopped after 300 of 10000 runs\n")
+    assert out.startswith("mission.btq as built for 4.10, 300 of 10 000 runs from seed 1 of 4 skills")
+
+
+def test_plain_xml(project: Path) -> None:
+    xml = '<root BTCPP_format="4"><BehaviorTree ID="Main"><Sequence><Drive/><Pick/></Sequence></BehaviorTree></root>'
+    (project / "mission.btq").unlink()
+    (project / "tree.xml").write_text(xml, encoding="utf-8")
+    skills = SETTINGS.partition(ANSWER)[0]
+    (project / "btq.toml").write_text(skills, encoding="utf-8")
+    code, out, err = run_btq("simulate", "tree.xml", "--runs", "1000", cwd=project)
+    assert (code, err) == (0, "")
+    assert "no requirement to judge" in out
+    assert "runs: 569 succeed, 431 fail" in out  # 0.95 · 0.6 = 0.57

@@ -11,6 +11,7 @@ from plain_runs import plain_run
 from seeds import seeds
 
 from btq_lang.btcpp.opening import file_of
+from btq_lang.prediction import remembering
 from btq_lang.prediction.declared import declared_world
 from btq_lang.prediction.judging import Judge
 from btq_lang.prediction.prepared import PreparedMission, prepared
@@ -163,3 +164,10 @@ def test_the_rows_that_are_kept_are_enough() -> None:
         )
     assert judged[0] == judged[1]
     assert {each[1] for each in judged[0]} == {"violated", "satisfied"}
+
+
+def test_runs_are_the_same_where_nothing_more_is_remembered(monkeypatch: pytest.MonkeyPatch) -> None:
+    remembered = [laboratory().loaded.run(5, number) for number in range(1, 11)]
+    monkeypatch.setattr(remembering, "_MOST", 30)
+    few = laboratory()
+    assert [few.loaded.run(5, number) for number in range(1, 11)] == remembered
