@@ -245,11 +245,11 @@ class LoadedRuns:
 
     def _samples(self, signal: ResolvedSignal) -> Sequence[Sample]:
         course = self._courses.get(signal.name)
-        if course is None:
-            return self._values.get(signal.entry, ())
         end = self._machine.now
         step = max(round(signal.fresh * 1e6), 1) if signal.fresh is not None else 0
-        renewals = range(0, end * 1000 + 1, step) if step and end * 1000 // step < _MOST_SAMPLES else (0,)
+        renewals = range(0, end * 1000 + 1, step) if step and end * 1000 // step < _MOST_SAMPLES else range(1)
+        if course is None:
+            return _renewed(self._values.get(signal.entry, ()), renewals)
         if course.settings.is_constant:
             return [(time, course.settings.start) for time in renewals]
         times = {time * 1000 for time, *_ in self._rows}
@@ -257,6 +257,18 @@ class LoadedRuns:
         times.update([time * 1000 for time, *_ in course.pieces])
         times.update([time for _, time in crossings(course.pieces, course.thresholds, end)])
         return _on(course, sorted(times), end)
+
+
+def _renewed(samples: Sequence[Sample], times: range) -> Sequence[Sample]:
+    """The samples, and at some times those before again: a signal that gets out of date is measured that often."""
+    if len(times) == 1 or not samples:
+        return samples
+    by_time = dict(samples)
+    renewed: list[Sample] = []
+    for time in sorted({*by_time, *times}):
+        if time in by_time or renewed:
+            renewed.append((time, by_time[time] if time in by_time else renewed[-1][1]))
+    return renewed
 
 
 def _on(course: Course, times: Sequence[int], end: int) -> list[Sample]:

@@ -171,3 +171,21 @@ def test_runs_are_the_same_where_nothing_more_is_remembered(monkeypatch: pytest.
     monkeypatch.setattr(remembering, "_MOST", 30)
     few = laboratory()
     assert [few.loaded.run(5, number) for number in range(1, 11)] == remembered
+
+
+def test_an_entry_that_a_node_writes_is_sampled_as_often_as_it_must_be_fresh() -> None:
+    text = """signal tubes : count from {tubes} fresh within 3 s
+Action Pick
+Root Fill
+QualityReq left : reliability
+    leaves tubes >= 1
+BehaviorTree Fill
+    ->
+        Script (code = "tubes := 2")
+        Repeat (num_cycles = 2)
+            Pick satisfies left
+"""
+    skills = '[simulate.skills]\nPick = { takes = "4 s", writes = { "@tubes" = "@tubes - 1" } }\n'
+    mission = with_settings(mission_of(Workspace.of({"m.btq": text}, Project()), "m.btq"), skills)
+    samples = mission.loaded.run(1, 1).samples["tubes"]
+    assert samples == [(0, 2), (3_000_000, 2), (4_000_000, 1.0), (6_000_000, 1.0), (8_000_000, 0.0)]
