@@ -103,7 +103,9 @@ class Guards:
                 refusal = refusal or refused
         around = self._around.get(uid)
         self._shown.update(dict.fromkeys(around or (), activation.shown))
-        waiting, self._waiting = self._waiting, []
+        waiting: list[tuple[Activation, tuple[int, ...]]] = []
+        if uid in self._guards or uid == ROOT:  # only these settle others
+            waiting, self._waiting = self._waiting, waiting
         for ended, guards in waiting:
             if uid not in guards and uid != ROOT:
                 self._waiting.append((ended, guards))

@@ -96,7 +96,7 @@ class Prediction(Record):
         measured: how many runs were measured; 0: none.
         median, p95: how long runs take that succeed, in seconds; None: none does.
         guessed: the skills that did what was never measured, each with the number of runs.
-        is_stopped: somebody has ended the runs.
+        is_stopped: Ctrl+C has ended the runs.
     """
 
     file: str

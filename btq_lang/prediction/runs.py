@@ -171,7 +171,8 @@ class LoadedRuns:
         has_jumped = True
         while True:
             effect = tree.step(state, TICK)
-            state = self._noted(effect)
+            if not effect.is_quiet or effect.rows:
+                state = self._noted(effect)
             if effect.result != RUNNING:
                 return effect.result
             ticks += 1
