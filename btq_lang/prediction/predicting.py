@@ -164,9 +164,7 @@ def predicted(
         raise Unanswerable(predictor.prepared.unanswered)
     sum_of = _Sum(predictor)
     is_measured = predictor.is_measured and predictor.recipe.measured is not None
-    more = range(_RESAMPLES) if is_measured else range(0)
-    number = -(-runs // BLOCK)
-    work = [*((False, each, runs) for each in range(number)), *((True, each, runs) for each in more)]
+    work = _work(-(-runs // BLOCK), _RESAMPLES if is_measured else 0, runs)
     is_stopped = False
     looks = _looks(runs) if stops_early and not is_measured else ()
     try:
@@ -185,6 +183,15 @@ def predicted(
     except Unanswered as error:
         raise Unanswerable((error.node.path,)) from None
     return sum_of.prediction(runs, label, is_stopped)
+
+
+def _work(blocks: int, others: int, runs: int) -> list[tuple[bool, int, int]]:
+    """What is to be made, blocks with other skills among the first ones: whether it is such a block, and its number."""
+    work: list[tuple[bool, int, int]] = []
+    for turn in range(max(blocks, others)):
+        work += [(False, turn, runs)] if turn < blocks else []
+        work += [(True, turn, runs)] if turn < others else []
+    return work
 
 
 def _looks(runs: int) -> Sequence[int]:

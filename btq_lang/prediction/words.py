@@ -94,14 +94,14 @@ def interval_of(held: int, counted: int, measure: Uncertainty) -> tuple[float, f
     """
     share = held / counted
     own = share * (1 - share)
-    number = float(counted)
-    if measure.runs and len(measure.shares) > 1:
+    number = float(counted if not measure.runs else min(counted, measure.runs))
+    if len(measure.shares) > 1:
         shares = [(k / n, n) for k, n in measure.shares if n]
         mean = sum(each for each, _ in shares) / max(len(shares), 1)
         between = sum((each - mean) ** 2 for each, _ in shares) / max(len(shares) - 1, 1)
         drawn = sum(mean * (1 - mean) / n for _, n in shares) / max(len(shares), 1)
         variance = max(between - drawn, 0.0) + own / counted
-        number = min(own / variance, counted) if variance > 0 else min(counted, measure.runs)
+        number = min(own / variance, counted) if variance > 0 else number
     return _limit(share * number, number), 1 - _limit((1 - share) * number, number)
 
 
