@@ -7,13 +7,13 @@ import sys
 from collections.abc import Sequence
 
 from btq_lang import prediction
+from btq_lang.commands.given_evidence import is_store
 from btq_lang.commands.output import form_of, form_problem, is_coloured, write_file, write_output
 from btq_lang.commands.progress import Progress
 from btq_lang.commands.recorded import verdict_of
 from btq_lang.commands.simulate_options import SimulateOptions
 from btq_lang.evidence.identity import without_number
 from btq_lang.evidence.store.engine import NoEngine
-from btq_lang.evidence.store.sets import ABOUT
 from btq_lang.evidence.verifying import logs_below
 from btq_lang.exploration.missions import explorable
 from btq_lang.formatter import format_text
@@ -130,7 +130,7 @@ def _of_project(group: FileGroup) -> Sequence[str]:
 
 def _measured(mission: ScenarioMission, paths: Sequence[str], label: str | None) -> Measurement:
     """What skills did in logs, or in a store."""
-    stores = [path for path in paths if os.path.isfile(os.path.join(path, ABOUT))]
+    stores = [path for path in paths if is_store(path)]
     if not stores:
         if label is not None:
             raise Refused("--label is for --from with a store")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -238,3 +239,20 @@ def test_plain_xml(project: Path) -> None:
     assert (code, err) == (0, "")
     assert "no requirement to judge" in out
     assert "runs: 569 succeed, 431 fail" in out  # 0.95 · 0.6 = 0.57
+
+
+def test_skills_measured_in_a_log_and_in_a_store(tmp_path: Path) -> None:
+    folder = shutil.copytree(Path(__file__).parents[2] / "examples/laboratory", tmp_path / "laboratory")
+    of_log = run_btq("simulate", "--runs", "200", "--from", "runs.btlog", cwd=folder)
+    assert of_log[0] == 0
+    assert of_log[1].startswith(
+        "mission.btq as built for 4.10, 200 runs from seed 1 of 9 skills: 5 measured (50 runs), 4 declared\n"
+    )
+    pytest.importorskip("duckdb", reason="the store is not installed: pip install -e '.[fleet]'")
+    run_btq("verify", "runs.btlog", "--store", "store", "--label", "v1.4", cwd=folder)
+    of_store = run_btq("simulate", "--runs", "200", "--from", "store", "--label", "v1.4", cwd=folder)
+    assert of_store[1].replace("v1.4, ", "") == of_log[1]
+    code, _, err = run_btq("simulate", "--from", "store", "--label", "v9", cwd=folder)
+    assert (code, err) == (2, "btq simulate: --from store: no run of mission.btq\n")
+    code, _, err = run_btq("simulate", "--from", "runs.btlog", "--label", "v1.4", cwd=folder)
+    assert (code, err) == (2, "btq simulate: --label is for --from with a store\n")
