@@ -23,6 +23,8 @@ class SimulateOptions(Record):
         check: exit 1 where a demand will be missed, and stop when all is decided.
         template: print the table of btq.toml for skills of which nothing is known.
         show: a requirement of which a run is drawn that misses it, or that comes closest.
+        what_if: changes, each of which is predicted beside the mission as it is.
+        improve: predict what improvements of skills would do.
         jobs: the number of processes; 0: as many as there are processors.
     """
 
@@ -38,6 +40,8 @@ class SimulateOptions(Record):
     check: bool
     template: bool
     show: str | None
+    what_if: Sequence[str]
+    improve: bool
     jobs: int
     format: str | None
     output: str | None
@@ -69,6 +73,15 @@ def add_simulate_options(parser: SuggestingParser, of_project: str) -> None:
     parser.flag("--check", "exit 1 where a demand will be missed; stop as soon as all demands are decided")
     parser.flag("--template", "print the lines of btq.toml for the skills of which nothing is said")
     parser.add("--show", metavar="ID", help="draw a run that misses this requirement, or comes closest")
+    parser.add(
+        "--what-if",
+        action="append",
+        default=[],
+        metavar="CHANGE",
+        help="predict a change as well: 'Retry Dock num_attempts = 5', 'MoveBase takes x 0.8', 'Dock succeeds 97 %%';"
+        " may be repeated",
+    )
+    parser.flag("--improve", "predict what better skills would do: half the failures, half the time, no variance")
     parser.add("--jobs", type=int, default=0, metavar="N", help="run in N processes; default: by their number")
     parser.add("--format", choices=FORMATS, help="default: as the file of -o ends, else text")
     help_text = "where to write; default: standard output; with --show FILE.btlog: a log, FILE.btq: a scenario"

@@ -17,11 +17,13 @@ from btq_lang.evidence.store.engine import NoEngine
 from btq_lang.evidence.verifying import logs_below
 from btq_lang.exploration.missions import explorable
 from btq_lang.formatter import format_text
+from btq_lang.prediction.comparing import Options, Unpredictable, compared, improvements
 from btq_lang.prediction.measuring import Measurement, measured_in_logs, measured_in_store
 from btq_lang.prediction.predicting import Predictor, Recipe, Unanswerable, predicted
 from btq_lang.prediction.report import PredictedRequirement, Prediction
 from btq_lang.prediction.shown_run import recorded_run, shown_run, signals_csv
 from btq_lang.prediction.template import template
+from btq_lang.prediction.what_if import Mistake, changed_by
 from btq_lang.projects.building import for_target
 from btq_lang.projects.files import FileGroup, Files, logs_of, no_mission_below, usage_problem
 from btq_lang.projects.messages import CommandOutput
@@ -31,6 +33,7 @@ from btq_lang.scenarios.drawing import drawing
 from btq_lang.scenarios.mission import NotRunnable, ScenarioMission, as_program, main_tree, with_named_tree
 from btq_lang.scenarios.recording import as_scenario
 from btq_lang.simulator.errors import EngineError, NotModelled
+from btq_lang.util.record import replace
 from btq_lang.workspace.loader import absolute, shown
 
 
@@ -65,6 +68,8 @@ def _usage_problem(options: SimulateOptions) -> str | None:
     if options.jobs < 0:
         return f"--jobs {options.jobs}: expected a number of processes, or 0 to let btq choose"
     if options.show is not None:
+        if options.improve or options.what_if:
+            return "--show draws a run of the mission as it is; leave out --improve and --what-if"
         if options.format is not None:
             return "--show draws a run; --format is for predictions"
         if options.output is not None and not options.output.endswith((".btlog", ".btq")):
@@ -73,6 +78,10 @@ def _usage_problem(options: SimulateOptions) -> str | None:
     problem = usage_problem(options.paths)
     if options.template:
         return problem
+    if options.improve and options.what_if:
+        return "--improve and --what-if are two questions; ask one of them"
+    if (options.improve or options.what_if) and options.check:
+        return "--check is for the mission as it is; leave out --improve and --what-if"
     return problem or form_problem(options.format, options.output, prediction.FORMATS)
 
 
@@ -159,9 +168,16 @@ def _write_template(predictor: Predictor, options: SimulateOptions, messages: Co
 def _predict(predictor: Predictor, options: SimulateOptions, messages: CommandOutput) -> int:
     jobs = options.jobs or (os.cpu_count() or 1 if options.runs >= _MANY else 1)
     try:
-        with Progress(options.runs, "simulating", "runs") as progress:
+        changes = _changes(predictor, options)
+        with Progress(options.runs * (1 + len(changes)), "simulating", "runs") as progress:
             label = options.label or ""
-            report = predicted(predictor, options.runs, jobs, options.check, label, progress.reached)
+            if changes or options.improve:
+                how = Options(options.runs, jobs, label)
+                report = compared(predictor, changes, how, progress.reached, options.improve)
+            else:
+                report = predicted(predictor, options.runs, jobs, options.check, label, progress.reached)
+    except Unpredictable as error:
+        raise Refused(f"--what-if {error}") from None
     except Unanswerable as error:
         names = ", ".join(map(without_number, error.conditions))
         what = "this condition answers" if len(error.conditions) == 1 else "these conditions answer"
@@ -174,6 +190,24 @@ def _predict(predictor: Predictor, options: SimulateOptions, messages: CommandOu
     colour = form == "text" and options.output in (None, "-") and is_coloured(options.color, sys.stdout.isatty())
     write_output(messages, options.output, prediction.write(report, form, colour=colour), form)
     return int(options.check and report.has("will miss"))
+
+
+def _changes(predictor: Predictor, options: SimulateOptions) -> list[tuple[str, Recipe]]:
+    """The changes that are asked for, in words and as recipes.
+
+    Raises:
+        Refused: one cannot be understood.
+    """
+    recipe = predictor.recipe
+    if options.improve:
+        return [(what, replace(recipe, changes=(change,))) for what, change in improvements(predictor)]
+    changes: list[tuple[str, Recipe]] = []
+    for text in options.what_if:
+        try:
+            changes.append((" ".join(text.split()), changed_by(predictor, text)))
+        except Mistake as error:
+            raise Refused(f"--what-if '{text}': {error}") from None
+    return changes
 
 
 def _show(predictor: Predictor, report: Prediction, options: SimulateOptions, messages: CommandOutput) -> int:

@@ -18,10 +18,14 @@ One invariant: what a skill does is declared, measured or shown as assumed, and 
     prepared.py    a mission with all its skills
     judging.py     runs judged as a log is
     predicting.py  blocks of runs, in several processes, added up
+    changed.py     skills that do something else, with the same random numbers
+    what_if.py     changes of a mission or of skills, as they are typed
+    comparing.py   a prediction beside those after changes
     words.py       what the judgements say about a demand
     causes.py      why runs miss one
     report.py      a prediction as data
     shown_run.py   one run again, to be drawn or written
+    changes_in_words.py   what changes make of demands, in tables
     sentences.py   numbers in words
     text.py, json_document.py, csv_rows.py, markdown.py, page.py   the writers
 """

@@ -1,12 +1,14 @@
 """CSV, a line for each clause at each node that it holds for (RFC 4180, lines end with CR LF).
 
 The columns, which later versions add to but do not change: requirement, title, mission, clause, path, word, unit, held,
-counted, unknown, share, low, high, worst, worst_run, cause, result.
+counted, unknown, share, low, high, worst, worst_run, cause, result, what_if.  Rows with a `what_if` are of
+the prediction after that change.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import chain
 from typing import Final
 
 from btq_lang.prediction.report import Prediction
@@ -17,10 +19,11 @@ from btq_lang.workspace.loader import shown
 
 def render(prediction: Prediction, colour: bool = False) -> str:
     """The prediction, with a heading."""
-    return table(_COLUMNS, _rows(prediction))
+    changed = (row for each in prediction.alternatives for row in _rows(each.prediction, each.what))
+    return table(_COLUMNS, chain(_rows(prediction), changed))
 
 
-def _rows(prediction: Prediction) -> Iterator[dict[str, str | float]]:
+def _rows(prediction: Prediction, what: str = "") -> Iterator[dict[str, str | float]]:
     for requirement in prediction.requirements:
         for clause in requirement.clauses:
             low, high = clause.interval or ("", "")
@@ -37,11 +40,12 @@ def _rows(prediction: Prediction) -> Iterator[dict[str, str | float]]:
                 "worst_run": clause.worst_run if clause.worst_run is not None else "",
                 "cause": cause(clause),
                 "result": result(clause, requirement.id, prediction.runs),
+                "what_if": what,
             }
 
 
 _AS_THEY_ARE: Final = ("path", "word", "unit", "held", "counted", "unknown")
 _COLUMNS: Final = (
     *("requirement", "title", "mission", "clause", *_AS_THEY_ARE),
-    *("share", "low", "high", "worst", "worst_run", "cause", "result"),
+    *("share", "low", "high", "worst", "worst_run", "cause", "result", "what_if"),
 )

@@ -63,6 +63,18 @@ class DeclaredSkill(Skill):
             base = self._base.draw(random)
         return DrawnActivation(base.result, takes, base.writes)
 
+    def success(self) -> float:
+        """As declared, else as of the other skill."""
+        if self._succeeds is not None:
+            return self._succeeds
+        return self._base.success() if self._base is not None else 1.0
+
+    def average(self) -> float:
+        """As declared, else as of the other skill."""
+        if self._takes is not None:
+            return mean(self._takes) * 1000
+        return self._base.average() if self._base is not None else 0.0
+
     def writes(self, node: SimulatedNode, drawn: DrawnActivation, has_real_truth: bool) -> tuple[Write, ...] | None:
         """The values of its scripts, where it succeeds."""
         if drawn.result != SUCCESS or not self._scripts:
@@ -78,6 +90,13 @@ def quantile(spread: Spread, probability: float) -> float:
         deviations = _NORMAL.inv_cdf(probability) / _P95
         return exp(log(spread.low) + log(spread.high / spread.low) * deviations)
     return spread.low + (spread.high - spread.low) * probability
+
+
+def mean(spread: Spread) -> float:
+    """The mean duration, in seconds."""
+    if spread.kind == "lognormal":
+        return spread.low * exp((log(spread.high / spread.low) / _P95) ** 2 / 2)
+    return (spread.low + spread.high) / 2
 
 
 class Outages:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any, Final
 
-from btq_lang.prediction.report import PredictedClause, PredictedRequirement, Prediction
+from btq_lang.prediction.report import Alternative, PredictedClause, PredictedRequirement, Prediction
 from btq_lang.util.record import as_dict
 from btq_lang.workspace.loader import shown
 
@@ -15,7 +15,11 @@ VERSION: Final = 1
 
 def render(prediction: Prediction, colour: bool = False) -> str:
     """Write the prediction as JSON, which has no colours."""
-    document: dict[str, Any] = {
+    return json.dumps(_document(prediction), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _document(prediction: Prediction) -> dict[str, Any]:
+    return {
         "format": FORMAT,
         "version": VERSION,
         **as_dict(prediction),
@@ -24,8 +28,16 @@ def render(prediction: Prediction, colour: bool = False) -> str:
         "ends": [as_dict(each) for each in prediction.ends],
         "guessed": [{"path": path, "runs": number} for path, number in prediction.guessed],
         "requirements": [*map(_requirement, prediction.requirements)],
+        "alternatives": [*map(_alternative, prediction.alternatives)],
     }
-    return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _alternative(alternative: Alternative) -> dict[str, Any]:
+    return {
+        "what": alternative.what,
+        "prediction": _document(alternative.prediction),
+        "differences": [as_dict(each) for each in alternative.differences],
+    }
 
 
 def _requirement(requirement: PredictedRequirement) -> dict[str, Any]:

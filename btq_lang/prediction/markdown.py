@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from btq_lang.prediction.changes_in_words import HEADS, HEADS_OF_DEMAND, tables
 from btq_lang.prediction.report import WORST_FIRST, Prediction
 from btq_lang.prediction.sentences import cause, heading, result, summary
 from btq_lang.render.gfm import code, escaped, table
@@ -33,3 +34,10 @@ def _lines(prediction: Prediction) -> Iterator[str]:
     yield from table(("Prediction", "Requirement", "Clause", "Result"), rows)
     for line in summary(prediction):
         yield from ("", escaped(line))
+    for changes in tables(prediction):
+        yield from ("", f"#### {escaped(changes.title)}", "")
+        heads = HEADS_OF_DEMAND if prediction.improves else HEADS
+        columns = [place for place, head in enumerate(heads) if head]
+        cells = (tuple(escaped(row[place]) for place in columns) for row in changes.rows)
+        yield from table(tuple(heads[place] for place in columns), cells)
+        yield from (line for text in changes.last for line in ("", escaped(text)))

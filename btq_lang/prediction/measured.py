@@ -20,7 +20,7 @@ from btq_lang.evidence.model import SampleValue
 from btq_lang.prediction.skill import DrawnActivation, Skill
 from btq_lang.prediction.streams import Stream
 from btq_lang.simulator.blackboard import BOOL, type_of
-from btq_lang.simulator.nodes import RUNNING
+from btq_lang.simulator.nodes import RUNNING, SUCCESS
 from btq_lang.simulator.skills import Write
 from btq_lang.util.record import Record
 
@@ -86,6 +86,17 @@ class MeasuredSkill(Skill):
     def draw(self, random: Stream) -> DrawnActivation:
         """Draw one of the activations that ended, or one that is longer than all of them."""
         return self._drawn[min(bisect_right(self._steps, random.next()), len(self._drawn) - 1)]
+
+    def success(self) -> float:
+        """The probability of a success, if it ends as some of those that were measured."""
+        ends = 1 - self.beyond
+        return self.probability(SUCCESS) / ends if self.ended and ends > 0 else 1.0
+
+    def average(self) -> float:
+        """The mean duration, if it ends as some of those that were measured."""
+        masses = (after - before for before, after in zip((0.0, *self._steps), self._steps, strict=False))
+        ends = 1 - self.beyond
+        return sum(mass * each.takes for mass, each in zip(masses, self._drawn, strict=False)) / ends if ends > 0 else 0
 
     def probability(self, result: int, within: float = float("inf")) -> float:
         """The probability that an activation has a result if it is not halted.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from btq_lang.prediction.changes_in_words import HEADS, HEADS_OF_DEMAND, tables
 from btq_lang.prediction.report import WORST_FIRST, Prediction
 from btq_lang.prediction.sentences import cause, heading, result, summary
 from btq_lang.render.pages import page
@@ -33,6 +34,8 @@ def render(prediction: Prediction, colour: bool = False) -> str:
         rows=rows,
         summary=[*summary(prediction)],
         sources=sources,
+        changes=[*tables(prediction)],
+        heads=HEADS_OF_DEMAND if prediction.improves else HEADS,
     )
 
 

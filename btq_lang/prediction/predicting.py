@@ -16,6 +16,7 @@ from btq_lang.evidence.evaluate import MissionEvaluation
 from btq_lang.evidence.odds import Limits, lower_limit, upper_limit
 from btq_lang.evidence.verdicts import VIOLATED, RequirementVerdict
 from btq_lang.prediction.causes import with_causes
+from btq_lang.prediction.changed import ChangedSkill, SkillChange
 from btq_lang.prediction.declared import DeclaredWorld, declared_world
 from btq_lang.prediction.judging import Judge, JudgedBlock
 from btq_lang.prediction.measured import MeasuredSkills
@@ -23,10 +24,11 @@ from btq_lang.prediction.measuring import actions_of
 from btq_lang.prediction.prepared import PreparedMission, prepared
 from btq_lang.prediction.report import WORST_FIRST, Ended, PredictedRequirement, Prediction, Word
 from btq_lang.prediction.runs import DrawnRun
-from btq_lang.prediction.skill import Skill
+from btq_lang.prediction.skill import AssumedSkill, Skill
 from btq_lang.prediction.streams import Stream
 from btq_lang.prediction.words import Uncertainty, predicted_clause
-from btq_lang.requirements.simulation import Problem
+from btq_lang.requirements import nodes
+from btq_lang.requirements.simulation import Problem, is_condition, is_skill
 from btq_lang.scenarios.mission import ScenarioMission
 from btq_lang.simulator.skills import Unanswered
 from btq_lang.util.processes import pool
@@ -42,6 +44,7 @@ class Recipe(Record):
         workspace: of the program that creates the tree.
         path: of the mission.
         measured: what skills did in logs; None: nothing was measured.
+        changes: what is otherwise with skills.
     """
 
     workspace: Workspace
@@ -50,6 +53,7 @@ class Recipe(Record):
     is_enforced: bool
     measured: MeasuredSkills | None
     seed: int
+    changes: tuple[SkillChange, ...] = ()
 
 
 class Unanswerable(Exception):
@@ -85,7 +89,7 @@ class Predictor:
         self._actions: Final = actions_of(self.mission)
         own = recipe.measured.of_nodes(self._actions) if recipe.measured is not None else {}
         self.world: Final[DeclaredWorld] = self._world(own)
-        self._skills: Final = {**own, **self.world.skills}
+        self._skills: Final = self._changed({**own, **self.world.skills})
         self.prepared: Final[PreparedMission] = prepared(self.mission, self.world, self._skills)
         self._judge: Final = Judge(self.mission)
 
@@ -112,13 +116,21 @@ class Predictor:
         """As many runs, others than those of blocks, with skills as they might have been measured as well."""
         measured = self.recipe.measured
         assert measured is not None, "something was measured"
-        skills = measured.resampled(self._actions, Stream(self.recipe.seed, _RESAMPLING, number))
-        self.prepared.loaded.robot.exchange(self._known({**skills, **self._world(skills).skills}))
+        skills: dict[int, Skill] = {**measured.resampled(self._actions, Stream(self.recipe.seed, _RESAMPLING, number))}
+        skills = self._changed({**skills, **self._world(skills).skills})
+        self.prepared.loaded.robot.exchange(self._known(skills))
         try:
             first = _OTHERS + number * BLOCK
             return self._judge.block(self.prepared, self.recipe.seed, range(first, first + BLOCK))
         finally:
             self.prepared.loaded.robot.exchange(self._known(self._skills))
+
+    def shares(self, block: JudgedBlock) -> list[tuple[int, int]]:
+        """Of each clause, what holds in a block, of what was counted."""
+        evaluation = self.evaluation()
+        evaluation.findings.add(block.findings, 0)
+        clauses = (clause for verdict in evaluation.verdicts() for clause in verdict.clauses)
+        return [(clause.counted - clause.violated, clause.counted) for clause in clauses]
 
     @cached_property
     def full(self) -> PreparedMission:
@@ -128,6 +140,33 @@ class Predictor:
     def again(self, numbers: Sequence[int]) -> Sequence[DrawnRun]:
         """Runs by their numbers, with all rows."""
         return [self.full.loaded.run(self.recipe.seed, number) for number in numbers]
+
+    def skills(self) -> dict[str, Skill]:
+        """The actions that run of which something is known, by the names under which they are registered; of several
+        that do different things, the first.
+        """
+        running = self.prepared.loaded.robot.skills
+        named = ((self.mission.written[uid].id, skill) for uid, skill in running.items() if uid in self._skills)
+        skills: dict[str, Skill] = {}
+        for name, skill in named:
+            if name is not None:
+                skills.setdefault(name.text, skill)
+        return skills
+
+    def assumes(self, change: SkillChange) -> bool:
+        """Whether all that a change is about is assumed."""
+        store = self.recipe.workspace.store
+        targets = store.ask(nodes.find, self.recipe.path, tuple(change.path.split("/")))
+        return not any(uid in self._skills for target in targets for uid in self.mission.uids(target))
+
+    def _changed(self, skills: dict[int, Skill]) -> dict[int, Skill]:
+        """Skills with the changes of the recipe."""
+        store = self.recipe.workspace.store
+        for change in self.recipe.changes:
+            for target in store.ask(nodes.find, self.recipe.path, tuple(change.path.split("/"))):
+                uids = self.mission.uids(target) if is_skill(target.node) and not is_condition(target.node) else ()
+                skills |= {uid: ChangedSkill(skills.get(uid) or AssumedSkill(), change) for uid in uids}
+        return skills
 
     def _known(self, skills: dict[int, Skill]) -> dict[int, Skill]:
         """Those of skills that are in the tree that runs."""
@@ -145,6 +184,7 @@ def predicted(
     stops_early: bool = False,
     label: str = "",
     made: Callable[[int], None] = lambda runs: None,
+    judged: Callable[[bool, JudgedBlock], None] = lambda is_other, block: None,
 ) -> Prediction:
     """What is predicted of a mission.
 
@@ -154,6 +194,7 @@ def predicted(
         stops_early: look after 200, 400, 800 … runs, and stop when each demand is decided.
         label: of the runs that were measured.
         made: called with the number of runs after each block.
+        judged: called with each block, and whether its skills are others.
 
     A KeyboardInterrupt ends the runs after the first block, and what there is counts.
 
@@ -169,6 +210,7 @@ def predicted(
     looks = _looks(runs) if stops_early and not is_measured else ()
     try:
         for (is_other, _, _), block in zip(work, _blocks(predictor, work, jobs), strict=True):
+            judged(is_other, block)
             if is_other:
                 sum_of.add_resampled(block)
                 continue
@@ -231,10 +273,7 @@ class _Sum:
 
     def add_resampled(self, block: JudgedBlock) -> None:
         """Add what came of other skills."""
-        evaluation = self._predictor.evaluation()
-        evaluation.findings.add(block.findings, 0)
-        clauses = (clause for verdict in evaluation.verdicts() for clause in verdict.clauses)
-        self._others.append([(clause.counted - clause.violated, clause.counted) for clause in clauses])
+        self._others.append(self._predictor.shares(block))
 
     def is_decided(self) -> bool:
         """Whether more runs would change no word, at every look with 95 %."""

@@ -82,6 +82,48 @@ class Ended(Record):
     why: str
 
 
+class Difference(Record):
+    """What a change makes of a demand.
+
+    Attributes:
+        requirement: its ID.
+        text, path: of the clause.
+        word, before: what is predicted with the change, and without it.
+        share, share_before: of what was counted that holds; None: nothing was counted, or all runs are judged together.
+        difference: of the two; None as above.
+        interval: of that in any number of runs, with 95 %; None as above, or if there were too few runs to tell.
+    """
+
+    requirement: str
+    text: str
+    path: str
+    word: Word
+    before: Word
+    share: float | None
+    share_before: float | None
+    difference: float | None
+    interval: tuple[float, float] | None
+
+
+class Alternative(Record):
+    """What is predicted after a change.
+
+    Attributes:
+        what: the change, in words.
+        prediction: with the same random numbers.
+        differences: of each clause that both have.
+    """
+
+    what: str
+    prediction: Prediction
+    differences: tuple[Difference, ...]
+
+    @property
+    def best(self) -> float:
+        """The largest difference of a share."""
+        return max((each.difference for each in self.differences if each.difference is not None), default=0.0)
+
+
 class Prediction(Record):
     """What is predicted of a mission.
 
@@ -97,6 +139,8 @@ class Prediction(Record):
         median, p95: how long runs take that succeed, in seconds; None: none does.
         guessed: the skills that did what was never measured, each with the number of runs.
         is_stopped: Ctrl+C has ended the runs.
+        alternatives: what is predicted after changes.
+        improves: these are improvements of skills, the best first.
     """
 
     file: str
@@ -115,6 +159,8 @@ class Prediction(Record):
     guessed: tuple[tuple[str, int], ...]
     requirements: tuple[PredictedRequirement, ...]
     is_stopped: bool = False
+    alternatives: tuple[Alternative, ...] = ()
+    improves: bool = False
 
     def has(self, word: Word) -> bool:
         """Whether a requirement has a word."""

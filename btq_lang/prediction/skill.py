@@ -46,6 +46,14 @@ class Skill:
         """Draw an activation; `random`: the stream of that activation."""
         raise NotImplementedError
 
+    def success(self) -> float:
+        """The probability that an activation succeeds, of those that end."""
+        raise NotImplementedError
+
+    def average(self) -> float:
+        """How long an activation takes that ends, on average; in milliseconds."""
+        raise NotImplementedError
+
     def writes(self, node: SimulatedNode, drawn: DrawnActivation, has_real_truth: bool) -> tuple[Write, ...] | None:
         """What it writes when an activation ends now; None: unknown values.
 
@@ -70,6 +78,14 @@ class AssumedSkill(Skill):
     def draw(self, random: Stream) -> DrawnActivation:
         """Draw what it always does."""
         return _ASSUMED
+
+    def success(self) -> float:
+        """It always succeeds."""
+        return 1.0
+
+    def average(self) -> float:
+        """It takes no time."""
+        return 0.0
 
 
 _ASSUMED: Final = DrawnActivation(SUCCESS, 0, ())

@@ -26,6 +26,12 @@ class Stream:
         stream._state = _mixed(self._state ^ _mixed((number + 1) * _STEP & _MASK))
         return stream
 
+    def copy(self) -> Stream:
+        """A stream with the same numbers from here on."""
+        other = object.__new__(Stream)
+        other._state = self._state
+        return other
+
     def next(self) -> float:
         """The next number."""
         self._state = (self._state + _STEP) & _MASK

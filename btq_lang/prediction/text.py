@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Final
 
+from btq_lang.prediction.changes_in_words import ChangeTable, tables
 from btq_lang.prediction.report import WORST_FIRST, Prediction, Word
 from btq_lang.prediction.sentences import cause, clause_text, heading, result, summary
 from btq_lang.render.cells import cells_of, printable
@@ -40,6 +41,20 @@ def _lines(prediction: Prediction, colour: bool) -> Iterator[str]:
         yield "  no requirement to judge"
     yield ""
     yield from map(printable, summary(prediction))
+    for table in tables(prediction):
+        yield ""
+        yield printable(table.title)
+        yield from _of_table(table, paint)
+        yield from (f"  {printable(line)}" for line in table.last)
+
+
+def _of_table(table: ChangeTable, paint: Callable[[str, str], str]) -> Iterator[str]:
+    rows = [[printable(cell) for cell in row] for row in table.rows]
+    widths = [max(map(cells_of, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        word, *cells = (cell + " " * (width - cells_of(cell)) for cell, width in zip(row, widths, strict=True))
+        style = WORD_STYLES[row[0].rpartition(" → ")[2]]
+        yield f"  {paint(style, word)}  {'  '.join(filter(str.strip, cells))}".rstrip()
 
 
 WORD_STYLES: Final = {

@@ -10,50 +10,10 @@ from pathlib import Path
 import pytest
 from in_process import run_btq
 from json_schema import violations
+from simulated_project import ANSWER, MISSION, SCHEMA, SETTINGS
 
-import btq_lang.prediction
 from btq_lang.commands.progress import Progress
 
-MISSION = """Root Deliver
-
-signal battery : % from {battery}
-
-QualityReq reliable : reliability "The parcel mostly arrives"
-    mission succeeds
-    in at least 90 % of runs
-
-QualityReq in_time : performance-efficiency.time-behaviour "A drive is short"
-    takes at most 30 s
-
-QualityReq way_home : performance-efficiency.resource-utilization "It gets home"
-    leaves battery >= 3 %
-
-QualityReq charging : performance-efficiency.time-behaviour
-    takes at most 2 h
-
-Action Drive
-Action Pick
-Action Charge
-Condition BatteryLow
-
-BehaviorTree Deliver
-    ->
-        ?
-            Inverter
-                BatteryLow
-            Charge satisfies charging
-        Drive satisfies in_time, way_home
-        Retry (num_attempts = 2)
-            Pick
-"""
-ANSWER = 'BatteryLow = { is = "battery < 20 %" }\n'
-SETTINGS = f"""[simulate.skills]
-Drive = {{ takes = ["10 s", "20 s"], succeeds = "95 %" }}
-Pick = {{ takes = "6 s", succeeds = "60 %" }}
-{ANSWER}
-[simulate.world]
-battery = {{ start = "60 %", rate = "-0.5 %/s" }}
-"""
 TABLE = """mission.btq as built for 4.10, 1 000 runs from seed 1 of 4 skills: 3 declared, 1 ASSUMED
 
   will miss         reliable  mission succeeds in at least 90 % of runs  80.3 % (77.7 to 82.7) (run 4: --show reliable)\
@@ -65,7 +25,6 @@ TABLE = """mission.btq as built for 4.10, 1 000 runs from seed 1 of 4 skills: 3 
 runs: 803 succeed, 197 fail · those that succeed take 22.6 s, and 95 % of them at most 29.9 s
 ASSUMED to succeed at once: Charge
 """
-SCHEMA = json.loads(Path(btq_lang.prediction.__file__).with_name("simulate.schema.json").read_text(encoding="utf-8"))
 
 
 @pytest.fixture
