@@ -47,7 +47,7 @@ class ChangedSkill(Skill):
 
     def __init__(self, base: Skill, change: SkillChange) -> None:
         says_all = base.source == "ASSUMED" and (change.takes is not None or change.succeeds is not None)
-        super().__init__("declared" if says_all else base.source, base.keys)
+        super().__init__("declared" if says_all else base.source, base.keys, base.has_waited and change.takes is None)
         self._base: Final = base
         self._change: Final = change
         self._average: Final = round(base.average())

@@ -43,7 +43,9 @@ class DeclaredSkill(Skill):
         self._scripts: Final = tuple((key, parse_script(text).statements[0]) for key, text in writes)
         says_all = takes is not None and succeeds is not None
         is_measured = not says_all and base is not None and base.source == "measured"
-        super().__init__("measured" if is_measured else "declared", tuple(key for key, _ in self._scripts))
+        has_waited = takes is None and base is not None and base.has_waited
+        keys = tuple(key for key, _ in self._scripts)
+        super().__init__("measured" if is_measured else "declared", keys, has_waited)
         self._takes: Final = takes
         self._succeeds: Final = succeeds
         self._base: Final = None if says_all else base

@@ -60,7 +60,7 @@ class MeasuredSkill(Skill):
 
     def __init__(self, activations: Iterable[tuple[MeasuredActivation, int]], by: Scope = "path") -> None:
         """Take activations, at least one, each with how often it counts."""
-        super().__init__("measured")
+        super().__init__("measured", has_waited=True)
         in_order = sorted(activations, key=lambda pair: pair[0].seconds)
         at_risk = self.number = sum(times for _, times in in_order)
         mass = 1.0  # of activations that are not shorter

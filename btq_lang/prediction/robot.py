@@ -214,8 +214,8 @@ class _Action:
             robot.guessed.add(self.key[1])
         if drawn.result == RUNNING:
             self.end = NEVER
-        elif drawn.takes:
-            self.end = robot.machine.now + drawn.takes
+        elif takes := _ticks(drawn.takes) if self.skill.has_waited else drawn.takes:
+            self.end = robot.machine.now + takes
             self.outcome = _outcome(drawn)
         else:
             robot.close((self._uid,))
@@ -231,9 +231,15 @@ class _Action:
         return self.outcome
 
 
+def _ticks(takes: int) -> int:
+    """A duration to the nearest tick: one of a log already has the time that it waits for its tick."""
+    return (takes + PERIOD // 2) // PERIOD * PERIOD
+
+
 def _outcome(drawn: DrawnActivation) -> Outcome:
     """What of an activation has an effect when it ends: equal ones of skills are asked for as one answer."""
     return DrawnActivation(drawn.result, 0, drawn.writes) if drawn.writes else drawn.result
 
 
+PERIOD: Final = 10  # ms between two ticks, as a robot program sleeps that ticks while the tree runs
 _ENDED: Final = {result: DrawnActivation(result, 0, ()) for result in (SUCCESS, FAILURE, SKIPPED)}

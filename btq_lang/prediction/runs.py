@@ -12,7 +12,7 @@ from typing import Final, Literal, TypeAlias
 from btq_lang.evidence.evaluate import NeededNodes
 from btq_lang.evidence.model import ROOT, SampleValue
 from btq_lang.prediction.remembering import HALT, TICK, Effect, KnownState, RememberedTree, Rows
-from btq_lang.prediction.robot import Robot
+from btq_lang.prediction.robot import PERIOD, Robot
 from btq_lang.prediction.thresholds import look_at_scripts
 from btq_lang.prediction.world import Course, LiveValue, crossings
 from btq_lang.requirements.model import ResolvedSignal
@@ -180,7 +180,7 @@ class LoadedRuns:
             if machine.now >= self.limit or self._is_cut:
                 break
             has_jumped = effect.is_quiet and not has_jumped
-            until = self._next_change(machine.now) if has_jumped else machine.now + _PERIOD
+            until = self._next_change(machine.now) if has_jumped else machine.now + PERIOD
             if tree.wakes != NEVER and (until == NEVER or tree.wakes < until):
                 until = tree.wakes
             if until == NEVER or until > self.limit:
@@ -200,7 +200,7 @@ class LoadedRuns:
         for due in self._tree.dues[self._tree.timers :]:
             if now < due < ENDLESS and (change == NEVER or due < change):
                 change = due
-        return now - (now - change) // _PERIOD * _PERIOD if change != NEVER else NEVER
+        return now - (now - change) // PERIOD * PERIOD if change != NEVER else NEVER
 
     def _noted(self, effect: Effect) -> KnownState:
         """Note what a step did; the state after it."""
@@ -336,6 +336,5 @@ def _outputs(
 
 
 _ENDS: Final[dict[int, End]] = {SUCCESS: "succeeds", FAILURE: "fails", SKIPPED: "is skipped"}
-_PERIOD: Final = 10  # ms between two ticks, as a robot program sleeps that ticks while the tree runs
 _MOST_TICKS: Final = 200_000
 _MOST_SAMPLES: Final = 100_000

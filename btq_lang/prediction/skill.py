@@ -34,12 +34,14 @@ class Skill:
     Attributes:
         source: who says what it does.
         keys: the entries, or ports that name some, of which it says what is written: their values are never unknown.
+        has_waited: its durations are of a log, where an activation ends with the tick that sees its end.
     """
 
-    __slots__ = ("keys", "source")
+    __slots__ = ("has_waited", "keys", "source")
 
-    def __init__(self, source: Source, keys: tuple[str, ...] = ()) -> None:
+    def __init__(self, source: Source, keys: tuple[str, ...] = (), has_waited: bool = False) -> None:
         self.source: Final = source
+        self.has_waited: Final = has_waited
         self.keys: Final = keys
 
     def draw(self, random: Stream) -> DrawnActivation:
