@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 import shutil
 from pathlib import Path
 
@@ -15,8 +16,8 @@ BLOCK = re.compile(r"^```console\n\$ btq (.*)\n((?:.*\n)*?)```$", re.MULTILINE)
 
 def test_the_page_shows_what_commands_print(tmp_path: Path) -> None:
     blocks = BLOCK.findall(PAGE.read_text(encoding="utf-8"))
-    assert len(blocks) == 1
+    assert len(blocks) == 2
     folder = shutil.copytree(ROOT / "examples/laboratory", tmp_path / "laboratory")
     for arguments, shown in blocks:
-        code, out, err = run_btq(*arguments.split(), cwd=folder)
+        code, out, err = run_btq(*shlex.split(arguments), cwd=folder)
         assert (code, out, err) == (0, shown, "")
