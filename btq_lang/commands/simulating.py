@@ -23,7 +23,7 @@ from btq_lang.prediction.predicting import Predictor, Recipe, Unanswerable, pred
 from btq_lang.prediction.report import PredictedRequirement, Prediction
 from btq_lang.prediction.shown_run import recorded_run, shown_run, signals_csv
 from btq_lang.prediction.template import template
-from btq_lang.prediction.what_if import Mistake, changed_by
+from btq_lang.prediction.what_if import WrongChange, changed_by
 from btq_lang.projects.building import for_target
 from btq_lang.projects.files import FileGroup, Files, logs_of, no_mission_below, usage_problem
 from btq_lang.projects.messages import CommandOutput
@@ -205,7 +205,7 @@ def _changes(predictor: Predictor, options: SimulateOptions) -> list[tuple[str, 
     for text in options.what_if:
         try:
             changes.append((" ".join(text.split()), changed_by(predictor, text)))
-        except Mistake as error:
+        except WrongChange as error:
             raise Refused(f"--what-if '{text}': {error}") from None
     return changes
 

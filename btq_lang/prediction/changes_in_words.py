@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from btq_lang.evidence.wording import duration, share
-from btq_lang.prediction.report import WORST_FIRST, Alternative, Difference, Prediction
+from btq_lang.prediction.report import WORST_FIRST, Alternative, DemandChange, Prediction
 from btq_lang.prediction.sentences import number_of
 from btq_lang.util.record import Record
 
@@ -37,7 +37,7 @@ def tables(prediction: Prediction) -> Iterator[ChangeTable]:
 
 
 def _by_demand(prediction: Prediction) -> Iterator[ChangeTable]:
-    """What each improvement does for a demand, the best first, and what makes no difference."""
+    """What each improvement does for a demand, the best first, and those that change nothing."""
     places = range(max((len(each.differences) for each in prediction.alternatives), default=0))
     for place in places:
         pairs = [(each, each.differences[place]) for each in prediction.alternatives]
@@ -46,12 +46,12 @@ def _by_demand(prediction: Prediction) -> Iterator[ChangeTable]:
         differing = [(each, row) for each, row in pairs if row.difference or row.word != row.before]
         rows = tuple((_words(row), each.what, "", _shares(row), difference(row)) for each, row in differing)
         same = ", ".join(each.what for each, row in pairs if not (row.difference or row.word != row.before))
-        same = f"no difference: {same}" if rows else f"none of {len(pairs)} improvements makes a difference"
+        same = f"the same with: {same}" if rows else f"none of {len(pairs)} improvements changes this"
         title = f"what helps {first.requirement}: {_clause(first, pairs[0][0])}"
         yield ChangeTable(title, rows, (same,) if len(rows) < len(pairs) else ())
 
 
-def difference(row: Difference) -> str:
+def difference(row: DemandChange) -> str:
     """In percentage points, with its interval."""
     if row.difference is None:
         return ""
@@ -67,17 +67,17 @@ def _points(number: float) -> str:
     return "0" if float(text) == 0 else text.replace("-", "−")
 
 
-def _words(row: Difference) -> str:
+def _words(row: DemandChange) -> str:
     return row.word if row.word == row.before else f"{row.before} → {row.word}"
 
 
-def _shares(row: Difference) -> str:
+def _shares(row: DemandChange) -> str:
     if row.share is None or row.share_before is None:
         return ""
     return f"{share(row.share_before)} → {share(row.share)}"
 
 
-def _clause(row: Difference, alternative: Alternative) -> str:
+def _clause(row: DemandChange, alternative: Alternative) -> str:
     is_lone = sum((row.requirement, row.text) == (each.requirement, each.text) for each in alternative.differences) == 1
     return row.text if is_lone or not row.path else f"{row.text} at {row.path}"
 

@@ -13,7 +13,7 @@ from btq_lang.evidence.odds import beta_cdf, root
 from btq_lang.prediction.changed import SkillChange
 from btq_lang.prediction.judging import JudgedBlock
 from btq_lang.prediction.predicting import Predictor, Recipe, predicted
-from btq_lang.prediction.report import Alternative, Difference, PredictedClause, Prediction
+from btq_lang.prediction.report import Alternative, DemandChange, PredictedClause, Prediction
 from btq_lang.scenarios.mission import NotRunnable
 from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.util.record import Record, replace
@@ -105,7 +105,7 @@ def improvements(predictor: Predictor) -> Iterator[tuple[str, SkillChange]]:
             yield f"{name}: always its average time", SkillChange(name, is_even=True)
 
 
-def _differences(first: Prediction, before: _Blocks, second: Prediction, after: _Blocks) -> Iterator[Difference]:
+def _differences(first: Prediction, before: _Blocks, second: Prediction, after: _Blocks) -> Iterator[DemandChange]:
     places = {place: (number, clause) for number, (place, clause) in enumerate(_clauses(first))}
     for number, (place, clause) in enumerate(_clauses(second)):
         if place not in places:
@@ -116,7 +116,7 @@ def _differences(first: Prediction, before: _Blocks, second: Prediction, after: 
             share = clause.share - old.share
             interval = interval_of(before.of(earlier), after.of(number))
         shares = clause.share, old.share
-        yield Difference(place[0], clause.text, clause.path, clause.word, old.word, *shares, share, interval)
+        yield DemandChange(place[0], clause.text, clause.path, clause.word, old.word, *shares, share, interval)
 
 
 def _clauses(prediction: Prediction) -> Iterator[tuple[Place, PredictedClause]]:

@@ -82,7 +82,7 @@ class Ended(Record):
     why: str
 
 
-class Difference(Record):
+class DemandChange(Record):
     """What a change makes of a demand.
 
     Attributes:
@@ -116,7 +116,7 @@ class Alternative(Record):
 
     what: str
     prediction: Prediction
-    differences: tuple[Difference, ...]
+    differences: tuple[DemandChange, ...]
 
     @property
     def best(self) -> float:

@@ -31,7 +31,7 @@ from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
 
-class Mistake(Exception):
+class WrongChange(Exception):
     """A what-if cannot be understood; the message says what was expected."""
 
 
@@ -42,7 +42,7 @@ def changed_by(predictor: Predictor, text: str) -> Recipe:
         predictor: of the mission without it.
 
     Raises:
-        Mistake: it cannot be understood, or names what the mission lacks.
+        WrongChange: it cannot be understood, or names what the mission lacks.
     """
     recipe = predictor.recipe
     for pattern, read in ((_TAKES, _takes), (_SUCCEEDS, _succeeds)):
@@ -51,11 +51,11 @@ def changed_by(predictor: Predictor, text: str) -> Recipe:
             _require_skill(recipe, path)
             change = read(path, match["value"])
             if change.factor != 1 and predictor.assumes(change):
-                raise Mistake(f"`{path}` is assumed to take no time; expected a duration such as `takes 12 s`")
+                raise WrongChange(f"`{path}` is assumed to take no time; expected a duration such as `takes 12 s`")
             return replace(recipe, changes=(*recipe.changes, change))
     match = _ATTRIBUTE.fullmatch(text.strip())
     if match is None:
-        raise Mistake(f"expected {_EXPECTED}")
+        raise WrongChange(f"expected {_EXPECTED}")
     edited = _with_attribute(recipe, _nodes(recipe, match["node"]), match["key"], match["value"])
     return replace(recipe, workspace=edited)
 
@@ -70,7 +70,7 @@ def _takes(path: str, value: str) -> SkillChange:
     takes = [low.strip(), high.strip()] if high else value
     settings, complaints = read_simulation({"skills": {path: {"takes": takes}}})
     if complaints:
-        raise Mistake(
+        raise WrongChange(
             f"expected a duration such as `12 s` or `12 s to 20 s`, or a factor such as `x 0.8`, not `{value}`"
         )
     return SkillChange(path, takes=settings.skills[0].takes)
@@ -79,16 +79,16 @@ def _takes(path: str, value: str) -> SkillChange:
 def _succeeds(path: str, value: str) -> SkillChange:
     settings, complaints = read_simulation({"skills": {path: {"succeeds": value}}})
     if complaints:
-        raise Mistake(f"expected a percentage from 0 to 100 such as `97 %`, not `{value}`")
+        raise WrongChange(f"expected a percentage from 0 to 100 such as `97 %`, not `{value}`")
     return SkillChange(path, succeeds=settings.skills[0].succeeds)
 
 
 def _require_skill(recipe: Recipe, path: str) -> None:
     named = _named(recipe, path)
     if any(is_skill(node) and is_condition(node) for node in named):
-        raise Mistake(f"`{path}` is a condition; expected an action, or an attribute of a node")
+        raise WrongChange(f"`{path}` is a condition; expected an action, or an attribute of a node")
     if not any(map(is_skill, named)):
-        raise Mistake(f"`{path}` is no action of the program; expected one")
+        raise WrongChange(f"`{path}` is not an action of the program")
 
 
 # ---- attributes ----
@@ -108,7 +108,7 @@ def _nodes(recipe: Recipe, words: str) -> list[ResolvedNode]:
     ]
     ones = [*dict.fromkeys(node for node in around if node is not None)]
     if not ones:
-        raise Mistake(f"no `{' '.join(kinds)}` is named `{path}` or around it")
+        raise WrongChange(f"no `{' '.join(kinds)}` is named `{path}` or around it")
     return ones
 
 
@@ -118,7 +118,7 @@ def _named(recipe: Recipe, path: str) -> list[ResolvedNode]:
     named = [target.node for target in store.ask(nodes.find, recipe.path, tuple(path.split("/")))]
     if not named:
         likely = near(path, store.ask(nodes.node_names, recipe.path), 1) if "/" not in path else []
-        raise Mistake(f"no node is named `{path}`{did_you_mean(likely)}")
+        raise WrongChange(f"no node is named `{path}`{did_you_mean(likely)}")
     return [*dict.fromkeys(named)]
 
 
@@ -126,7 +126,7 @@ def _with_attribute(recipe: Recipe, changed: Iterable[ResolvedNode], key: str, v
     """The workspace in which nodes have an attribute.
 
     Raises:
-        Mistake: the mission has more errors then.
+        WrongChange: the mission has more errors then.
     """
     workspace = recipe.workspace
     edits: dict[str, list[Edit]] = {}
@@ -141,7 +141,7 @@ def _with_attribute(recipe: Recipe, changed: Iterable[ResolvedNode], key: str, v
     before = [*_errors(recipe.workspace, edits)]
     for message in _errors(workspace, edits):
         if message not in before:
-            raise Mistake(message)
+            raise WrongChange(message)
         before.remove(message)
     return workspace
 

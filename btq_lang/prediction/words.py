@@ -100,7 +100,10 @@ def interval_of(held: int, counted: int, measure: Uncertainty) -> tuple[float, f
         mean = sum(each for each, _ in shares) / max(len(shares), 1)
         between = sum((each - mean) ** 2 for each, _ in shares) / max(len(shares) - 1, 1)
         drawn = sum(mean * (1 - mean) / n for _, n in shares) / max(len(shares), 1)
-        variance = max(between - drawn, 0.0) + own / counted
+        excess = max(between - drawn, 0.0)
+        if excess and not own:  # all hold, but with skills measured otherwise some would not
+            own = mean * (1 - mean)
+        variance = excess + own / counted
         number = min(own / variance, counted) if variance > 0 else number
     return _limit(share * number, number), 1 - _limit((1 - share) * number, number)
 

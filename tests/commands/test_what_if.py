@@ -131,9 +131,9 @@ def test_improvements(project: Path) -> None:
         "\nwhat helps reliable: mission succeeds in at least 90 % of runs\n"
         "  will miss → too close to say  Pick: half its failures   80.3 % → 91.3 %  +11 points (+8.22 to +13.8)\n"
         "  will miss                     Drive: half its failures  80.3 % → 82.7 %  +2.4 points (+1.27 to +3.53)\n"
-        "  no difference: Drive: half its time, Drive: always its average time, Pick: half its time,"
+        "  the same with: Drive: half its time, Drive: always its average time, Pick: half its time,"
         " Pick: always its average time\n"
-        "\nwhat helps in_time: takes at most 30 s\n  none of 6 improvements makes a difference\n"
+        "\nwhat helps in_time: takes at most 30 s\n  none of 6 improvements changes this\n"
     ) in out
     document = predicted(project, "--improve")
     assert document["improves"]
@@ -195,7 +195,7 @@ def test_any_number_of_processes_gives_the_same_bytes(project: Path) -> None:
             " often it succeeds, such as `MoveBase takes x 0.8` or `Dock succeeds 97 %`",
         ),
         ("BatteryLow succeeds 5 %", "`BatteryLow` is a condition; expected an action, or an attribute of a node"),
-        ("Retry takes 5 s", "`Retry` is no action of the program; expected one"),
+        ("Retry takes 5 s", "`Retry` is not an action of the program"),
         ("Charge takes x 2", "`Charge` is assumed to take no time; expected a duration such as `takes 12 s`"),
     ],
 )

@@ -26,3 +26,10 @@ def test_what_no_measurement_has_shown_may_be() -> None:
     """Of 50 runs in which all succeed: at least 0.025 to the power of 1/50."""
     never = Uncertainty(50, ((100, 100), (100, 100)))
     assert rounded(10_000, 10_000, never) == (0.9289, 1.0)
+
+
+def test_where_all_hold_but_not_with_other_skills() -> None:
+    rare = Uncertainty(20, ((100, 100), (100, 100), (92, 100), (100, 100)))
+    low, high = interval_of(1000, 1000, rare)
+    assert 0.7 < low < 0.93
+    assert high == 1
