@@ -73,19 +73,22 @@ def tick_while_running(
         if is_over() or machine.now >= limit:
             break
         after = machine.state()
-        wakes = next_due(machine)
-        changes = min(
-            [time for time in (machine.program.next_change(machine.now), next_passing(machine)) if time != NEVER],
-            default=NEVER,
-        )
         if after != before:
             before = after
-            step = machine.now + period
-            advance(machine, min(step, wakes) if wakes != NEVER else step)
+            _sleep(machine, machine.now + period)
             continue
-        if wakes == changes == NEVER:
+        changes = machine.program.next_change(machine.now), next_passing(machine), next_due(machine)
+        next_one = min([time for time in changes if time != NEVER], default=NEVER)
+        if next_one == NEVER:
             break
-        due = machine.now - (machine.now - changes) // period * period if changes != NEVER else NEVER
-        advance(machine, min(time for time in (wakes, due) if time != NEVER))
+        _sleep(machine, machine.now - (machine.now - next_one) // period * period)
         before = None
     return RUNNING
+
+
+def _sleep(machine: Machine, until: int) -> None:
+    """Let time pass until a time, or until a timer has a node ask to be ticked, which that tick answers."""
+    while machine.now < until and not machine.is_woken:
+        due = next_due(machine)
+        advance(machine, min(due, until) if due != NEVER else until)
+    machine.is_woken = False

@@ -113,6 +113,7 @@ class Skills:
     Attributes:
         assumed: the actions of which nothing was given that have run, by path.
         applied: the identities of what is given and was about some activation.
+        writes: a list to which all that leaves write is added, with the keys of entries; None: it is not noted.
         machine: whose leaves they are; to be set before the first tick.
     """
 
@@ -132,6 +133,7 @@ class Skills:
         self.machine: Machine
         self.assumed: Final[set[str]] = set()
         self.applied: Final[set[int]] = set()
+        self.writes: list[Write] | None = None
         self._givens: Final = sorted(givens, key=lambda given: -given.rank)
         self._conditions: Final = frozenset(conditions)
         self._outputs: Final = outputs
@@ -182,7 +184,7 @@ class Skills:
             entry = node.board.entry(key)
             if only_empty and entry is not None and entry.value == write.value:
                 continue  # a tick that changes nothing can be passed over
-            node.board.write(key, write.value, write.type)
+            self._put(node, key, write.value, write.type)
 
     def _write_unsaid(self, node: SimulatedNode, given: Iterable[str], only_empty: bool = False) -> None:
         """Write unknown values into the entries of outputs of which no value is given.
@@ -202,7 +204,12 @@ class Skills:
             entry = node.board.entry(key)
             is_empty = entry is None or entry.value is None
             if is_empty or not (only_empty or outputs is None):
-                node.board.write(key, Unsaid(node.path, key), entry.type if entry is not None else UNTYPED)
+                self._put(node, key, Unsaid(node.path, key), entry.type if entry is not None else UNTYPED)
+
+    def _put(self, node: SimulatedNode, key: str, value: Value, type_: str) -> None:
+        if self.writes is not None:
+            self.writes.append(Write(key, value, type_))
+        node.board.write(key, value, type_)
 
     def halt(self, node: SimulatedNode) -> None:
         """Halt a skill that runs."""
