@@ -20,8 +20,8 @@ from btq_lang.scenarios.mission import ScenarioMission
 from btq_lang.scenarios.mutating import Mutant, mutated
 from btq_lang.scenarios.plan import ExpectedValues, Plan, PlannedChange, Set, WatchedEvent
 from btq_lang.scenarios.unused_lines import unused_lines
-from btq_lang.simulator.blackboard import BOOL, Board, Unknown, Unsaid, Value, ValueNeeded, type_of
-from btq_lang.simulator.drivers import halt_tree, tick_while_running
+from btq_lang.simulator.blackboard import BOOL, Unknown, Unsaid, Value, ValueNeeded, type_of
+from btq_lang.simulator.drivers import drive, halt_tree
 from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.loading import load
 from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Machine, SimulatedNode
@@ -96,7 +96,7 @@ class _Running:
         self._mutant: Final = mutant
         self._watched: Final = _watched(plan)
         self._skills: Final = Skills(plan.givens, mission.conditions, mission.outputs)
-        self._board: Final = Board(is_old=mission.dialect.is_old)
+        self._board: Final = mission.program.board()
         self._machine: Machine | None = None
         self._nodes: _NodesNow
         self._rows: Final[list[Transition]] = []
@@ -142,7 +142,7 @@ class _Running:
             self._machine = machine = self._loaded()
             self._skills.machine = machine
             self._sample()
-            result = tick_while_running(machine, _LONGEST, is_over=self._is_over)
+            result = drive(machine, self._mission.program.driver, _LONGEST, self._is_over)
             return self._ended(machine, result)
         except EngineError as error:
             return self._record("is refused" if self._machine is None else "throws", str(error))

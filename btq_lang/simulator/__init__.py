@@ -24,4 +24,5 @@ guessed.
     kinds.py        which function is which node's
     loading.py      XML to nodes
     drivers.py      how a program ticks its tree
+    programs.py     the program that runs a tree
 """
