@@ -12,11 +12,13 @@ from typing import Final, Protocol, TypeAlias
 from btq_lang.btcpp.document import Document
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.exploration.choices import Choices
-from btq_lang.exploration.leaves import FreeLeaves, FreeWorld, LeafKind, set_free
+from btq_lang.exploration.leaves import FreeLeaves, FreeWorld, LeafKind
 from btq_lang.exploration.snapshots import Memories, Shared, Snapshots
 from btq_lang.simulator.errors import EngineError
 from btq_lang.simulator.leaves import tick_custom
 from btq_lang.simulator.loading import load
+from btq_lang.simulator.nav2 import UPDATED
+from btq_lang.simulator.nav2_answered import set_answered
 from btq_lang.simulator.nodes import Machine, SimulatedNode
 from btq_lang.simulator.ports import key_of
 from btq_lang.simulator.programs import KnownProgram
@@ -81,7 +83,7 @@ class Opened:
         self.custom: Final = [node for node in self.machine.nodes if node.rules.flow is tick_custom]
         self._set_entries(asked, program.preset)
         for node in self.machine.nodes:
-            set_free(node, self.snapshots)
+            set_answered(node, self.leaves)
         self.start: Final[tuple[Memories, Shared]] = (
             self.snapshots.memories(self.machine.root),
             self.snapshots.shared(),
@@ -177,4 +179,4 @@ def _home(node: SimulatedNode, key: str) -> _Home:
     return id(board), name
 
 
-_WRITTEN: Final = ("output_key", "current_child_idx", "value")  # of nodes of the engine and of Nav2
+_WRITTEN: Final = ("output_key", "current_child_idx", "value", *UPDATED)  # of nodes of the engine and of Nav2

@@ -24,6 +24,7 @@ from btq_lang.simulator.blackboard import BOOL, Unknown, Unsaid, Value, ValueNee
 from btq_lang.simulator.drivers import drive, halt_tree
 from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.loading import load
+from btq_lang.simulator.nav2_answered import set_answered
 from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Machine, SimulatedNode
 from btq_lang.simulator.ports import key_of, read_whole
 from btq_lang.simulator.skills import GivenSkill, Skills, Unanswered, is_value, value_at
@@ -154,6 +155,8 @@ class _Running:
     def _loaded(self) -> Machine:
         arguments = self._mission.name, self._mission.dialect, self, self._changed, self._board, self._mission.actions
         machine = load(self._mission.documents, *arguments)
+        for node in machine.nodes:
+            set_answered(node, self._skills)
         if self._mutant is not None:
             machine = mutated(machine, self._mutant)
         self._nodes = _NodesNow(machine, self._mission)
@@ -306,7 +309,7 @@ class _Running:
             self._board.define(value.key, written, "")
             self._board.entries[value.key].number += entry.number if entry is not None else 0
         else:
-            self._board.write(value.key, written, BOOL if is_bool else type_of(written))
+            self._board.give(value.key, written, BOOL if is_bool else type_of(written))
 
     def _sample(self) -> None:
         """Note the values of entries that are read and have changed."""

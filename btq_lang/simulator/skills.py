@@ -166,6 +166,24 @@ class Skills:
         self._write(node, activation.writes, is_skipped=activation.result == SKIPPED)
         return activation.result
 
+    def has_answer(self, node: SimulatedNode) -> bool:
+        """Whether it is given what a node of Nav2 answers that reads the time or the world."""
+        return any(given.answers and given.concerns(node) for given in self._givens)
+
+    def answer(self, node: SimulatedNode) -> bool:
+        """What such a node answers.
+
+        Raises:
+            Unanswered: nothing is given.
+        """
+        return self._answer(node) == SUCCESS
+
+    def update(self, node: SimulatedNode) -> None:
+        """Write the goals that a GoalUpdater has received, which are unknown if they are not given."""
+        given = self._given(node)
+        if not self.has_answer(node) or self.answer(node):
+            self._write(node, given.writes or () if given is not None else ())
+
     def _write(
         self, node: SimulatedNode, writes: Sequence[Write], only_empty: bool = False, is_skipped: bool = False
     ) -> None:
@@ -182,7 +200,7 @@ class Skills:
             entry = node.board.entry(key)
             if only_empty and entry is not None and entry.value == write.value:
                 continue  # a tick that changes nothing can be passed over
-            node.board.write(key, write.value, write.type)
+            node.board.give(key, write.value, write.type)
 
     def _write_unsaid(self, node: SimulatedNode, given: Iterable[str], only_empty: bool = False) -> None:
         """Write unknown values into the entries of outputs of which no value is given.
