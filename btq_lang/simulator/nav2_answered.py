@@ -95,11 +95,13 @@ def _letting_through(answers: Answers) -> Flow:
 
 
 def _when_longer(answers: Answers) -> Flow:
-    """A PathLongerOnApproach: whether the path is longer."""
+    """A PathLongerOnApproach: whether the path is longer than another one that it has seen."""
 
     def tick(machine: Machine, node: SimulatedNode) -> int:
+        has_seen_one = node.status != IDLE if machine.dialect.nav2 == "iron" else node.is_on
+        node.is_on = True
         set_status(machine, node, RUNNING)
-        if not answers.answer(node):
+        if not (has_seen_one and answers.answer(node)):
             return SUCCESS
         result = execute_tick(machine, node.child)
         if result in (SUCCESS, FAILURE):

@@ -123,11 +123,12 @@ def test_goals_that_a_node_writes_are_unknown(tmp_path: Path) -> None:
 
 def test_a_path_that_became_longer(tmp_path: Path) -> None:
     longer = '<PathLongerOnApproach path="{path}"><Wait/></PathLongerOnApproach>'
-    tree = f'<Sequence><ComputePathToPose path="{{path}}"/>{longer}</Sequence>'
+    tree = f'<PipelineSequence><ComputePathToPose path="{{path}}"/>{longer}<Spin/></PipelineSequence>'
     why = "PathLongerOnApproach::3 reads {path}, and nothing says what ComputePathToPose::2 writes into {path}"
     assert ran(tmp_path, tree, "expect mission succeeds") == ("unknown", "", why)
     for answer, expected in (("true", "Wait finishes at least 1 per run"), ("false", "never node Wait")):
-        assert ran(tmp_path, tree, f"given PathLongerOnApproach answers {answer}", f"expect {expected}") == PASSED
+        steps = f"given PathLongerOnApproach answers {answer}", "given Spin takes 1 s", f"expect {expected}"
+        assert ran(tmp_path, tree, *steps) == PASSED
 
 
 @pytest.mark.parametrize("nodes", ["humble", "iron", "jazzy", "kilted", "lyrical"])

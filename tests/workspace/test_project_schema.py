@@ -76,7 +76,8 @@ METASCHEMA: dict[str, Any] = {
 
 
 INEXPRESSIBLE = re.compile(
-    "unknown unit|^duplicate factory|a `p95` above|shorter duration|above 0 s|to a year|to the next|whole milli|script of"
+    "unknown unit|^duplicate factory|a `p95` above|the shorter duration|above 0 s|to a year|to the next|script of"
+    "|whole milliseconds"
 )
 
 
