@@ -37,7 +37,7 @@ def explored(branch: str, folder: Path) -> Iterator[tuple[str, Result]]:
     folder.mkdir()
     (folder / "btq.toml").write_text(f'nodes = ["nav2-{branch}"]\n', encoding="utf-8")
     for path in git("ls-tree", "-r", "--name-only", branch).splitlines():
-        if path.startswith(FOLDERS) and path.endswith(".xml"):
+        if path.startswith(FOLDERS) and path.endswith(".xml") and "_rout" not in path:
             name = path.rpartition("/")[2]
             (folder / name).write_text(git("show", f"{branch}:{path}"), encoding="utf-8")
             _, out, _ = run_btq("explore", name, "--format", "json", cwd=folder)
