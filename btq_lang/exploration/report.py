@@ -44,7 +44,7 @@ def _lines(explored: Explored) -> Iterator[str]:
     mission = explored.mission
     engine = f"BehaviorTree.CPP {mission.dialect.version}"
     nav2 = f", Nav2 {mission.dialect.nav2.title()}" if mission.dialect.nav2 else ""
-    nav2 += f' (assumed; name it: nodes = ["nav2-{mission.dialect.nav2}"])' if mission.is_nav2_assumed else ""
+    nav2 += f' (assumed; name it: nodes = ["nav2-{mission.dialect.nav2}"])' if mission.program.is_nav2_assumed else ""
     yield f"{shown(mission.path)}: tree {mission.tree}, {engine}{nav2}"
     for asked in explored.asked:
         answer = asked.answer

@@ -21,10 +21,11 @@ from btq_lang.scenarios.mutating import Mutant, mutated
 from btq_lang.scenarios.plan import ExpectedValues, Plan, PlannedChange, Set, WatchedEvent
 from btq_lang.scenarios.tape import LeafTick, Tape
 from btq_lang.scenarios.unused_lines import unused_lines
-from btq_lang.simulator.blackboard import BOOL, Board, Unknown, Unsaid, Value, ValueNeeded, type_of
-from btq_lang.simulator.drivers import halt_tree, tick_while_running
+from btq_lang.simulator.blackboard import BOOL, Unknown, Unsaid, Value, ValueNeeded, type_of
+from btq_lang.simulator.drivers import drive, halt_tree
 from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.loading import load
+from btq_lang.simulator.nav2_answered import set_answered
 from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Machine, SimulatedNode
 from btq_lang.simulator.ports import key_of, read_whole
 from btq_lang.simulator.skills import GivenSkill, Skills, Unanswered, Write, is_value, value_at
@@ -103,7 +104,7 @@ class _Running:
         self._mutant: Final = mutant
         self._watched: Final = watched(plan)
         self._skills: Final = Skills(plan.givens, mission.conditions, mission.outputs)
-        self._board: Final = Board(is_old=mission.dialect.is_old)
+        self._board: Final = mission.program.board()
         self._machine: Machine | None = None
         self._nodes: _NodesNow
         self._rows: Final[list[Transition]] = []
@@ -164,7 +165,7 @@ class _Running:
                 self._tape.machine = machine
                 self._tape.taken()  # what is given before is in the plan
             self._sample()
-            result = tick_while_running(machine, _LONGEST, is_over=self._is_over)
+            result = drive(machine, self._mission.program.driver, _LONGEST, self._is_over)
             return self._ended(machine, result)
         except EngineError as error:
             return self._record("is refused" if self._machine is None else "throws", str(error))
@@ -176,6 +177,8 @@ class _Running:
     def _loaded(self) -> Machine:
         arguments = self._mission.name, self._mission.dialect, self, self._changed, self._board, self._mission.actions
         machine = load(self._mission.documents, *arguments)
+        for node in machine.nodes:
+            set_answered(node, self._skills)
         if self._mutant is not None:
             machine = mutated(machine, self._mutant)
         self._nodes = _NodesNow(machine, self._mission)
@@ -346,7 +349,7 @@ class _Running:
             self._board.define(value.key, written, "")
             self._board.entries[value.key].number += entry.number if entry is not None else 0
         else:
-            self._board.write(value.key, written, BOOL if is_bool else type_of(written))
+            self._board.give(value.key, written, BOOL if is_bool else type_of(written))
 
     def _sample(self) -> None:
         """Note the values of entries that are read and have changed."""

@@ -168,6 +168,24 @@ class Skills:
         self._write(node, activation.writes, is_skipped=activation.result == SKIPPED)
         return activation.result
 
+    def has_answer(self, node: SimulatedNode) -> bool:
+        """Whether it is given what a node of Nav2 answers that reads the time or the world."""
+        return any(given.answers and given.concerns(node) for given in self._givens)
+
+    def answer(self, node: SimulatedNode) -> bool:
+        """What such a node answers.
+
+        Raises:
+            Unanswered: nothing is given.
+        """
+        return self._answer(node) == SUCCESS
+
+    def update(self, node: SimulatedNode) -> None:
+        """Write the goals that a GoalUpdater has received, which are unknown if they are not given."""
+        given = self._given(node)
+        if not self.has_answer(node) or self.answer(node):
+            self._write(node, given.writes or () if given is not None else ())
+
     def _write(
         self, node: SimulatedNode, writes: Sequence[Write], only_empty: bool = False, is_skipped: bool = False
     ) -> None:
@@ -209,7 +227,7 @@ class Skills:
     def _put(self, node: SimulatedNode, key: str, value: Value, type_: str) -> None:
         if self.writes is not None:
             self.writes.append(Write(key, value, type_))
-        node.board.write(key, value, type_)
+        node.board.give(key, value, type_)
 
     def halt(self, node: SimulatedNode) -> None:
         """Halt a skill that runs."""
