@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 CLEAN, FINDINGS, TROUBLE = 0, 1, 2
 _SYMBOLS_LIKE_OPTIONS = ("->",)
 # The modules of commands whose name cannot be a module's.
-_MODULES = {"import": "import_xml", "trace": "tracing", "test": "testing"}
+_MODULES = {"import": "import_xml", "trace": "tracing", "test": "testing", "simulate": "simulating"}
 
 
 def program() -> None:

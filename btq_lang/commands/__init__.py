@@ -13,6 +13,7 @@ How to check, build or judge is unknown here; other packages do that.
     init.py            with init_from_xml, whose parts are init_lines and packages
     explore.py         what can happen; explored_scenarios.py writes its runs as scenarios
     testing.py         `btq test`: scenarios
+    simulating.py      `btq simulate`: runs that are drawn; with simulate_options
     verify.py          with verify_options, candidates, stored, live, live_screen, recorded, verdict_report and
                        verdict_events
     compare.py, report.py, tracing.py   what a store has, and the overview; given_evidence: verdicts beside requirements

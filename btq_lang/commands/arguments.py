@@ -8,6 +8,7 @@ from collections.abc import Callable
 from functools import cache
 from typing import Final, TypeAlias
 
+from btq_lang.commands.simulate_options import add_simulate_options
 from btq_lang.commands.suggesting_parser import SuggestingParser
 from btq_lang.commands.verify_options import VerifyOptions, add_verify_options
 from btq_lang.evidence.compare import FORMATS as COMPARISON_FORMATS
@@ -409,6 +410,23 @@ def _add_explore(parser: SuggestingParser) -> None:
 
 
 @_command(
+    "simulate",
+    "predict whether a mission will do what it must: runs in which skills do what was declared or measured",
+    "exit codes: 0 predicted; 1 (--check) a demand will be missed; 2 usage, I/O, or a condition that nobody answers\n\n"
+    "examples:\n  btq simulate mission.btq                       skills as [simulate.skills] of btq.toml says\n"
+    "  btq simulate mission.btq --from runs.btlog     and as logs show\n"
+    "  btq simulate mission.btq --template            what is still to be said, for btq.toml\n"
+    "  btq simulate mission.btq --show in_time -o run.btlog\n"
+    "  btq simulate --check                           in CI\n",
+)
+def _add_simulate(parser: SuggestingParser) -> None:
+    _add_paths(parser)
+    add_simulate_options(parser, _OF_PROJECT)
+    _add_config(parser)
+    _add_color(parser)
+
+
+@_command(
     "preview",
     "show a mission's trees in a browser, redrawn whenever a file is saved",
     "exit codes: 0 ended by Ctrl+C, 2 usage or I/O\n\n"
@@ -503,12 +521,17 @@ def _add_nodes(parser: SuggestingParser) -> None:
     "exit codes: 0 written; 1 written, but of files that cannot be read whole; 2 usage or I/O\n\n"
     "examples:\n  btq schema xsd -o btq.xsd                an XSD with the nodes of the project in this folder\n"
     "  btq schema xsd missions --target 4.6     for an older engine\n"
-    "  btq schema project -o btq.schema.json    a JSON schema of btq.toml\n",
+    "  btq schema project -o btq.schema.json    a JSON schema of btq.toml\n"
+    "  btq schema simulate                      a JSON schema of btq simulate --format json\n",
 )
 def _add_schema(parser: SuggestingParser) -> None:
     from btq_lang.catalog.versions import targets  # as above
 
-    parser.add("format", choices=("xsd", "project"), help="an XSD of the nodes, or a JSON schema of btq.toml")
+    parser.add(
+        "format",
+        choices=("xsd", "project", "simulate"),
+        help="an XSD of the nodes, or a JSON schema: of btq.toml, or of what btq simulate writes",
+    )
     parser.add("paths", nargs="*", metavar="PATH", help="of xsd: files and folders with nodes; default: .")
     parser.add("--target", choices=targets(), help="the engine's version; default: the project's newest")
     parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")

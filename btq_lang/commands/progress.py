@@ -12,9 +12,10 @@ _PAUSE = 0.1  # seconds between two updates
 class Progress:
     """Counts steps; shows nothing without a terminal or if the work ends soon."""
 
-    def __init__(self, total: int, verb: str) -> None:
+    def __init__(self, total: int, verb: str, what: str = "files") -> None:
         self._total = total
         self._verb = verb
+        self._what = what
         self._done = 0
         self._shown = False
         self._next = monotonic() + _PATIENCE
@@ -37,5 +38,5 @@ class Progress:
         if self._done < self._total and monotonic() >= self._next and sys.stderr.isatty():
             self._next = monotonic() + _PAUSE
             self._shown = True
-            sys.stderr.write(f"\r\x1b[K{self._verb} {self._done} of {self._total} files{more}")
+            sys.stderr.write(f"\r\x1b[K{self._verb} {self._done} of {self._total} {self._what}{more}")
             sys.stderr.flush()

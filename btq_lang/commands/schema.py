@@ -1,10 +1,12 @@
-"""`btq schema`: schemas by which other tools complete and check the XML of a project, and its btq.toml."""
+"""`btq schema`: schemas by which other tools complete and check the XML of a project, its btq.toml, and predictions."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Sequence
+from importlib import resources
 
+from btq_lang import prediction
 from btq_lang.btcpp.xsd import xsd
 from btq_lang.catalog.versions import VERSIONS
 from btq_lang.catalog.versions import targets as engine_lines
@@ -28,7 +30,7 @@ class SchemaOptions(Record):
     """The options of `btq schema`.
 
     Attributes:
-        format: `xsd` or `project`.
+        format: `xsd`, `project` or `simulate`.
         target: the version of the engine; None: the newest of the project.
     """
 
@@ -41,9 +43,14 @@ class SchemaOptions(Record):
 def run(options: SchemaOptions, messages: CommandOutput) -> int:
     """Write a schema."""
     problem = usage_problem(options.paths) or form_problem(options.format, options.output, (options.format,))
-    if options.format == "project" and options.paths:
-        problem = "`project` takes no path: its schema is the same for every project"
+    if options.format != "xsd" and options.paths:
+        problem = f"`{options.format}` takes no path: its schema is the same for every project"
     refuse(problem)
+    if options.format == "simulate":
+        write_output(
+            messages, options.output, resources.files(prediction).joinpath("simulate.schema.json").read_text("utf-8")
+        )
+        return 0
     if options.format == "project":
         write_output(messages, options.output, f"{json.dumps(project_schema(), indent=2)}\n")
         return 0

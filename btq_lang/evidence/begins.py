@@ -49,7 +49,8 @@ class Begins:
         built_in = {uid for uid, node in tree.nodes.items() if node.kind in BUILTINS}
         after_begin = (self._into | nav2 | built_in) - tree.leaves
         self._writes_first: Final = {*tree.nodes} if tree.shows_begins else after_begin
-        self._parallel: Final = {uid for uid, how in one_tick.items() if how == "unskipped"}
+        all_parallel = {uid for uid, how in one_tick.items() if how == "unskipped"}
+        self._parallel: Final = all_parallel if not tree.shows_begins else set[int]()  # what they ticked shows nothing
         # By Parallel: the row that showed its activation, and the last child that has written a row since.
         self._ticked: Final[dict[int, tuple[Moment, int]]] = {}
         self._before: tuple[Moment, int, bool] | None = None  # its node, and whether it is RUNNING

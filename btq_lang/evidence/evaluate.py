@@ -6,7 +6,7 @@ One invariant: the only state is open activations, the current run, and counts.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Final, Protocol
 
@@ -35,7 +35,7 @@ from btq_lang.evidence.verdicts import (
     worst_of,
 )
 from btq_lang.util.grouping import grouped
-from btq_lang.util.record import replace
+from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate, Joined
@@ -301,6 +301,11 @@ class _OpenSession:
         for clause in clauses:
             clause.explainer = self.explainer
 
+    @property
+    def judged(self) -> Iterable[int]:
+        """The nodes whose activations clauses judge."""
+        return self._judged
+
     def judge(self, activation: Activation) -> None:
         """Judge by their clauses the activations that this one settles; it is of a node that guards concern."""
         settled, refusal = self.guards.see(activation)
@@ -320,6 +325,28 @@ class _OpenSession:
         self.history.clear()
         self.explainer.end_run()
         self.signals.forget_before(end)
+
+
+class NeededNodes(Record):
+    """The nodes of a tree on whose rows verdicts depend, where all rows to RUNNING are written.
+
+    Attributes:
+        all: of them.
+        guards: those whose activations need not be shown if they succeed.
+    """
+
+    all: frozenset[int]
+    guards: frozenset[int]
+
+
+def needed_nodes(mission: Candidate, joined: Joined) -> NeededNodes:
+    """The nodes of a tree on whose rows the verdicts of a mission depend."""
+    clauses = [JudgedClause(demand) for demand in demands(mission.requirements)]
+    signals = Signals({}, {})
+    opened = _OpenSession(clauses, joined.tree, joined, signals)
+    Contexts(mission.requirements.contexts).join(joined, signals, opened.history)
+    shown = frozenset((*opened.judged, *opened.history.watched, ROOT))
+    return NeededNodes(shown | opened.guards.needed, frozenset(opened.guards.needed) - shown)
 
 
 def _reading(mission: Candidate, clauses: Sequence[JudgedClause]) -> Iterator[tuple[str, object]]:

@@ -54,6 +54,7 @@ class Guards:
 
     Attributes:
         concerned: those nodes, the guards and the root; other activations need not be passed in.
+        needed: those of them on which what is passed on depends.
         last: the requirement of the guard that last violated something in the open run; empty if none has.
     """
 
@@ -78,6 +79,8 @@ class Guards:
         self._failed: Final[dict[int, Moment]] = {}  # when the condition of a guard failed, until the guard ends
         self._shown: Final[dict[int, Moment]] = {}  # of guards that have not ended: when the node inside last began
         self.concerned: Final = {*judged, *names, ROOT}
+        deciding = {condition for condition, guard in self._holders.items() if guard in self._inside}
+        self.needed: Final = {*judged, *self._inside, *deciding, ROOT}
 
     def see(self, activation: Activation) -> tuple[list[tuple[Activation, Guard | None]], RefusedStart | None]:
         """The activations that can be judged now that this one has ended, each with the guard that stopped it or did
@@ -100,7 +103,9 @@ class Guards:
                 refusal = refusal or refused
         around = self._around.get(uid)
         self._shown.update(dict.fromkeys(around or (), activation.shown))
-        waiting, self._waiting = self._waiting, []
+        waiting: list[tuple[Activation, tuple[int, ...]]] = []
+        if uid in self._guards or uid == ROOT:  # only these settle others
+            waiting, self._waiting = self._waiting, waiting
         for ended, guards in waiting:
             if uid not in guards and uid != ROOT:
                 self._waiting.append((ended, guards))

@@ -31,6 +31,11 @@ class History:
         for uid in uids:
             self._by_node.setdefault(uid, [])
 
+    @property
+    def watched(self) -> frozenset[int]:
+        """The nodes whose activations are kept."""
+        return frozenset(self._by_node)
+
     def add(self, activation: Activation) -> None:
         """Record an activation that has ended."""
         kept = self._by_node.get(activation.uid)

@@ -80,7 +80,7 @@ class ScenarioRun(Record):
 
     def session(self, mission: ScenarioMission) -> LogSession:
         """The run as a log would hold it, with the begin of each node in a row of its own."""
-        rows = _with_begins(self.rows, mission.tree.leaves)
+        rows = with_begins(self.rows, mission.tree.leaves)
         return LogSession(mission.tree, rows, dict(self.entries), signals=self.signals)
 
 
@@ -170,7 +170,7 @@ class _Running:
         except EngineError as error:
             return self._record("is refused" if self._machine is None else "throws", str(error))
         except NotModelled as error:
-            return self._record("unknown", self._why(error))
+            return self._record("unknown", why_unknown(self._machine.nodes if self._machine is not None else (), error))
         except Unanswered as error:
             return self._record("unanswered", error.node.path)
 
@@ -212,15 +212,6 @@ class _Running:
     def _unused(self, machine: Machine) -> tuple[str, ...]:
         started = {start.uid for start in self._starts}
         return unused_lines(self._mission, self._plan, machine, started, self._skills.applied, self._waiting)
-
-    def _why(self, error: NotModelled) -> str:
-        """What is not known: of the value of an entry, who reads and who wrote it."""
-        nodes = self._machine.nodes if self._machine is not None else ()
-        reader = next((node for node in nodes if node.uid == error.uid), None)
-        if not isinstance(error, ValueNeeded) or not isinstance(error.value, Unsaid) or reader is None:
-            return str(error)
-        key = _key_read(reader, error.value) or error.value.key
-        return f"{reader.path} reads {{{key}}}, and {error.value.why}"
 
     def _is_over(self) -> bool:
         """Let the world change as planned; whether the program ticks no more."""
@@ -393,6 +384,15 @@ class _Running:
                         series.add(time, value)
 
 
+def why_unknown(nodes: Sequence[SimulatedNode], error: NotModelled) -> str:
+    """What is not known: of the value of an entry, who of some nodes reads and who wrote it."""
+    reader = next((node for node in nodes if node.uid == error.uid), None)
+    if not isinstance(error, ValueNeeded) or not isinstance(error.value, Unsaid) or reader is None:
+        return str(error)
+    key = _key_read(reader, error.value) or error.value.key
+    return f"{reader.path} reads {{{key}}}, and {error.value.why}"
+
+
 class _NodesNow(Nearby):
     """Which nodes run now."""
 
@@ -407,7 +407,7 @@ class _NodesNow(Nearby):
         return any(node.status == RUNNING and node.uid in uids for node in self._machine.nodes)
 
 
-def _with_begins(rows: Sequence[Transition], leaves: frozenset[int]) -> Iterator[Transition]:
+def with_begins(rows: Sequence[Transition], leaves: frozenset[int]) -> Iterator[Transition]:
     """The rows, with one more where a node that ends at once begins."""
     running: set[int] = set()
     reset = 0  # the node that the row before resets

@@ -44,6 +44,11 @@ def tick_once(machine: Machine) -> int:
     return result
 
 
+def tick_of(driver: Driver) -> Callable[[Machine], int]:
+    """The function with which a program ticks its tree."""
+    return tick_exactly_once if driver.function == "tick_exactly_once" else tick_once
+
+
 def halt_tree(machine: Machine) -> None:
     """Halt the root, and then each node, running or not."""
     for node in (machine.root, *machine.nodes):
@@ -63,7 +68,7 @@ def drive(machine: Machine, driver: Driver, limit: int, is_over: Callable[[], bo
     Raises:
         EngineError: as in the engine.
     """
-    tick = tick_exactly_once if driver.function == "tick_exactly_once" else tick_once
+    tick = tick_of(driver)
     before: object = None
     while not is_over():
         result = tick(machine)

@@ -162,6 +162,7 @@ class Machine:
         world: what nodes read beside entries and the time.
         is_woken: a node has asked to be ticked again at once.
         recall: what ticks a node instead, where what it may do is remembered.
+        passed: says instead whether the time has passed for which a node waits, where times are not kept in nodes.
         skipped: the numbers of the nodes that were skipped at some time.
     """
 
@@ -184,6 +185,7 @@ class Machine:
         self.world: Final = world
         self.is_woken = False
         self.recall: Callable[[SimulatedNode], int] | None = None
+        self.passed: Callable[[SimulatedNode], bool] | None = None
         self.skipped: Final[set[int]] = set()
         self._counts_writes: Final = any(node.rules.counts_writes for node in self.nodes)
 

@@ -93,7 +93,7 @@ def evaluate(node: Expression, board: Board, has_real_truth: bool) -> Value | No
     if isinstance(node, ScriptBinary):
         left = evaluate(node.left, board, has_real_truth)
         right = evaluate(node.right, board, has_real_truth)
-        return _combined(node.operator, _set(left, "left", node.operator), _set(right, "right", node.operator))
+        return combined(node.operator, _set(left, "left", node.operator), _set(right, "right", node.operator))
     if isinstance(node, Unary):
         operand = evaluate(node.operand, board, has_real_truth)
         if operand is None or isinstance(operand, str):
@@ -181,8 +181,12 @@ def _real(value: Value | None) -> float:
     return leading_number(value) if isinstance(value, str) else float(value)
 
 
-def _combined(operator: str, left: Value, right: Value) -> Value:
-    """The value of two operands."""
+def combined(operator: str, left: Value, right: Value) -> Value:
+    """The value of an operator's two operands.
+
+    Raises:
+        EngineError: the operator does not take such operands.
+    """
     if operator not in ("&&", "||"):
         if isinstance(left, Unknown):
             return left.combined(operator, right, is_left=True)
@@ -286,14 +290,14 @@ def _changed(entry: BoardEntry, operator: str, value: Value) -> Value:
     """What an entry holds after `+=` and its like."""
     old = _set(entry.value, "left", operator)
     if isinstance(old, Unknown) or isinstance(value, Unknown):
-        return _combined(operator[0], old, value)
+        return combined(operator[0], old, value)
     if isinstance(value, str):
         if operator != "+=" or not isinstance(old, str):
             raise EngineError("This Assignment operator can't be used with a non-numeric type")
         return old + value
     if isinstance(old, str):
         raise EngineError("This Assignment operator can't be used with a non-numeric type")
-    return copied(_combined(operator[0], float(old), float(value)), old)
+    return copied(combined(operator[0], float(old), float(value)), old)
 
 
 _TURNED: Final = {"<": ">", ">": "<", "<=": ">=", ">=": "<="}

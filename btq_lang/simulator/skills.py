@@ -5,7 +5,7 @@ One invariant: a condition is never assumed; an action of which nothing is given
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Final
 
 from btq_lang.simulator.blackboard import UNTYPED, Unknown, Unsaid, Value
@@ -155,14 +155,15 @@ class Skills:
         if node.id in self._conditions:
             result = self._answer(node)
             given = self._given(node)
-            self._write(node, given.writes or () if given is not None else (), only_empty=True)
+            writes = given.writes or () if given is not None else ()
+            self._write(node, writes, only_empty=True)
             return result
         activation = self._open.get(node.uid) if node.status == RUNNING else None
         if activation is None:
             activation = self._open[node.uid] = self._begun(node)
         if activation.end == NEVER or self.machine.now < activation.end:
             if not activation.writes:
-                self._write_unsaid(node, (), only_empty=True)
+                self._write(node, only_empty=True)
             return RUNNING
         del self._open[node.uid]
         self._write(node, activation.writes, is_skipped=activation.result == SKIPPED)
@@ -187,47 +188,11 @@ class Skills:
             self._write(node, given.writes or () if given is not None else ())
 
     def _write(
-        self, node: SimulatedNode, writes: Sequence[Write], only_empty: bool = False, is_skipped: bool = False
+        self, node: SimulatedNode, writes: Sequence[Write] = (), only_empty: bool = False, is_skipped: bool = False
     ) -> None:
-        """Write what is given, and unknown values into the entries of the other outputs.
-
-        Args:
-            only_empty: as of `_write_unsaid`; what is given is written where it is another value.
-            is_skipped: the others are not written.
-        """
-        keys = [key_of(node.ports.get(write.key, ""), write.key) or write.key for write in writes]
-        if not is_skipped:
-            self._write_unsaid(node, keys, only_empty)
-        for key, write in zip(keys, writes, strict=True):
-            entry = node.board.entry(key)
-            if only_empty and entry is not None and entry.value == write.value:
-                continue  # a tick that changes nothing can be passed over
-            self._put(node, key, write.value, write.type)
-
-    def _write_unsaid(self, node: SimulatedNode, given: Iterable[str], only_empty: bool = False) -> None:
-        """Write unknown values into the entries of outputs of which no value is given.
-
-        Args:
-            given: the entries of which one is.
-            only_empty: entries with a value keep it: the readings that a condition copies are given, and a skill that
-                runs may write later.
-        """
-        if self._outputs is None:
-            return
-        outputs = self._outputs.get(node.id)
-        for port in node.ports if outputs is None else outputs:
-            key = key_of(node.ports.get(port, ""), port)
-            if key is None or key in given:
-                continue
-            entry = node.board.entry(key)
-            is_empty = entry is None or entry.value is None
-            if is_empty or not (only_empty or outputs is None):
-                self._put(node, key, Unsaid(node.path, key), entry.type if entry is not None else UNTYPED)
-
-    def _put(self, node: SimulatedNode, key: str, value: Value, type_: str) -> None:
+        written = write_outputs(node, self._outputs, writes, only_empty, is_skipped)
         if self.writes is not None:
-            self.writes.append(Write(key, value, type_))
-        node.board.give(key, value, type_)
+            self.writes += written
 
     def halt(self, node: SimulatedNode) -> None:
         """Halt a skill that runs."""
@@ -280,6 +245,52 @@ class Skills:
                 of_this.writes if merged.writes is None else merged.writes,
             )
         return merged
+
+
+def write_outputs(
+    node: SimulatedNode,
+    outputs: Mapping[str, tuple[str, ...]] | None,
+    writes: Sequence[Write] = (),
+    only_empty: bool = False,
+    is_skipped: bool = False,
+) -> Sequence[Write]:
+    """Write what a skill writes, and unknown values into the entries of its other outputs; all of it, with the keys of
+    entries.
+
+    Args:
+        outputs: the ports through which skills write, by their registered names; None: nothing is known of any, and
+            only `writes` are written.  A skill without a name here is taken to write into those of its entries that are
+            empty.
+        writes: of which the values are given.
+        only_empty: entries with a value keep it: the readings that a condition copies are given, and a skill that runs
+            may write later.  What is given is written where it is another value.
+        is_skipped: only what is given is written.
+    """
+    keys = [key_of(node.ports.get(write.key, ""), write.key) or write.key for write in writes]
+    written: list[Write] = []
+    if not is_skipped and outputs is not None:
+        written += _unsaid(node, outputs.get(node.id), keys, only_empty)
+    for key, write in zip(keys, writes, strict=True):
+        entry = node.board.entry(key)
+        if only_empty and entry is not None and entry.value == write.value:
+            continue  # a tick that changes nothing can be passed over
+        written.append(Write(key, write.value, write.type))
+    for write in written:
+        node.board.give(write.key, write.value, write.type)
+    return written
+
+
+def _unsaid(
+    node: SimulatedNode, outputs: tuple[str, ...] | None, given: Sequence[str], only_empty: bool
+) -> Iterator[Write]:
+    for port in node.ports if outputs is None else outputs:
+        key = key_of(node.ports.get(port, ""), port)
+        if key is None or key in given:
+            continue
+        entry = node.board.entry(key)
+        is_empty = entry is None or entry.value is None
+        if is_empty or not (only_empty or outputs is None):
+            yield Write(key, Unsaid(node.path, key), entry.type if entry is not None else UNTYPED)
 
 
 class _Activation(Record):

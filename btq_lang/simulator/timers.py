@@ -89,14 +89,14 @@ def halt_sleep(machine: Machine, node: SimulatedNode) -> None:
 
 def after(machine: Machine, seconds: float) -> int:
     """The first millisecond at which so many seconds from now have passed."""
-    wait = max(min(_ENDLESS, seconds * 1_000), 0.0)
+    wait = max(min(ENDLESS, seconds * 1_000), 0.0)
     whole = round(wait)
-    return machine.now + whole + (whole / 1_000 < seconds and wait < _ENDLESS)
+    return machine.now + whole + (whole / 1_000 < seconds and wait < ENDLESS)
 
 
 def has_passed(machine: Machine, node: SimulatedNode) -> bool:
     """Whether the time has passed for which a node waits; it has if the node never began to wait."""
-    return node.due <= machine.now
+    return node.due <= machine.now if machine.passed is None else machine.passed(node)
 
 
 def next_due(machine: Machine) -> int:
@@ -106,7 +106,7 @@ def next_due(machine: Machine) -> int:
 
 def next_passing(machine: Machine) -> int:
     """When the next time has passed for which a node waits; `NEVER` if none waits."""
-    return min([node.due for node in machine.watching if machine.now < node.due < _ENDLESS], default=NEVER)
+    return min([node.due for node in machine.watching if machine.now < node.due < ENDLESS], default=NEVER)
 
 
 def advance(machine: Machine, now: int) -> None:
@@ -132,4 +132,4 @@ def fire(machine: Machine, node: SimulatedNode) -> None:
     machine.is_woken = True
 
 
-_ENDLESS: Final = 1e15  # milliseconds
+ENDLESS: Final = 1e15  # milliseconds

@@ -62,6 +62,7 @@ RUN_BY = {
     "btq scenario": "scenarios/test_scenario_page.py",
     "what-can-happen.md xml": "exploration/test_explore_page.py",
     "what-can-happen.md console": "exploration/test_explore_page.py",
+    "how-likely.md console": "prediction/test_how_likely_page.py",
     "test-a-mission.md xml": "scenarios/test_scenario_page.py",
     "test-a-mission.md console": "scenarios/test_scenario_page.py",
     "yaml": "test_ci_knows_its_names",

@@ -25,6 +25,7 @@ WRITERS = {
     "evidence/markdown.py": "Markdown, in which only HTML ends a line of a table",
     "graph/mermaid.py": "Mermaid, in which only HTML ends a line",
     "graph/svg.py": "SVG, its links, its style sheet and the titles of boxes",
+    "prediction/markdown.py": "Markdown, in which only HTML ends a line of a table",
     "render/chart.py": "SVG, the titles of values and marks",
     "simulator/nav2.py": "XML, in a message of Nav2",
     "trace/markdown.py": "Markdown, in which only HTML ends a line of a table",
