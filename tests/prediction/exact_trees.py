@@ -1,7 +1,8 @@
-"""Trees that are drawn, of all nodes that can be folded, with skills that are drawn: what is folded and what runs show."""
+"""Trees of all nodes that can be folded, and skills, which are drawn: what is folded and what runs show."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import sqrt
 from random import Random
 
@@ -16,9 +17,9 @@ from btq_lang.workspace.workspace import Workspace
 SKILLS = tuple("ABCDE")
 
 
-def prepared_tree(tree: str, settings: str) -> PreparedMission:
-    """A tree of the actions `SKILLS`."""
-    leaves = "".join(f"Action {name}\n" for name in SKILLS)
+def prepared_tree(tree: str, settings: str, names: Iterable[str] = SKILLS) -> PreparedMission:
+    """A tree of actions by their names."""
+    leaves = "".join(f"Action {name}\n" for name in names)
     text = f"Root Main\n{leaves}BehaviorTree Main\n{tree}"
     return with_settings(mission_of(Workspace.of({"m.btq": text}, Project()), "m.btq"), settings, with_all_rows=False)
 

@@ -66,7 +66,7 @@ class Fold:
         return self._folded[key]
 
     def _made(self, node: SimulatedNode, memory: Memory) -> Folded:
-        if node.conditions or node.scripts:
+        if node.conditions or any(name.startswith("_") for name in node.scripts):
             raise NotExact(node, "scripts decide what it does, by entries")
         flow = node.rules.flow
         if flow in _OF_LEAVES:

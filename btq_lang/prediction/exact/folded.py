@@ -57,7 +57,7 @@ class Folded(Record):
 
     def probability(self, result: int) -> Probability:
         """How likely it has a result; of RUNNING, how likely it does not end."""
-        return sum([each.probability for each in self.outcomes if each.result == result], ZERO)
+        return min(sum([each.probability for each in self.outcomes if each.result == result], ZERO), _SURE)
 
     def takes(self, *results: int) -> Times | None:
         """How long it takes if it has one of some results, by default if it ends; None: it never does."""
@@ -97,3 +97,4 @@ def _joined(result: int, memory: Memory, ways: list[Outcome]) -> Outcome:
 
 
 ZERO: Final[Probability] = Fraction(0)
+_SURE: Final[Probability] = Fraction(1)  # sums of rounded numbers may be more

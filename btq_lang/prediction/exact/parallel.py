@@ -29,7 +29,10 @@ def together(children: Sequence[Folded], ends: Ends) -> Folded:
     totals: dict[int, Probability] = {result: sum(by_time.values()) for result, by_time in masses.items()}
     doubt = sum(child.doubt for child in children)
     if depends_on_order(len(children), ends):
-        totals[RUNNING] = 1 - sum(totals.values())
+        ended = float(sum(totals.values()))
+        endless = max(1 - ended, 0.0) if any(child.is_endless for child in children) else 0.0
+        totals = {result: total / (ended + endless) for result, total in totals.items()}
+        totals[RUNNING] = endless
         doubt += strays + _doubt(children, ends, error, totals[SUCCESS])
     else:
         totals = _totals(children, ends)

@@ -26,8 +26,8 @@ class Times(Record):
         strays: the probability of durations that are farther from their points.
     """
 
-    points: Sequence[int]
-    masses: Sequence[float]
+    points: tuple[int, ...]
+    masses: tuple[float, ...]
     error: int = 0
     strays: float = 0.0
 
@@ -48,7 +48,7 @@ class Times(Record):
         number = bisect_left(self.points, limit)
         if not self.doubt(limit) and number in (0, len(self.points)):
             return int(number > 0)
-        return sum(self.masses[:number])
+        return min(sum(self.masses[:number]), 1.0)
 
     def doubt(self, limit: int) -> float:
         """How wrong that may be."""
@@ -59,7 +59,7 @@ class Times(Record):
         """The distribution of those that are shorter than a limit; there must be some."""
         number = bisect_left(self.points, limit)
         share = sum(self.masses[:number])
-        masses = [mass / share for mass in self.masses[:number]]
+        masses = tuple([mass / share for mass in self.masses[:number]])
         return Times(self.points[:number], masses, self.error, self.strays / share)
 
 
@@ -177,7 +177,7 @@ def _gathered(pairs: Iterable[tuple[int, float]], error: int, strays: float = 0.
             masses[point] = masses.get(point, 0.0) + mass
     points = sorted(masses)
     total = sum(masses.values())
-    return Times(points, [masses[point] / total for point in points], error, strays)
+    return Times(tuple(points), tuple([masses[point] / total for point in points]), error, strays)
 
 
 def of_masses(masses: Mapping[int, float], error: int, strays: float = 0.0) -> Times:
