@@ -42,7 +42,14 @@ class Fold:
         changed: values of ports in place of the written ones, by the numbers of nodes and the ports.
     """
 
-    def __init__(self, skills: Mapping[int, Skill], changed: Mapping[tuple[int, str], int] | None = None) -> None:
+    def __init__(
+        self,
+        skills: Mapping[int, Skill],
+        changed: Mapping[tuple[int, str], int] | None = None,
+        stepped: Callable[[], None] = lambda: None,
+    ) -> None:
+        """Know skills, by the numbers of nodes; `stepped`: called before each step; what it raises ends the fold."""
+        self._stepped: Final = stepped
         self._skills: Final = skills
         self.changed: Final = changed or {}
         self._folded: Final[dict[tuple[int, Memory], Folded]] = {}
@@ -124,7 +131,10 @@ class Fold:
     ) -> Folded:
         """Children in order from `first` on, while they have the result `goes_on`."""
         walk = _Walk(self, memory)
+        passed = [each for each in node.children if goes_on == SUCCESS and _only_looks(each)]
         for place in range(first, len(node.children)):
+            if node.children[place] in passed and len(passed) < len(node.children):
+                continue  # it succeeds at once, or is skipped
             kept = frozenset({(node.uid, place)}) if keeps_place and place else frozenset()
             walk.step(node.children[place], goes_on, kept)
         return walk.ended(goes_on)
@@ -256,6 +266,7 @@ class Fold:
         Raises:
             NotExact: that was very often.
         """
+        self._stepped()
         self._steps += 1
         if self._steps > _MOST_STEPS:
             raise NotExact(node, "there are too many ways to come to it")
@@ -308,6 +319,16 @@ class _Walk:
         return folded([*self._ways, *last], self._doubt)
 
 
+def _only_looks(node: SimulatedNode) -> bool:
+    """Whether a node only gives values to entries without one: what `first_values` of `btcpp/wrappers.py` makes."""
+    if node.rules.flow is not decorators.tick_run_once or node.child.rules.flow is not decorators.tick_force_success:
+        return False
+    return all(
+        each.rules.flow in _LOOKING and not each.conditions and set(each.scripts) <= _SETTING
+        for each in _with_all_below(node.child.child)
+    )
+
+
 def _with_all_below(node: SimulatedNode) -> Iterator[SimulatedNode]:
     yield node
     for child in node.children:
@@ -344,6 +365,8 @@ _FOLDS: Final[dict[Flow, Callable[[Fold, SimulatedNode, Memory], Folded]]] = {
     timers.tick_delay: Fold.delay,
     timers.tick_timeout: Fold.timeout,
 }
+_LOOKING: Final = (controls.tick_parallel_all, leaves.tick_was_entry_updated)
+_SETTING: Final = {"_onFailure"}
 _REACTIVE: Final = "it asks children again at each tick"
 _ENTRIES: Final = "what it does depends on entries, or entries depend on it"
 _REASONS: Final[dict[Flow, str]] = {

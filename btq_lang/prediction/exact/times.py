@@ -15,6 +15,10 @@ from btq_lang.prediction.declared import quantile, share_within
 from btq_lang.util.record import Record
 from btq_lang.workspace.project_simulation import Spread
 
+MOST: Final = 512  # points of a sum
+_MOST_MIXED: Final = 4096  # of one of several, which has those of all
+_MOST_OF_SKILL: Final = 4096
+
 
 class Times(Record):
     """A distribution of durations.
@@ -107,7 +111,7 @@ def mixed(parts: Sequence[tuple[float, Times]]) -> Times:
         for point, mass in zip(times.points, times.masses, strict=True)
     )
     strays = sum(weight / total * times.strays for weight, times in parts)
-    return coarsened(_gathered(pairs, max(times.error for _, times in parts), strays))
+    return coarsened(_gathered(pairs, max(times.error for _, times in parts), strays), most=_MOST_MIXED)
 
 
 def added(first: Times, second: Times) -> Times:
@@ -157,12 +161,12 @@ def _joined(row: Sequence[int]) -> int:
     return int.from_bytes(b"".join([each.to_bytes(_BYTES, "little") for each in row]), "little")
 
 
-def coarsened(times: Times, step: int = 0) -> Times:
-    """The same on a grid, counted from the first point; `step`: 0: as is needed to have few points."""
+def coarsened(times: Times, step: int = 0, most: int = MOST) -> Times:
+    """The same on a grid, counted from the first point; `step`: 0: as is needed to have at most so many points."""
     if not step:
-        if len(times.points) <= MOST:
+        if len(times.points) <= most:
             return times
-        step = -(-(times.points[-1] - times.points[0]) // (MOST - 1))
+        step = -(-(times.points[-1] - times.points[0]) // (most - 1))
     first = times.points[0]
     near = [first + (point - first + step // 2) // step * step for point in times.points]
     moved = max(abs(point - its) for point, its in zip(times.points, near, strict=True))
@@ -185,8 +189,6 @@ def of_masses(masses: Mapping[int, float], error: int, strays: float = 0.0) -> T
     return coarsened(_gathered(masses.items(), error, strays))
 
 
-MOST: Final = 512  # points
-_MOST_OF_SKILL: Final = 4096  # of the distribution of a skill itself, which is only counted and moved to another grid
 _FEW: Final = 4096
 _TAIL: Final = 1e-6
 _ROUNDING: Final = 1e-12
