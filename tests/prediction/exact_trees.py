@@ -17,10 +17,10 @@ from btq_lang.workspace.workspace import Workspace
 SKILLS = tuple("ABCDE")
 
 
-def prepared_tree(tree: str, settings: str, names: Iterable[str] = SKILLS) -> PreparedMission:
-    """A tree of actions by their names."""
+def prepared_tree(tree: str, settings: str, names: Iterable[str] = SKILLS, more: str = "") -> PreparedMission:
+    """A tree of actions by their names; `more`: other items of its file."""
     leaves = "".join(f"Action {name}\n" for name in names)
-    text = f"Root Main\n{leaves}BehaviorTree Main\n{tree}"
+    text = f"Root Main\n{more}{leaves}BehaviorTree Main\n{tree}"
     return with_settings(mission_of(Workspace.of({"m.btq": text}, Project()), "m.btq"), settings, with_all_rows=False)
 
 

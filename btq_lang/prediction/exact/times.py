@@ -177,10 +177,10 @@ def _gathered(pairs: Iterable[tuple[int, float]], error: int, strays: float = 0.
     """The distribution of points in any order, whose masses add up to about 1."""
     masses: dict[int, float] = {}
     for point, mass in pairs:
-        if mass > 0:
-            masses[point] = masses.get(point, 0.0) + mass
-    points = sorted(masses)
-    total = sum(masses.values())
+        masses[point] = masses.get(point, 0.0) + mass
+    least = sum(masses.values()) * _ROUNDING
+    points = sorted(point for point, mass in masses.items() if mass > least)
+    total = sum(masses[point] for point in points)
     return Times(tuple(points), tuple([masses[point] / total for point in points]), error, strays)
 
 
@@ -191,6 +191,6 @@ def of_masses(masses: Mapping[int, float], error: int, strays: float = 0.0) -> T
 
 _FEW: Final = 4096
 _TAIL: Final = 1e-6
-_ROUNDING: Final = 1e-12
+_ROUNDING: Final = 1e-12  # of sums of some thousand numbers
 _UNIT: Final = 1 << 60
 _BYTES: Final = 16  # 120 bits of a product of two sums of at most `_UNIT`, and some to spare
