@@ -12,7 +12,7 @@ from btq_lang.evidence.identity import without_number
 from btq_lang.evidence.wording import duration, share
 from btq_lang.ide.meaning import ReferenceAt
 from btq_lang.prediction.declared import declared_world
-from btq_lang.prediction.exact import Fold, Folded, NotExact
+from btq_lang.prediction.exact import Folded, NotExact, TreeFold
 from btq_lang.prediction.prepared import prepared
 from btq_lang.scenarios.mission import NotRunnable, ScenarioMission, as_program
 from btq_lang.simulator.decorators import tick_retry
@@ -105,7 +105,7 @@ class _FoldedTree:
 
     def fold(self, node: SimulatedNode, changed: Mapping[tuple[int, str], int] | None = None) -> Folded:
         """A node; `changed`: other values of ports."""
-        return Fold(self._skills, changed, self._step).of(node)
+        return TreeFold(self._skills, changed, self._step).of(node)
 
     def _step(self) -> None:
         if self._is_cancelled():

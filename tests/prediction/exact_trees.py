@@ -8,7 +8,7 @@ from random import Random
 
 from test_drawn_runs import mission_of, with_settings
 
-from btq_lang.prediction.exact import Fold, Folded
+from btq_lang.prediction.exact import Folded, TreeFold
 from btq_lang.prediction.prepared import PreparedMission
 from btq_lang.simulator.nodes import SUCCESS
 from btq_lang.workspace.config import Project
@@ -26,7 +26,7 @@ def prepared_tree(tree: str, settings: str, names: Iterable[str] = SKILLS, more:
 
 def fold_of(prepared: PreparedMission) -> Folded:
     robot = prepared.loaded.robot
-    return Fold(robot.skills).of(robot.machine.root)
+    return TreeFold(robot.skills).of(robot.machine.root)
 
 
 def drawn_tree(random: Random, indent: int = 4, depth: int = 3, may_keep: bool = True) -> str:

@@ -12,7 +12,7 @@ from test_published_numbers import FETCH, sequence, with_memory
 from test_published_numbers import SKILLS as OF_FETCH
 
 from btq_lang.prediction.declared import DeclaredSkill
-from btq_lang.prediction.exact import Fold, Folded, NotExact, exact_success
+from btq_lang.prediction.exact import Folded, NotExact, TreeFold, exact_success
 from btq_lang.prediction.exact.times import MOST, Times, added, at, of_skill
 from btq_lang.prediction.measured import MeasuredActivation, MeasuredSkill
 from btq_lang.prediction.prepared import PreparedMission
@@ -146,8 +146,8 @@ def test_a_skill_that_runs_on_never_ends_but_for_a_timeout() -> None:
     prepared = prepared_tree("    Timeout (msec = 8000)\n        A\n", FIXED)
     machine = prepared.loaded.robot.machine
     skills: dict[int, Skill] = dict.fromkeys(prepared.loaded.robot.skills, skill)
-    assert Fold(skills).of(machine.root.child).probability(RUNNING) == pytest.approx(0.5)
-    whole = Fold(skills).of(machine.root)
+    assert TreeFold(skills).of(machine.root.child).probability(RUNNING) == pytest.approx(0.5)
+    whole = TreeFold(skills).of(machine.root)
     assert not whole.is_endless
     assert whole.takes(FAILURE) == at(8000)
     assert whole.success == pytest.approx(0.5)

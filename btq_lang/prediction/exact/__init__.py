@@ -8,8 +8,8 @@ One invariant: what it says agrees with drawn runs, and where it cannot be certa
     parallel.py   children that run at the same time
 """
 
-from btq_lang.prediction.exact.fold import PERIOD, Fold, exact_success
-from btq_lang.prediction.exact.folded import Folded, NotExact, Outcome
+from btq_lang.prediction.exact.fold import PERIOD, TreeFold, exact_success
+from btq_lang.prediction.exact.folded import Folded, FoldedOutcome, NotExact
 from btq_lang.prediction.exact.times import Times
 
-__all__ = ["PERIOD", "Fold", "Folded", "NotExact", "Outcome", "Times", "exact_success"]
+__all__ = ["PERIOD", "Folded", "FoldedOutcome", "NotExact", "Times", "TreeFold", "exact_success"]

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
 from typing import Final, TypeAlias
 
-from btq_lang.prediction.exact.folded import Folded, Memory, NotExact, Outcome, folded
+from btq_lang.prediction.exact.folded import Folded, FoldedOutcome, Memory, NotExact, folded
 from btq_lang.prediction.exact.parallel import Ends, depends_on_order, together
 from btq_lang.prediction.exact.times import Times, added, at, of_skill
 from btq_lang.prediction.skill import Probability, Skill
@@ -32,10 +32,10 @@ def exact_success(root: SimulatedNode, skills: Mapping[int, Skill]) -> Probabili
     Raises:
         NotExact: it cannot be folded.
     """
-    return Fold(skills).of(root).success
+    return TreeFold(skills).of(root).success
 
 
-class Fold:
+class TreeFold:
     """Folds nodes whose actions do what is known of them.
 
     Attributes:
@@ -100,18 +100,20 @@ class Fold:
         if skill.keys:
             raise NotExact(node, "scripts say what it writes, by entries")
         return folded(
-            Outcome(each.result, each.probability, of_skill(each.takes, PERIOD) if each.takes is not None else None)
+            FoldedOutcome(
+                each.result, each.probability, of_skill(each.takes, PERIOD) if each.takes is not None else None
+            )
             for each in skill.outcomes()
         )
 
     def success(self, node: SimulatedNode) -> Folded:
-        return folded([Outcome(SUCCESS, _SURE, _NO_TIME)])
+        return folded([FoldedOutcome(SUCCESS, _SURE, _NO_TIME)])
 
     def failure(self, node: SimulatedNode) -> Folded:
-        return folded([Outcome(FAILURE, _SURE, _NO_TIME)])
+        return folded([FoldedOutcome(FAILURE, _SURE, _NO_TIME)])
 
     def sleep(self, node: SimulatedNode) -> Folded:
-        return folded([Outcome(SUCCESS, _SURE, at(self.number(node, "msec", 0)))])
+        return folded([FoldedOutcome(SUCCESS, _SURE, at(self.number(node, "msec", 0)))])
 
     # ---- one child after the other ----
 
@@ -172,7 +174,7 @@ class Fold:
     def _mapped(self, node: SimulatedNode, memory: Memory, results: Mapping[int, int]) -> Folded:
         child = self.of(node.child, memory)
         outcomes = [
-            Outcome(results.get(each.result, each.result), each.probability, each.takes, each.memory)
+            FoldedOutcome(results.get(each.result, each.result), each.probability, each.takes, each.memory)
             for each in child.outcomes
         ]
         return folded(outcomes, child.doubt)
@@ -181,7 +183,7 @@ class Fold:
         wait = at(self.number(node, "delay_msec", 0))
         child = self.of(node.child, memory)
         outcomes = [
-            Outcome(each.result, each.probability, added(wait, each.takes) if each.takes else None, each.memory)
+            FoldedOutcome(each.result, each.probability, added(wait, each.takes) if each.takes else None, each.memory)
             for each in child.outcomes
         ]
         return folded(outcomes, child.doubt)
@@ -192,16 +194,16 @@ class Fold:
             return self.of(node.child, memory)
         self._refuse_memory(node, "halts")
         child = self.of(node.child)
-        outcomes: list[Outcome] = []
+        outcomes: list[FoldedOutcome] = []
         doubt = child.doubt
         for each in child.outcomes:
             if each.takes is None:
-                outcomes.append(Outcome(FAILURE, each.probability, at(limit)))
+                outcomes.append(FoldedOutcome(FAILURE, each.probability, at(limit)))
                 continue
             share = each.takes.below(limit)
             if share:
-                outcomes.append(Outcome(each.result, each.probability * share, each.takes.cut(limit)))
-            outcomes.append(Outcome(FAILURE, each.probability * (1 - share), at(limit)))
+                outcomes.append(FoldedOutcome(each.result, each.probability * share, each.takes.cut(limit)))
+            outcomes.append(FoldedOutcome(FAILURE, each.probability * (1 - share), at(limit)))
             doubt += float(each.probability) * each.takes.doubt(limit)
         return folded(outcomes, doubt)
 
@@ -279,10 +281,10 @@ class Fold:
 class _Walk:
     """Activations one after the other: how likely which one has come how far."""
 
-    def __init__(self, fold: Fold, memory: Memory) -> None:
+    def __init__(self, fold: TreeFold, memory: Memory) -> None:
         self._fold: Final = fold
         self._places: dict[Memory, Place] = {memory: (_SURE, _NO_TIME)}
-        self._ways: Final[list[Outcome]] = []
+        self._ways: Final[list[FoldedOutcome]] = []
         self._doubt = 0.0
 
     def step(self, child: SimulatedNode, goes_on: int, kept: Memory = frozenset()) -> None:
@@ -291,7 +293,7 @@ class _Walk:
         Args:
             kept: what is kept in addition, if it ends here.
         """
-        outcomes: list[Outcome] = []
+        outcomes: list[FoldedOutcome] = []
         below = self._fold.keeping(child)
         for memory, (probability, takes) in self._places.items():
             child_folded = self._fold.of(child, memory)
@@ -300,7 +302,7 @@ class _Walk:
             for each in child_folded.outcomes:
                 self._fold.count(child)
                 after = added(takes, each.takes) if each.takes is not None else None
-                outcomes.append(Outcome(each.result, probability * each.probability, after, others | each.memory))
+                outcomes.append(FoldedOutcome(each.result, probability * each.probability, after, others | each.memory))
         joined = folded(outcomes).outcomes
         self._places = {
             each.memory: (each.probability, each.takes)
@@ -308,14 +310,14 @@ class _Walk:
             if each.result == goes_on and each.takes is not None
         }
         self._ways.extend(
-            Outcome(each.result, each.probability, each.takes, each.memory | kept)
+            FoldedOutcome(each.result, each.probability, each.takes, each.memory | kept)
             for each in joined
             if each.result != goes_on
         )
 
     def ended(self, goes_on: int) -> Folded:
         """All ways to end; `goes_on`: the result if the last child had it."""
-        last = [Outcome(goes_on, *place, memory) for memory, place in self._places.items()]
+        last = [FoldedOutcome(goes_on, *place, memory) for memory, place in self._places.items()]
         return folded([*self._ways, *last], self._doubt)
 
 
@@ -344,26 +346,26 @@ _TIMES: Final[dict[Flow, str]] = {
     timers.tick_delay: "delay_msec",
     timers.tick_sleep: "msec",
 }
-_OF_LEAVES: Final[dict[Flow, Callable[[Fold, SimulatedNode], Folded]]] = {
-    leaves.tick_custom: Fold.skill,
-    leaves.tick_always_success: Fold.success,
-    leaves.tick_always_failure: Fold.failure,
-    timers.tick_sleep: Fold.sleep,
+_OF_LEAVES: Final[dict[Flow, Callable[[TreeFold, SimulatedNode], Folded]]] = {
+    leaves.tick_custom: TreeFold.skill,
+    leaves.tick_always_success: TreeFold.success,
+    leaves.tick_always_failure: TreeFold.failure,
+    timers.tick_sleep: TreeFold.sleep,
 }
-_FOLDS: Final[dict[Flow, Callable[[Fold, SimulatedNode, Memory], Folded]]] = {
-    controls.tick_sequence: Fold.sequence,
-    controls.tick_fallback: Fold.fallback,
-    controls.tick_sequence_with_memory: Fold.sequence_with_memory,
-    controls.tick_parallel: Fold.parallel,
-    controls.tick_parallel_all: Fold.parallel_all,
-    decorators.tick_subtree: Fold.subtree,
-    decorators.tick_inverter: Fold.inverter,
-    decorators.tick_force_success: Fold.force_success,
-    decorators.tick_force_failure: Fold.force_failure,
-    decorators.tick_repeat: Fold.repeat,
-    decorators.tick_retry: Fold.retry,
-    timers.tick_delay: Fold.delay,
-    timers.tick_timeout: Fold.timeout,
+_FOLDS: Final[dict[Flow, Callable[[TreeFold, SimulatedNode, Memory], Folded]]] = {
+    controls.tick_sequence: TreeFold.sequence,
+    controls.tick_fallback: TreeFold.fallback,
+    controls.tick_sequence_with_memory: TreeFold.sequence_with_memory,
+    controls.tick_parallel: TreeFold.parallel,
+    controls.tick_parallel_all: TreeFold.parallel_all,
+    decorators.tick_subtree: TreeFold.subtree,
+    decorators.tick_inverter: TreeFold.inverter,
+    decorators.tick_force_success: TreeFold.force_success,
+    decorators.tick_force_failure: TreeFold.force_failure,
+    decorators.tick_repeat: TreeFold.repeat,
+    decorators.tick_retry: TreeFold.retry,
+    timers.tick_delay: TreeFold.delay,
+    timers.tick_timeout: TreeFold.timeout,
 }
 _LOOKING: Final = (controls.tick_parallel_all, leaves.tick_was_entry_updated)
 _SETTING: Final = {"_onFailure"}

@@ -28,7 +28,7 @@ class NotExact(Exception):
         self.reason: Final = reason
 
 
-class Outcome(Record):
+class FoldedOutcome(Record):
     """One way in which an activation may end.
 
     Attributes:
@@ -52,7 +52,7 @@ class Folded(Record):
         doubt: how wrong probabilities may be, because durations are on a grid.
     """
 
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[FoldedOutcome, ...]
     doubt: float = 0.0
 
     def probability(self, result: int) -> Probability:
@@ -80,9 +80,9 @@ class Folded(Record):
         return bool(self.probability(RUNNING))
 
 
-def folded(outcomes: Iterable[Outcome], doubt: float = 0.0) -> Folded:
+def folded(outcomes: Iterable[FoldedOutcome], doubt: float = 0.0) -> Folded:
     """Ways to end, those with the same result and memory as one."""
-    ways: dict[tuple[int, Memory], list[Outcome]] = {}
+    ways: dict[tuple[int, Memory], list[FoldedOutcome]] = {}
     for each in outcomes:
         if each.probability:
             memory = each.memory if each.result != RUNNING else frozenset()
@@ -90,10 +90,10 @@ def folded(outcomes: Iterable[Outcome], doubt: float = 0.0) -> Folded:
     return Folded(tuple(_joined(result, memory, each) for (result, memory), each in ways.items()), doubt)
 
 
-def _joined(result: int, memory: Memory, ways: list[Outcome]) -> Outcome:
+def _joined(result: int, memory: Memory, ways: list[FoldedOutcome]) -> FoldedOutcome:
     probability = sum([each.probability for each in ways], ZERO)
     parts = [(float(each.probability), each.takes) for each in ways if each.takes is not None]
-    return Outcome(result, probability, mixed(parts) if parts else None, memory)
+    return FoldedOutcome(result, probability, mixed(parts) if parts else None, memory)
 
 
 ZERO: Final[Probability] = Fraction(0)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
-from btq_lang.prediction.exact.folded import ZERO, Folded, Outcome, folded
+from btq_lang.prediction.exact.folded import ZERO, Folded, FoldedOutcome, folded
 from btq_lang.prediction.exact.times import of_masses
 from btq_lang.prediction.skill import Probability
 from btq_lang.simulator.nodes import FAILURE, RUNNING, SUCCESS
@@ -37,11 +37,11 @@ def together(children: Sequence[Folded], ends: Ends) -> Folded:
     else:
         totals = _totals(children, ends)
     outcomes = [
-        Outcome(result, totals[result], of_masses(by_time, error, strays))
+        FoldedOutcome(result, totals[result], of_masses(by_time, error, strays))
         for result, by_time in masses.items()
         if by_time and totals[result]
     ]
-    return folded([*outcomes, Outcome(RUNNING, totals[RUNNING], None)], doubt)
+    return folded([*outcomes, FoldedOutcome(RUNNING, totals[RUNNING], None)], doubt)
 
 
 def depends_on_order(size: int, ends: Ends) -> bool:
