@@ -197,3 +197,13 @@ def test_what_cannot_be_folded(tree: str, reason: str) -> None:
         fold_of(prepared)
     assert raised.value.reason == reason
     assert raised.value.node.path in str(raised.value)
+
+
+def test_runs_tick_as_the_fold_supposes() -> None:
+    prepared = prepared_tree(
+        "    Sequence\n        A\n        E\n",
+        FIXED.replace('"4 s"', '"0.012 s"').replace('"1 s", "3 s"', '"0.011 s", "0.019 s"'),
+    )
+    folded = fold_of(prepared)
+    assert {prepared.loaded.run(1, number).now for number in range(100)} == {20, 40}
+    assert {each.takes.points for each in folded.outcomes if each.takes is not None} == {(40,), (20, 40)}
