@@ -239,6 +239,17 @@ def condition_as_event(cursor: Cursor, path: Subject | None, start: int) -> bool
     return True
 
 
+def every_in_event(cursor: Cursor) -> None:
+    """Report and skip the first word of `every Spread fails`, where an event is about one node."""
+    following = cursor.index + 1
+    if not cursor.at_word("every") or cursor.kinds[following] != NAME or cursor.raws[following] in HAPPENINGS:
+        return
+    fix = replace_fix("Remove `every`", Span(cursor.here().start, cursor.starts[following]), "")
+    note = "for any of several nodes write `X fails or Y fails`"
+    cursor.complain(cursor.here(), "an event is about one node, without `every`", fix, notes=(note,))
+    cursor.advance()
+
+
 def blank_in_path(cursor: Cursor, path: Subject | None, follow: frozenset[str]) -> bool:
     """Report `Inspect Dock succeeds`, where a path is written `Inspect/Dock`, and skip the rest."""
     index = cursor.index

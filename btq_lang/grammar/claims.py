@@ -15,6 +15,7 @@ from btq_lang.grammar.claim_mistakes import (
     choice_in_other_words,
     condition_as_event,
     event_after_condition,
+    every_in_event,
     every_meant,
     is_time,
     is_unit_of_time,
@@ -270,6 +271,7 @@ def parse_event_atom(cursor: Cursor, is_further: bool = False) -> Event | None:
     if cursor.accept_word("when"):
         condition = parse_cond(cursor)
         return Event(start, cursor.last_end(), None, "when", condition)
+    every_in_event(cursor)
     path = None if cursor.accept_word("mission") else parse_path(cursor, "an event: a node and what happens to it")
     if not (cursor.kind == NAME and cursor.raw in HAPPENINGS) and not blank_in_path(cursor, path, HAPPENINGS):
         note = "an event is a node and what happens to it: `Pick starts`, `Place succeeds`"
