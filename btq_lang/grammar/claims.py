@@ -10,10 +10,10 @@ from typing import Final
 from btq_lang.catalog.verbs import COUNTING, VERBS
 from btq_lang.diagnostics.model import replace_fix, write_fix
 from btq_lang.grammar.claim_mistakes import (
-    before_verb,
     blank_in_path,
     choice_in_other_words,
     condition_as_event,
+    condition_in_other_words,
     event_after_condition,
     every_in_event,
     every_meant,
@@ -121,7 +121,7 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
     elif operand == "condition":
         if verb.raw == "never" and cursor.raw in HAPPENINGS and cursor.kinds[cursor.index + 1] == NEWLINE:
             cursor.expected("a condition", (_NEVER_FAILS,))
-        elif cursor.at_word("to") and verb_in_other_words(cursor, cursor.index - 1, before_verb(cursor, subject)):
+        elif condition_in_other_words(cursor, verb.raw, subject):
             cursor.recover()
         elif not signal_last(cursor, verb.raw):
             if verb.raw == "never":
