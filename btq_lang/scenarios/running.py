@@ -220,7 +220,7 @@ class _Running:
         if not isinstance(error, ValueNeeded) or not isinstance(error.value, Unsaid) or reader is None:
             return str(error)
         key = _key_read(reader, error.value) or error.value.key
-        return f"{reader.path} reads {{{key}}}, and {error.value.why}"
+        return f"{reader.path} reads {{{key}}}, and {error.value.why()}"
 
     def _is_over(self) -> bool:
         """Let the world change as planned; whether the program ticks no more."""
@@ -331,7 +331,7 @@ class _Running:
             values = dict(self._values())
             for signal in signals_in(condition):
                 if isinstance(value := values.get(signal.entry), Unsaid):
-                    raise NotModelled(f"a condition after `when` reads `{signal.name}`, and {value.why}")
+                    raise NotModelled(f"a condition after `when` reads `{signal.name}`, and {value.why(signal.name)}")
         return holds is True
 
     def _set(self, value: Set) -> None:
@@ -365,7 +365,8 @@ class _Running:
             if self._tape is not None and key in self._board.entries:
                 self._tape.event(self._machine.now, (key, sample))
             if isinstance(value, Unsaid):
-                series.lacking = value.why
+                read = next((signal.name for signal in self._plan.read if signal.entry == key), "")
+                series.lacking = value.why(read)
 
     def _values(self) -> list[tuple[str, Value | None]]:
         """The entries that are read, on the root blackboard or, if only one other has them, there."""

@@ -222,7 +222,9 @@ class Skills:
             entry = node.board.entry(key)
             is_empty = entry is None or entry.value is None
             if is_empty or not (only_empty or outputs is None):
-                self._put(node, key, Unsaid(node.path, key), entry.type if entry is not None else UNTYPED)
+                result = "answers true" if node.children else "succeeds"
+                given = "" if node.id in self._conditions else f"{node.id} {result} and writes {port} = …"
+                self._put(node, key, Unsaid(node.path, key, given), entry.type if entry is not None else UNTYPED)
 
     def _put(self, node: SimulatedNode, key: str, value: Value, type_: str) -> None:
         if self.writes is not None:
