@@ -138,9 +138,7 @@ _NUMBER_AND_UNIT: Final = re.compile(r"([\d.]+)\s*(.*)")
 _IN_DIGITS: Final = {"once": "1", "twice": "2"}
 ROBOTS: Final = frozenset(("robot", "system", "vehicle", "machine"))
 _ROBOT: Final = f"(?:[Tt]he )?{_any(*sorted(ROBOTS))}"
-_STOPS: Final = (
-    "(?:(?:be |is |comes? to |come to )?(?:halt(?:s|ed)?|stop(?:s|ped)?|stand(?:s|still)?|brakes?|a stop|a halt))"
-)
+_STOPS: Final = "(?:(?:be |is |comes? to |come to )?(?:halt(?:s|ed)?|stop(?:s|ped)?|brakes?|a stop|a halt))"
 _ANSWERS: Final = (
     "the answer is an event, as `Stop succeeds`, or a condition, as `speed <= 0.01 m/s`, which one moment meets; "
     "what must stay so is written `never near and speed > 0.01 m/s for more than 1 s`"
