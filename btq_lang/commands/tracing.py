@@ -42,7 +42,7 @@ class TraceOptions(Record):
 def run(options: TraceOptions, messages: CommandOutput) -> int:
     """Write the overview; for missions with errors, of all valid parts."""
     refuse(usage_problem(options.paths) or form_problem(options.format, options.output, FORMATS))
-    from btq_lang.trace.selection import STATES, Selection, selected  # as that below
+    from btq_lang.trace.selection import STATES, Selection, none_selected, selected  # as that below
 
     refuse(
         *(
@@ -71,10 +71,14 @@ def run(options: TraceOptions, messages: CommandOutput) -> int:
     overview = replace(table.overview, judged=together(runs) if verdicts_of is not None else None)
     selection = Selection(options.priority, options.quality, options.state)
     table = replace(table, overview=selected(overview, selection))
+    is_empty = bool(overview.requirements) and not table.overview.requirements
     to_terminal = options.output is None and sys.stdout.isatty()
     colour = is_coloured(options.color, to_terminal)
     form = form_of(options.format, options.output, FORMATS)
-    text = table.write(form, colour=colour, width=terminal_width() if to_terminal else 120)
+    if is_empty and form in ("table", "markdown"):
+        text = none_selected(selection, len(overview.requirements))
+    else:
+        text = table.write(form, colour=colour, width=terminal_width() if to_terminal else 120)
     write_output(messages, options.output, text, form)
     if evidence_problems:
         return 2

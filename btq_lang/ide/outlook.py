@@ -21,6 +21,7 @@ from btq_lang.simulator.nodes import SUCCESS, SimulatedNode
 from btq_lang.simulator.ports import read_whole
 from btq_lang.simulator.timers import tick_timeout
 from btq_lang.syntax.tree import Tree
+from btq_lang.workspace.project_driver import Driver
 from btq_lang.workspace.project_simulation import SimulationSettings
 from btq_lang.workspace.queries import Cancelled
 from btq_lang.workspace.workspace import Workspace
@@ -141,7 +142,9 @@ class _FoldedTree:
 
 
 def _folded(workspace: Workspace, path: str, tree: str, is_cancelled: Callable[[], bool]) -> _FoldedTree | None:
-    """The tree of this name; None: it cannot be loaded, or no skill of it is declared."""
+    """The tree of this name; None: it cannot be loaded, no skill of it is declared, or the project names a driver that
+    ticks otherwise than the fold supposes.
+    """
     settings = workspace.project.simulation
     if settings is None:
         return None
@@ -151,6 +154,8 @@ def _folded(workspace: Workspace, path: str, tree: str, is_cancelled: Callable[[
     try:
         for is_guarded in (True, False):
             mission = ScenarioMission(program, path, tree, is_guarded)
+            if mission.program.driver != Driver():
+                return None
             folded = _FoldedTree(mission, settings, is_guarded, is_cancelled)
             if folded.obstacle is None or folded.obstacle.node.uid in mission.written:
                 break

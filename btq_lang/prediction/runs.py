@@ -151,7 +151,7 @@ class LoadedRuns:
             end, why = "throws", str(error)
             self._note_rows(self._tree.rows())
         except NotModelled as error:
-            end, why = "unknown", why_unknown(machine.nodes, error)
+            end, why = "unknown", why_unknown(machine.nodes, error, has_givens=False)
             self._note_rows(self._tree.rows())
         if end not in ("succeeds", "fails"):
             self._end_root()

@@ -199,13 +199,13 @@ class _Judge:
         value = self._value(start, port)
         if isinstance(value, Unsaid):
             name = port or self._mission.input_port(start.uid)
-            raise NotModelled(f"{self.node(start.uid)[0]} reads its port `{name}`, and {value.why}")
+            raise NotModelled(f"{self.node(start.uid)[0]} reads its port `{name}`, and {value.why()}")
         return is_value(value, wanted)
 
     def _other(self, start: Start, port: str | None, expected: str) -> Step:
         actual = self._value(start, port)
         if isinstance(actual, Unsaid):
-            happened = f"it runs, and {actual.why}"
+            happened = f"it runs, and {actual.why()}"
         else:
             happened = f'it runs with "{actual}"' if actual is not None else "it runs with no value"
         return Step(start.at / 1000, *self.node(start.uid), happened, expected)

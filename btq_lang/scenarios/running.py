@@ -322,7 +322,7 @@ class _Running:
             values = dict(self._values())
             for signal in signals_in(condition):
                 if isinstance(value := values.get(signal.entry), Unsaid):
-                    raise NotModelled(f"a condition after `when` reads `{signal.name}`, and {value.why}")
+                    raise NotModelled(f"a condition after `when` reads `{signal.name}`, and {value.why(signal.name)}")
         return holds is True
 
     def _set(self, value: Set) -> None:
@@ -356,7 +356,8 @@ class _Running:
             if self._tape is not None and key in self._board.entries:
                 self._tape.event(self._machine.now, (key, sample))
             if isinstance(value, Unsaid):
-                series.lacking = value.why
+                read = next((signal.name for signal in self._plan.read if signal.entry == key), "")
+                series.lacking = value.why(read)
 
     def _values(self) -> list[tuple[str, Value | None]]:
         """The entries that are read, on the root blackboard or, if only one other has them, there."""
@@ -384,13 +385,15 @@ class _Running:
                         series.add(time, value)
 
 
-def why_unknown(nodes: Sequence[SimulatedNode], error: NotModelled) -> str:
-    """What is not known: of the value of an entry, who of some nodes reads and who wrote it."""
+def why_unknown(nodes: Sequence[SimulatedNode], error: NotModelled, has_givens: bool = True) -> str:
+    """What is not known: of the value of an entry, who of some nodes reads and who wrote it; `has_givens`: and what a
+    scenario gives to say it.
+    """
     reader = next((node for node in nodes if node.uid == error.uid), None)
     if not isinstance(error, ValueNeeded) or not isinstance(error.value, Unsaid) or reader is None:
         return str(error)
     key = _key_read(reader, error.value) or error.value.key
-    return f"{reader.path} reads {{{key}}}, and {error.value.why}"
+    return f"{reader.path} reads {{{key}}}, and {error.value.why() if has_givens else error.value.fact}"
 
 
 class _NodesNow(Nearby):

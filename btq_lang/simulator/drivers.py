@@ -36,7 +36,7 @@ def tick_once(machine: Machine) -> int:
     result = execute_tick(machine, machine.root)
     rounds = 0
     while result == RUNNING and machine.is_woken:
-        check_rounds(machine.root, rounds := rounds + 1)
+        check_rounds(machine.waker, rounds := rounds + 1)
         machine.is_woken = False
         result = execute_tick(machine, machine.root)
     if result in (SUCCESS, FAILURE):

@@ -41,7 +41,7 @@ class KnownProgram(Record):
         """The root blackboard before the tree is created."""
         board = Board(is_old=self.dialect.is_old)
         for key in self.preset:
-            board.define(key, Unsaid(NAME, key), "")
+            board.define(key, Unsaid(NAME, key, ""), "")
         return board
 
 

@@ -190,7 +190,9 @@ class Skills:
     def _write(
         self, node: SimulatedNode, writes: Sequence[Write] = (), only_empty: bool = False, is_skipped: bool = False
     ) -> None:
-        written = write_outputs(node, self._outputs, writes, only_empty, is_skipped)
+        result = "answers true" if node.children else "succeeds"
+        given = "" if node.id in self._conditions else f"{node.id} {result} and writes"
+        written = write_outputs(node, self._outputs, writes, only_empty, is_skipped, given)
         if self.writes is not None:
             self.writes += written
 
@@ -253,6 +255,7 @@ def write_outputs(
     writes: Sequence[Write] = (),
     only_empty: bool = False,
     is_skipped: bool = False,
+    given: str = "",
 ) -> Sequence[Write]:
     """Write what a skill writes, and unknown values into the entries of its other outputs; all of it, with the keys of
     entries.
@@ -265,11 +268,12 @@ def write_outputs(
         only_empty: entries with a value keep it: the readings that a condition copies are given, and a skill that runs
             may write later.  What is given is written where it is another value.
         is_skipped: only what is given is written.
+        given: what a scenario gives before `PORT = …` to say an unknown value; as of `Unsaid`.
     """
     keys = [key_of(node.ports.get(write.key, ""), write.key) or write.key for write in writes]
     written: list[Write] = []
     if not is_skipped and outputs is not None:
-        written += _unsaid(node, outputs.get(node.id), keys, only_empty)
+        written += _unsaid(node, outputs.get(node.id), keys, only_empty, given)
     for key, write in zip(keys, writes, strict=True):
         entry = node.board.entry(key)
         if only_empty and entry is not None and entry.value == write.value:
@@ -281,16 +285,17 @@ def write_outputs(
 
 
 def _unsaid(
-    node: SimulatedNode, outputs: tuple[str, ...] | None, given: Sequence[str], only_empty: bool
+    node: SimulatedNode, outputs: tuple[str, ...] | None, written: Sequence[str], only_empty: bool, given: str
 ) -> Iterator[Write]:
     for port in node.ports if outputs is None else outputs:
         key = key_of(node.ports.get(port, ""), port)
-        if key is None or key in given:
+        if key is None or key in written:
             continue
         entry = node.board.entry(key)
         is_empty = entry is None or entry.value is None
         if is_empty or not (only_empty or outputs is None):
-            yield Write(key, Unsaid(node.path, key), entry.type if entry is not None else UNTYPED)
+            value = Unsaid(node.path, key, given and f"{given} {port} = …")
+            yield Write(key, value, entry.type if entry is not None else UNTYPED)
 
 
 class _Activation(Record):

@@ -57,6 +57,6 @@ def plain_run(prepared: PreparedMission, seed: int, number: int) -> tuple[str, i
     except EngineError as error:
         end = str(error)
     except NotModelled as error:
-        end = why_unknown(machine.nodes, error)
+        end = why_unknown(machine.nodes, error, has_givens=False)
     robot.machine = loaded
     return end, machine.now, rows

@@ -9,7 +9,7 @@ from nav2_scenarios import ran
 
 SCRIPT = '<ScriptCondition code="{} == 3"/>'
 PASSED = ("passed", "succeeds", "")
-WHY = "nothing says what bt_navigator writes into {{{}}}"
+WHY = "nothing says what bt_navigator writes into {{{0}}}; write `given {{{0}}} = …`"
 
 
 @pytest.mark.parametrize(

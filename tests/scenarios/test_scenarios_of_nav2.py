@@ -116,7 +116,10 @@ def test_goals_that_a_node_writes_are_unknown(tmp_path: Path) -> None:
     updater = f'<RateController hz="5">{removed}</RateController>'
     tree = f"<PipelineSequence>{updater}{asked}</PipelineSequence>"
     steps = "given Spin takes 1 s", "expect never node Wait"
-    why = "GoalUpdated::5 reads {goals}, and nothing says what RemovePassedGoals::3 writes into {goals}"
+    why = (
+        "GoalUpdated::5 reads {goals}, and nothing says what RemovePassedGoals::3 writes into {goals}; "
+        "write `given RemovePassedGoals succeeds and writes output_goals = …`"
+    )
     assert ran(tmp_path, tree, *steps) == ("unknown", "", why)
     assert ran(tmp_path, tree, "given GoalUpdated answers false", *steps) == PASSED
 
@@ -124,7 +127,10 @@ def test_goals_that_a_node_writes_are_unknown(tmp_path: Path) -> None:
 def test_a_path_that_became_longer(tmp_path: Path) -> None:
     longer = '<PathLongerOnApproach path="{path}"><Wait/></PathLongerOnApproach>'
     tree = f'<PipelineSequence><ComputePathToPose path="{{path}}"/>{longer}<Spin/></PipelineSequence>'
-    why = "PathLongerOnApproach::3 reads {path}, and nothing says what ComputePathToPose::2 writes into {path}"
+    why = (
+        "PathLongerOnApproach::3 reads {path}, and nothing says what ComputePathToPose::2 writes into {path}; "
+        "write `given ComputePathToPose succeeds and writes path = …`"
+    )
     assert ran(tmp_path, tree, "expect mission succeeds") == ("unknown", "", why)
     for answer, expected in (("true", "Wait finishes at least 1 per run"), ("false", "never node Wait")):
         steps = f"given PathLongerOnApproach answers {answer}", "given Spin takes 1 s", f"expect {expected}"
@@ -137,7 +143,10 @@ def test_an_updated_goal(tmp_path: Path, nodes: str) -> None:
         '<GoalUpdater input_goal="{goal}" output_goal="{updated}"><ComputePathToPose goal="{updated}"/></GoalUpdater>'
     )
     given, runs = "given {goal} = 1", "expect ComputePathToPose (goal) runs"
-    why = "ComputePathToPose::2 reads its port `goal`, and nothing says what GoalUpdater::1 writes into {updated}"
+    why = (
+        "ComputePathToPose::2 reads its port `goal`, and nothing says what GoalUpdater::1 writes into {updated}; "
+        "write `given GoalUpdater answers true and writes output_goal = …`"
+    )
     assert ran(tmp_path, node, given, f"{runs} 1", nodes=nodes) == ("unknown", "succeeds", why)
     assert ran(tmp_path, node, given, "given GoalUpdater answers false", f"{runs} 1", nodes=nodes) == PASSED
     newer = "given GoalUpdater answers true and writes output_goal = 2"

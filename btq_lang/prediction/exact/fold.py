@@ -18,6 +18,7 @@ from btq_lang.prediction.skill import Probability, Skill
 from btq_lang.simulator import controls, decorators, leaves, timers
 from btq_lang.simulator.nodes import FAILURE, SUCCESS, Flow, SimulatedNode
 from btq_lang.simulator.ports import key_of, read_whole
+from btq_lang.workspace.project_driver import Driver
 
 Place: TypeAlias = "tuple[Probability, Times]"  # how likely one comes there, and after how long
 
@@ -337,7 +338,7 @@ def _with_all_below(node: SimulatedNode) -> Iterator[SimulatedNode]:
         yield from _with_all_below(child)
 
 
-PERIOD: Final = 10  # ms between two ticks
+PERIOD: Final = Driver().period  # ms between two ticks
 _MOST_STEPS: Final = 2_000
 _SURE: Final = Fraction(1)
 _NO_TIME: Final = at(0)
