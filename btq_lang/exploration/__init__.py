@@ -17,6 +17,7 @@ determines: what leaves return and write, when timers go off, and how values com
     witness.py     a run that shows an answer
     missions.py    a mission of a workspace as a tree with free leaves
     answers.py     answers to questions
+    askable.py     which clauses of requirements can be asked
     clauses.py     clauses of requirements that can be violated
     surveys.py     answers to the standard questions
     report.py      both as text and as JSON

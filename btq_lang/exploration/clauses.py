@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from typing import Final, TypeAlias
 
 from btq_lang.exploration.answers import Answer, answered_by
+from btq_lang.exploration.askable import askable_claims
 from btq_lang.exploration.missions import ExploredMission
 from btq_lang.exploration.outcomes import Happened
 from btq_lang.exploration.search import SearchBudget
@@ -50,22 +51,22 @@ class ClauseAnswer(Record):
     answer: Answer
 
 
-def clause_answers(mission: ExploredMission, budget: SearchBudget) -> Iterator[ClauseAnswer]:
+def clause_answers(mission: ExploredMission, budget: SearchBudget, only: str = "") -> Iterator[ClauseAnswer]:
     """The clauses that can be asked, with the answers.
+
+    Args:
+        only: the requirement that is asked about; empty: all.
 
     Raises:
         NotExplored: the tree cannot be explored.
     """
     for applied in mission.applied:
-        requirement = applied.requirement
-        if requirement.scopes or requirement.odds is not None or requirement.span is not None:
-            continue
-        for claim in requirement.claims:
+        name = applied.requirement.name
+        for claim in askable_claims(applied) if only in ("", name) else ():
             opened = mission.open()
             watch = _watch(mission, applied, claim, opened.snapshots)
-            if watch is not None:
-                opened.snapshots.tracked = tuple(watch.tracked.values())
-                yield ClauseAnswer(requirement.name, claim.text, answered_by(opened, watch, watch.tracked, budget))
+            opened.snapshots.tracked = tuple(watch.tracked.values())
+            yield ClauseAnswer(name, claim.text, answered_by(opened, watch, watch.tracked, budget))
 
 
 class _Violation:
@@ -158,64 +159,50 @@ def _is_any(events: _Events, node: SimulatedNode, before: int, after: int) -> bo
     return any(node.uid in uids and happens(word, before, after) for uids, word in events)
 
 
-def _watch(mission: ExploredMission, applied: Applied, claim: ResolvedClaim, snapshots: Snapshots) -> _Watch | None:
-    """Who watches for the violation of a claim; None: it is not asked."""
+def _watch(mission: ExploredMission, applied: Applied, claim: ResolvedClaim, snapshots: Snapshots) -> _Watch:
+    """Who watches for the violation of a claim that can be asked."""
     subject = claim.subject or applied.subject
     if isinstance(subject, ResolvedEachEvent):
-        events = _events(mission, subject.event)
-        others = _events(mission, claim.event) if claim.event is not None else None
-        is_asked = claim.verb == "followed" and claim.limit is None
-        return _Followed(snapshots, events, others) if is_asked and events and others else None
-    if not isinstance(subject, NodeTarget | MissionRun):
-        return None
+        return _Followed(snapshots, _events(mission, subject.event), _events(mission, claim.event))
+    assert isinstance(subject, NodeTarget | MissionRun), "others are not asked"
     uids = mission.uids_of(subject)
-    if claim.verb == "succeeds" and claim.limit is None:
+    if claim.verb == "succeeds":
         return _Occurs(snapshots, [(uids, "fails")], 0, frozenset())
-    if claim.verb == "follows" and claim.event is not None and claim.limit is None:
-        events = _events(mission, claim.event)
-        return _Follows(snapshots, uids, events) if events else None
+    if claim.verb == "follows":
+        return _Follows(snapshots, uids, _events(mission, claim.event))
     if claim.verb == "tries":
-        most = claim.limit.value if claim.limit is not None and claim.limit.relation == "<=" else None
+        assert claim.limit is not None, "as above"
+        assert isinstance(claim.limit.value, Quantity), "as above"
         per = mission.uids_of(claim.per) if isinstance(claim.per, NodeTarget) else frozenset()
-        if not isinstance(most, Quantity):
-            return None
-        return _Occurs(snapshots, [(uids, "starts")], int(most.si), per)
-    if claim.verb == "never" and claim.condition is not None and claim.limit is None:
-        tracked: dict[int, SimulatedNode] = {}
-        test = _test(mission, claim.condition, snapshots, tracked)
-        if test is None or not tracked:
-            return None
-        if isinstance(subject, NodeTarget):
-            while_running = _runs(uids, snapshots, tracked)
-            return _Holds(snapshots, lambda: while_running() and test(), tracked)
-        return _Holds(snapshots, test, tracked)
-    return None
+        return _Occurs(snapshots, [(uids, "starts")], int(claim.limit.value.si), per)
+    tracked: dict[int, SimulatedNode] = {}
+    assert claim.condition is not None, "as above"
+    test = _test(mission, claim.condition, snapshots, tracked)
+    if isinstance(subject, NodeTarget):
+        while_running = _runs(uids, snapshots, tracked)
+        return _Holds(snapshots, lambda: while_running() and test(), tracked)
+    return _Holds(snapshots, test, tracked)
 
 
-def _events(mission: ExploredMission, event: ResolvedEvent | ResolvedAnyEvent) -> _Events | None:
-    """Changes of statuses that an event is; None: it is a condition."""
-    if any(atom.subject is None for atom in event.atoms):
-        return None
-    return [(mission.uids_of(atom.subject), atom.happening) for atom in event.atoms if atom.subject is not None]
+def _events(mission: ExploredMission, event: ResolvedEvent | ResolvedAnyEvent | None) -> _Events:
+    """Changes of statuses that an event is."""
+    atoms = event.atoms if event is not None else ()
+    return [(mission.uids_of(atom.subject), atom.happening) for atom in atoms if atom.subject is not None]
 
 
 def _test(
     mission: ExploredMission, condition: Condition, snapshots: Snapshots, tracked: dict[int, SimulatedNode]
-) -> _Test | None:
-    """A function that says whether nodes run as a condition says; None: it has other parts."""
-    if isinstance(condition, Running):
-        return _runs(mission.uids_of(condition.target), snapshots, tracked)
+) -> _Test:
+    """A function that says whether nodes run as a condition says."""
     if isinstance(condition, Negation):
         inner = _test(mission, condition.condition, snapshots, tracked)
-        return None if inner is None else lambda: not inner()
+        return lambda: not inner()
     if isinstance(condition, All | Any):
         tests = [_test(mission, each, snapshots, tracked) for each in condition.conditions]
-        askable = [test for test in tests if test is not None]
-        if len(askable) < len(tests):
-            return None
         joined = all if isinstance(condition, All) else any
-        return lambda: joined(test() for test in askable)
-    return None
+        return lambda: joined(test() for test in tests)
+    assert isinstance(condition, Running), "others are not asked"
+    return _runs(mission.uids_of(condition.target), snapshots, tracked)
 
 
 def _runs(uids: frozenset[int], snapshots: Snapshots, tracked: dict[int, SimulatedNode]) -> _Test:

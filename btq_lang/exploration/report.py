@@ -57,7 +57,7 @@ def _lines(explored: Explored) -> Iterator[str]:
             yield "    and from here again and again:"
             yield from _run(mission, answer.circle, len(answer.witness) + 1)
     for clause in explored.clauses:
-        yield f"  {clause.requirement} `{clause.text}` can be violated: {_word(clause.answer)}"
+        yield f"  {in_words(clause)}"
         if clause.answer.is_assumed:
             yield "    if what is calculated from entries can have such values"
         yield from (f"    not known: {reason}" for reason in clause.answer.unknown)
@@ -70,6 +70,11 @@ def _lines(explored: Explored) -> Iterator[str]:
         for finding in survey.findings:
             yield f"  {finding.kind}: {finding.text}{_at(mission, finding.uid)}"
             yield from _run(mission, finding.witness, 1)
+
+
+def in_words(clause: ClauseAnswer) -> str:
+    """Whether a clause can be violated."""
+    return f"{clause.requirement} `{clause.text}` can be violated: {_word(clause.answer)}"
 
 
 def _word(answer: Answer) -> str:

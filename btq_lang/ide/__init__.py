@@ -18,6 +18,7 @@ all features and the checks that they use takes a third of that time.
     on_type.py, structure.py, outline.py, hints.py   edits while typing, folding, outline, inlay hints and lenses
     verdicts.py            what logs show of requirements, for lenses, hover and diagnostics
     scenarios.py           which scenarios there are
+    violations.py          which requirements can be asked whether they can be violated
     runs.py                which runs an editor may show, and a run on the picture of a text
     colours.py             semantic tokens, with stretches, appearance and legend; xml_colours: of scripts in XML
     readiness.py           computes results before they are requested
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
     from btq_lang.ide import rename as rename
     from btq_lang.ide import scenarios as scenarios
     from btq_lang.ide import structure as structure
+    from btq_lang.ide import violations as violations
     from btq_lang.ide import xml_colours as xml_colours
 
 

@@ -14,6 +14,7 @@ from btq_lang.ide.meaning import ReferenceAt, Subject, definition, everywhere, h
 from btq_lang.ide.outline import requirement_detail
 from btq_lang.ide.ports import port_of
 from btq_lang.ide.scenarios import listed
+from btq_lang.ide.violations import EXPLORE_TITLE, askable_names
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.scenarios import Scenario
 from btq_lang.syntax.tree import Entry, Requirement, Root
@@ -45,12 +46,14 @@ class Lens(Record):
     Attributes:
         places: what it counts, by file.
         runs: the title of the scenario that it runs.
+        explores: the requirement that it asks about.
     """
 
     span: Span
     title: str
     places: tuple[tuple[str, Span], ...]
     runs: str = ""
+    explores: str = ""
 
 
 def inlay_hints(workspace: Workspace, path: str, within: Span) -> tuple[Hint, ...]:
@@ -83,12 +86,13 @@ def code_lenses(
     workspace: Workspace, path: str, side: str | None = None, evidence: ProjectVerdicts | None = None
 ) -> tuple[Lens, ...]:
     """How many places use a requirement, how many nodes it names itself, how many nodes call a tree; the main tree; and
-    what logs show of a requirement; and for each scenario, to run it.
+    what logs show of a requirement, and to explore how it can be violated; and for each scenario, to run it.
 
     As a reader counts: a requirement that is defined at a node is used there, and has a lens only if there are more
     uses; neither the `Root` that names the main tree nor a scenario calls it.
     """
     lenses: list[Lens] = []
+    asked: frozenset[str] | None = None
     for place in workspace.files[path].defined:
         kind = place.symbol.kind
         if kind not in _COUNTED or workspace.scope(path).find(kind, place.symbol.name) != place:
@@ -125,6 +129,9 @@ def code_lenses(
             titles = [*(titles if uses or not nodes else ()), *holds]
         if uses or nodes or not is_in_place:
             lenses.append(Lens(place.span, ", ".join(titles), tuple(dict.fromkeys((*uses, *nodes)))))
+        asked = askable_names(workspace, path) if asked is None else asked
+        if place.symbol.name in asked:
+            lenses.append(Lens(place.span, EXPLORE_TITLE, (), explores=place.symbol.name))
     lenses += [Lens(each.head, "run", (), each.title) for each in listed(workspace, path) if each.title]
     return (*lenses, *_verdict_lenses(workspace, path, evidence), *_build_lenses(workspace, path, side))
 

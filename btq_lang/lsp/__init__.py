@@ -11,6 +11,7 @@ offsets and paths, call `ide`, and convert the result back.  Features are implem
     processes.py     processes of Python that work for the server
     logs.py          the process that judges a project's logs, and its summary
     scenarios.py     the process that runs scenarios, and its results
+    exploring.py     the process that explores what can violate a requirement
     tested.py        what the last runs show, as long as it holds
     progress.py      progress of work on many files
     lifecycle.py, documents.py, navigation.py, hints.py, colours.py, acting.py, commands.py
@@ -19,12 +20,23 @@ offsets and paths, call `ide`, and convert the result back.  Features are implem
 
 from __future__ import annotations
 
-from btq_lang.lsp import acting, colours, commands, documents, hints, lifecycle, logs, navigation, scenarios
+from btq_lang.lsp import (
+    acting,
+    colours,
+    commands,
+    documents,
+    exploring,
+    hints,
+    lifecycle,
+    logs,
+    navigation,
+    scenarios,
+)
 from btq_lang.lsp.editor import Server
 
 
 def register(server: Server) -> None:
     """Register all handlers with pygls."""
-    for group in (lifecycle, documents, navigation, colours, acting, hints, commands, logs, scenarios):
+    for group in (lifecycle, documents, navigation, colours, acting, hints, commands, logs, scenarios, exploring):
         group.handlers.register(server)
     logs.watch_logs(server)

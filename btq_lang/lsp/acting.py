@@ -13,12 +13,15 @@ from lsprotocol import types
 
 from btq_lang import ide as features
 from btq_lang.lsp.editor import Handlers, Server
+from btq_lang.lsp.exploring import SHOW
 from btq_lang.lsp.protocol import Plain
 
 if TYPE_CHECKING:
     from btq_lang.workspace.workspace import Workspace
 
 
+EXPLORE = "btq.explore"  # a command of the editor, which opens the run
+EXPLORE_KIND = "btq.explore"
 KINDS = [
     types.CodeActionKind.QuickFix,
     types.CodeActionKind.RefactorExtract,
@@ -26,6 +29,7 @@ KINDS = [
     types.CodeActionKind.RefactorRewrite,
     "source.fixAll.btq",
     "source.organizeImports.btq",
+    EXPLORE_KIND,
 ]
 _ALL = types.FileOperationFilter(types.FileOperationPattern("**/*"), scheme="file")
 
@@ -40,7 +44,22 @@ def actions(server: Server, params: types.CodeActionParams) -> list[Plain]:
     code_actions = features.actions.code_actions(
         workspace, path, server.convert.span(workspace, path, params.range), only, server.session.diagnostics(path)
     )
-    return [server.convert.action(workspace, path, action, server.versions_for_edits()) for action in code_actions]
+    plain = [server.convert.action(workspace, path, action, server.versions_for_edits()) for action in code_actions]
+    if not only or any(kind in ("", EXPLORE_KIND) for kind in only):
+        offset = server.convert.offset(workspace, path, params.range.start)
+        requirement = features.violations.askable_at(workspace, path, offset)
+        if requirement is not None:
+            name = requirement.symbol.name
+            title = f"Explore how `{name}` can be violated"
+            command = exploring(server, requirement.path, title, name)
+            plain.append({"title": title, "kind": EXPLORE_KIND, "command": command})
+    return plain
+
+
+def exploring(server: Server, path: str, title: str, requirement: str) -> types.Command:
+    """The command that explores how a requirement can be violated, which a file defines."""
+    name = EXPLORE if server.knows_command(EXPLORE) else SHOW
+    return types.Command(title, name, arguments=[types.TextDocumentIdentifier(server.convert.uri(path)), requirement])
 
 
 @handlers.feature(types.WORKSPACE_WILL_RENAME_FILES, types.FileOperationRegistrationOptions([_ALL]))

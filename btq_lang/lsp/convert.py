@@ -58,11 +58,14 @@ class Converter:
     # ---- from the editor ----
 
     def path(self, uri: str) -> str:
-        """The path of a file; an untitled buffer's is its URI, as if at the root."""
+        """The path of a file; an untitled buffer's is that of the file to be, or without one its URI, as if at the
+        root.
+        """
         from btq_lang.workspace.loader import absolute  # it imports workspaces, which are not needed to start
 
         parts = urlsplit(uri)
-        return absolute(_path_of(parts.path) if parts.scheme == "file" else f"/{unquote(uri)}")
+        is_of_file = parts.scheme == "file" or (parts.scheme == "untitled" and parts.path.startswith("/"))
+        return absolute(_path_of(parts.path) if is_of_file else f"/{unquote(uri)}")
 
     def changed(self, lines: LineIndex, changes: Sequence[types.TextDocumentContentChangeEvent]) -> str:
         """The text after changes, each of which applies to the result of the previous one."""
@@ -115,6 +118,11 @@ class Converter:
     def plain_range(self, lines: LineIndex, span: Span) -> types.Range:
         start, end = (lines.position(offset, self.encoding) for offset in span)
         return types.Range(types.Position(*start), types.Position(*end))
+
+    def position(self, workspace: Workspace, path: str, line: int, column: int) -> types.Position:
+        """The position of a character of the original file, both from 0."""
+        lines = workspace.files[path].source_lines
+        return types.Position(*lines.position(lines.offset(Position(line, column), "code-points"), self.encoding))
 
     def location(self, workspace: Workspace, path: str, span: Span) -> types.Location:
         return types.Location(self.uri(path), self.range(workspace, path, span))

@@ -33,6 +33,7 @@ def did_change(server: Server, params: types.DidChangeTextDocumentParams) -> Non
     if server.session.is_cpp(path):
         return
     server.versions[path] = params.text_document.version
+    server.end_explorations()
     server.schedule.check_soon(
         server.session.edit(path, server.convert.changed(server.session.lines(path), params.content_changes))
     )

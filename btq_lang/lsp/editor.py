@@ -56,6 +56,12 @@ class RequestRefused(JsonRpcException):
     CODE = -32803  # RequestFailed
 
 
+class RequestOutdated(RequestRefused):
+    """A request whose answer would be about a text that has been edited."""
+
+    CODE = -32801  # ContentModified
+
+
 class UnknownDocument(Exception):  # not an error: there is nothing to answer
     """A document that btq does not know, or that a feature does not read."""
 
@@ -131,6 +137,7 @@ class Server(LanguageServer):
         self.count = 0
         self.tested = TestedScenarios()
         self.schedule = CheckSchedule(self)
+        self.explorations: set[asyncio.Task[Any]] = set()  # searches that the next edit ends
         self._ready: set[str] = set()  # the files prepared for first requests
         self.scanned = asyncio.Event()  # the folders have been read; before, the set of files is unknown
         self._is_settled = False  # the first objects are frozen for the garbage collector
@@ -291,6 +298,13 @@ class Server(LanguageServer):
         return isinstance(commands, list) and command in commands
 
     # ---- calling features ----
+
+    def end_explorations(self) -> None:
+        """End all searches: a text that they depend on may have changed."""
+        ending = [*self.explorations]
+        self.explorations.clear()
+        for exploration in ending:
+            exploration.cancel()
 
     def at(self, document: types.TextDocumentIdentifier, *, reads: bool = False) -> tuple[Workspace, str]:
         """The workspace and the path of a document.

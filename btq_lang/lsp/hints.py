@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 from btq_lang import ide as features
+from btq_lang.lsp.acting import exploring
 from btq_lang.lsp.commands import USES
 from btq_lang.lsp.convert import markdown
 from btq_lang.lsp.editor import Handlers, Server
@@ -75,6 +76,8 @@ def lenses(server: Server, params: types.CodeLensParams) -> list[types.CodeLens]
             name = RUN_SCENARIO if server.knows_command(RUN_SCENARIO) else SHOW
             document = types.TextDocumentIdentifier(server.convert.uri(path))
             command = types.Command(lens.title, name, arguments=[document, lens.runs])
+        elif lens.explores:
+            command = exploring(server, path, lens.title, lens.explores)
         elif not uses:
             command = types.Command(lens.title, "")  # a plain title: there is nothing to open
         elif server.knows_command(SHOW_REFERENCES):

@@ -6,24 +6,26 @@ what a run has shown of an earlier text is in its answer, but in no diagnostic.
 
 from __future__ import annotations
 
-import asyncio
-import json
 import os
-from collections.abc import AsyncGenerator
-from contextlib import aclosing, suppress
-from typing import Any, Final
+from collections.abc import Sequence
+from contextlib import aclosing
+from typing import TYPE_CHECKING, Any, Final
 
 from lsprotocol import types
 
 from btq_lang import ide as features
 from btq_lang.lsp.commands import mission_at
 from btq_lang.lsp.editor import Handlers, RequestRefused, Server
-from btq_lang.lsp.processes import start_python
+from btq_lang.lsp.processes import answers_of
 from btq_lang.lsp.progress import progress
 from btq_lang.util.text import counted
 
+if TYPE_CHECKING:
+    from btq_lang.workspace.workspace import Workspace
+
 LIST = "btq.server.scenarios"
 RUN = "btq.server.runScenarios"
+COVER = "btq.server.coverScenarios"
 SHOW = "btq.server.showScenarios"
 
 
@@ -52,6 +54,31 @@ async def listed(server: Server, document: types.TextDocumentIdentifier | None) 
 @handlers.command(RUN)
 async def run(server: Server, document: types.TextDocumentIdentifier, *titles: str) -> list[dict[str, Any]]:
     """Run the scenarios of a document that have one of these titles, or all; what a run shows becomes diagnostics."""
+    return (await _ran(server, document, titles, is_covered=False))[0]
+
+
+@handlers.command(COVER)
+async def cover(server: Server, document: types.TextDocumentIdentifier, *titles: str) -> dict[str, object]:
+    """Run scenarios, and tell what they have met of all that can happen to nodes."""
+    results, coverage = await _ran(server, document, titles, is_covered=True)
+    return {"results": results, "coverage": coverage}
+
+
+@handlers.command(SHOW)
+async def show(server: Server, document: types.TextDocumentIdentifier, *titles: str) -> None:
+    """Run scenarios for an editor without a list of their results: a message has them."""
+    results = await run(server, document, *titles)
+    words = [f"{each['outcome']}: {each['title']}\n{each['message']}".strip() for each in results]
+    kind = types.MessageType.Info
+    if any(each["outcome"] != "passed" for each in results):
+        kind = types.MessageType.Warning
+    server.window_show_message(types.ShowMessageParams(kind, "\n".join(words)))
+
+
+async def _ran(
+    server: Server, document: types.TextDocumentIdentifier, titles: Sequence[str], *, is_covered: bool
+) -> tuple[list[dict[str, Any]], list[dict[str, object]]]:
+    """What comes of scenarios, and the coverage by file if it is wanted."""
     workspace, path = mission_at(server, document)
     scenarios = features.scenarios.listed(workspace, path)
     number = sum(not titles or each.title in titles for each in scenarios)
@@ -59,10 +86,17 @@ async def run(server: Server, document: types.TextDocumentIdentifier, *titles: s
         raise RequestRefused("this document has no such scenario" if titles else "this document has no scenario")
     folder = server.session.folders[0] if server.session.folders else os.path.dirname(path)
     texts = {**server.session.open, path: workspace.files[path].source}  # as they are now
-    asked: dict[str, object] = {"path": path, "texts": texts, "titles": titles}
+    asked: dict[str, object] = {"path": path, "texts": texts, "titles": titles, "is_covered": is_covered}
     results: list[dict[str, Any]] = []
-    async with progress(server, "running scenarios") as report, aclosing(_run(folder, asked)) as running:
+    coverage: list[dict[str, object]] = []
+    async with (
+        progress(server, "running scenarios") as report,
+        aclosing(answers_of(folder, _PROGRAM, asked)) as running,
+    ):
         async for ran in running:
+            if "coverage" in ran:
+                coverage = _coverage(server, workspace, folder, ran["coverage"])
+                continue
             scenario = scenarios[ran["number"]]
             failures = features.scenarios.failures(scenario, folder, ran)
             written = [server.convert.failure(workspace, path, each) for each in failures]
@@ -82,37 +116,22 @@ async def run(server: Server, document: types.TextDocumentIdentifier, *titles: s
             )
             report(100 * len(results) // number, f"{len(results)} of {counted(number, 'scenario')}")
     server.schedule.check_soon((path,))
-    return results
+    return results, coverage
 
 
-@handlers.command(SHOW)
-async def show(server: Server, document: types.TextDocumentIdentifier, *titles: str) -> None:
-    """Run scenarios for an editor without a list of their results: a message has them."""
-    results = await run(server, document, *titles)
-    words = [f"{each['outcome']}: {each['title']}\n{each['message']}".strip() for each in results]
-    kind = types.MessageType.Info
-    if any(each["outcome"] != "passed" for each in results):
-        kind = types.MessageType.Warning
-    server.window_show_message(types.ShowMessageParams(kind, "\n".join(words)))
+def _coverage(
+    server: Server, workspace: Workspace, folder: str, coverage: dict[str, list[dict[str, Any]]]
+) -> list[dict[str, object]]:
+    """What scenarios have met, by file, with positions in the editor."""
+    from btq_lang.workspace.loader import absolute  # it imports workspaces, which are not needed to start
+
+    by_file: dict[str, dict[str, list[dict[str, Any]]]] = {}
+    for kind, places in coverage.items():
+        for place in places:
+            path = absolute(os.path.join(folder, place.pop("file")))
+            position = server.convert.position(workspace, path, place.pop("line") - 1, place.pop("column") - 1)
+            by_file.setdefault(path, {"nodes": [], "unused": []})[kind].append({"position": position, **place})
+    return [{"uri": server.convert.uri(path), **places} for path, places in by_file.items()]
 
 
-async def _run(folder: str, asked: dict[str, object]) -> AsyncGenerator[dict[str, Any], None]:
-    """The results of scenarios as they come; what runs ends with this iterator."""
-    process = await start_python(folder, _PROGRAM)
-    assert process.stdin is not None, "it is a pipe"
-    assert process.stdout is not None, "likewise"
-    assert process.stderr is not None, "likewise"
-    errors = asyncio.ensure_future(process.stderr.read())
-    try:
-        process.stdin.write(f"{json.dumps(asked)}\n".encode())
-        async for line in process.stdout:
-            yield json.loads(line)
-        if await process.wait():
-            reason = (await errors).decode(errors="replace").strip()
-            raise RequestRefused(f"the scenarios could not be run: {reason}")
-    finally:
-        with suppress(ProcessLookupError):
-            process.kill()
-
-
-_PROGRAM: Final = "from btq_lang.scenarios.process import main; main()"
+_PROGRAM: Final = "from btq_lang.scenarios.process import print_answers, run_titles; print_answers(run_titles)"

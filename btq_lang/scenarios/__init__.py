@@ -12,13 +12,14 @@ scenario, and a value that is needed and not given makes it unknown; actions tha
     drawing.py     a run as lines of text
     recording.py   a run of a log as a scenario
     witnessed.py   a run of `btq explore` as a scenario
+    explored.py    those of a mission as a file
     asked.py       what was asked there as expectations
     btlog.py       a run as a log
     recorded_nodes.py   the words that name one node of it
     results.py     what came of scenarios, as data
     suite.py       the scenarios of files, run one by one
     parallel.py    the same in several processes
-    process.py     a process that runs them for an editor
+    process.py     a process that runs them for an editor; explore_process.py looks for runs that violate a requirement
     outcomes.py    what can happen to nodes, and what of it happened in a run
     coverage.py    what scenarios have met of that
     mutants.py     changes of a tree, as mistakes could have made them

@@ -5,7 +5,14 @@ from __future__ import annotations
 import json
 from typing import Any, Final
 
-from btq_lang.scenarios.results import ExpectationResult, MutantResult, OutcomePlace, ScenarioReport, ScenarioResult
+from btq_lang.scenarios.results import (
+    CoverageReport,
+    ExpectationResult,
+    MutantResult,
+    OutcomePlace,
+    ScenarioReport,
+    ScenarioResult,
+)
 from btq_lang.util.record import as_dict
 
 FORMAT: Final = "btq-scenarios"
@@ -20,16 +27,20 @@ def render(report: ScenarioReport, colour: bool = False) -> str:
         "scenarios": [_scenario(each) for each in report.scenarios],
     }
     if report.coverage is not None:
-        document["coverage"] = {
-            "nodes": [
-                {**as_dict(node.place), "outcomes": [as_dict(each) for each in node.outcomes]}
-                for node in report.coverage.nodes
-            ],
-            "unused": [{**_without_node(place), "tree": place.node} for place in report.coverage.unused],
-        }
+        document["coverage"] = coverage_as_data(report.coverage)
     if report.mutants is not None:
         document["mutants"] = {"number": report.mutants.number, "mutants": [*map(_mutant, report.mutants.mutants)]}
     return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def coverage_as_data(report: CoverageReport) -> dict[str, Any]:
+    """What scenarios have met, as in the document."""
+    return {
+        "nodes": [
+            {**as_dict(node.place), "outcomes": [as_dict(each) for each in node.outcomes]} for node in report.nodes
+        ],
+        "unused": [{**_without_node(place), "tree": place.node} for place in report.unused],
+    }
 
 
 def _scenario(scenario: ScenarioResult) -> dict[str, Any]:

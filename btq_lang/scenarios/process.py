@@ -1,4 +1,4 @@
-"""A process that runs the scenarios of one file for an editor, whose texts count instead of those on the disk.
+"""A process that runs scenarios or explores missions for an editor, whose texts count instead of those on the disk.
 
 One invariant: it ends when its standard input does, however long a scenario takes, so it never outlives the server that
 started it.
@@ -9,44 +9,60 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from threading import Thread
 from typing import Any
 
 from btq_lang.projects.files import Files
 from btq_lang.render.colour import painter
-from btq_lang.scenarios.results import ExpectationResult, ScenarioResult
+from btq_lang.scenarios.coverage import coverage
+from btq_lang.scenarios.json_document import coverage_as_data
+from btq_lang.scenarios.mission import ScenarioMission
+from btq_lang.scenarios.outcomes import NodeOutcomes
+from btq_lang.scenarios.results import ExpectationResult, OutcomePlace, ScenarioResult
 from btq_lang.scenarios.suite import Suite
 from btq_lang.scenarios.text import scenario_lines, step_in_words
 
 
-def main() -> None:
-    """Read a line of JSON, run what it asks for, and print a line of JSON for each scenario as soon as it has run."""
+def print_answers(answers: Callable[..., Iterator[dict[str, Any]]]) -> None:
+    """Read a line of JSON, the arguments of a function, and print a line of JSON for each answer."""
     asked = json.loads(sys.stdin.readline())
     Thread(target=_end_with_input, daemon=True).start()
-    for result in run_titles(asked["path"], asked["texts"], asked["titles"]):
-        print(json.dumps(result), flush=True)
+    for answer in answers(**asked):
+        print(json.dumps(answer), flush=True)
 
 
-def run_titles(path: str, texts: dict[str, str], titles: list[str]) -> Iterator[dict[str, Any]]:
+def run_titles(path: str, texts: dict[str, str], titles: list[str], is_covered: bool) -> Iterator[dict[str, Any]]:
     """The results of scenarios of a file as plain data.
 
     Args:
         texts: of open files, by path.
         titles: of the scenarios to run; empty: all.
+        is_covered: whether coverage is wanted.
 
     Returns:
         Of each scenario its `number` in the file, its `outcome`, why it is so as a whole, the expectations that do not
-        hold, and the run as `lines` of text; files in them are relative to the current folder.
+        hold, and the run as `lines` of text; then, if it is wanted, the `coverage`, as `btq test --format json` has it.
+        Files in them are relative to the current folder.
     """
     files = Files()
     files.overlay = texts
     groups, _ = files.groups([path])
+    missions: dict[int, tuple[ScenarioMission, NodeOutcomes]] = {}
+    met: list[frozenset[tuple[OutcomePlace, str]]] = []
     for group in groups:
         suite = Suite(group.workspace)
         for place, title in suite.places(path) if path in group.given else ():
-            if not titles or title in titles:
-                yield _as_data(place.number, suite.result(place, is_drawn=True))
+            if titles and title not in titles:
+                continue
+            ran = suite.ran(place, is_drawn=True)
+            yield _as_data(place.number, ran.result)
+            if is_covered and ran.mission is not None and ran.run is not None:
+                key = id(ran.mission)
+                missions[key] = missions.get(key) or (ran.mission, NodeOutcomes(ran.mission))
+                met.append(missions[key][1].met(ran.run))
+    if is_covered:
+        yield {"coverage": coverage_as_data(coverage([*missions.values()], met))}
 
 
 def _as_data(number: int, result: ScenarioResult) -> dict[str, Any]:

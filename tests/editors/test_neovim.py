@@ -700,3 +700,67 @@ def test_scenarios_are_run(neovim: Neovim) -> None:
         'after 0 ms Fallback::1 (main.btq:2): the mission succeeds, and the node has not run with it; expected "B"',
     ]
     assert completed == ["nearest"]
+
+
+EXPLORED = """\
+QualityReq most : reliability "It looks twice"
+    Look tries at most 2
+
+BehaviorTree Main
+    Retry (num_attempts = 3)
+        Look
+"""
+
+
+@every_nvim
+def test_how_a_requirement_can_be_violated(neovim: Neovim) -> None:
+    """By the command, by the code lens after an edit that forbids it, and by the code action."""
+    script = """
+    btq.wait(btq.client, 'the server')
+    local said
+    vim.notify = function(text) said = text end
+    local function hear(act)
+      said = nil
+      act()
+      btq.wait(function() return said end, 'what is said')
+      return said
+    end
+    local mission, seen = vim.api.nvim_get_current_buf(), {}
+    btq.to('Retry')
+    table.insert(seen, hear(function() vim.cmd('BtqExplore') end))
+    btq.to('most')
+    table.insert(seen, hear(function() vim.cmd('BtqExplore') end))
+    local run = { vim.fn.expand('%:t'), vim.bo.filetype, vim.bo.modified, btq.lines() }
+    btq.wait(function() return #vim.lsp.buf_request_sync(0, 'textDocument/codeLens',
+      { textDocument = { uri = vim.uri_from_bufnr(0) } }, 20000) > 0 end, 'the lens of the run')
+    vim.cmd('wincmd p')
+    vim.api.nvim_buf_set_lines(mission, 4, 5, true, { '    Retry (num_attempts = 2)' })
+    for _, lens in ipairs(btq.ask('textDocument/codeLens')) do
+      if lens.command.command == 'btq.explore' then
+        table.insert(seen, lens.command.title .. ' ' .. hear(function()
+          vim.lsp.commands['btq.explore'](lens.command, { client_id = btq.client().id })
+        end))
+      end
+    end
+    vim.ui.select = function(items, _, chosen) chosen(items[1], 1) end
+    table.insert(seen, hear(function()
+      vim.lsp.buf.code_action()
+    end))
+    return { seen, run }
+    """
+    seen, run = neovim.run({"main.btq": EXPLORED}, script)
+    violated = "most `Look tries at most 2` can be violated"
+    assert seen == [
+        "btq: no requirement at the cursor that can be explored",
+        f"btq: {violated}: yes, in 3 ticks",
+        f"how can this be violated? btq: {violated}: no, in all 2 states",
+        f"btq: {violated}: no, in all 2 states",
+    ]
+    scenario = [
+        'include "main.btq"',
+        "",
+        'scenario "most is violated" verifies most',
+        "    given Look fails 2 times, then succeeds",
+        "    expect most",
+    ]
+    assert run == ["most_violated.btq", "btq", True, scenario]

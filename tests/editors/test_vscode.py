@@ -293,6 +293,119 @@ def test_the_test_explorer_lists_and_runs_scenarios(code: Workbench, artifacts: 
     assert code.problems("the mission fails, and the node has not run with it")[0].endswith("[Ln 8, Col 5]")
 
 
+TWICE = """\
+include "fetch.btq"
+
+scenario "E is closed" of Deliver
+    given MoveTo (location = "E") fails
+    expect mission succeeds
+
+scenario "E is closed" of Deliver
+    given MoveTo fails
+    expect mission fails
+"""
+ONCE = """\
+include "fetch.btq"
+
+scenario "it leaves" of Leave
+    expect mission succeeds
+"""
+FETCHED = """\
+BehaviorTree Deliver
+    ?
+        MoveTo (location = "E")
+        MoveTo (location = "B")
+        Charge
+
+BehaviorTree Leave
+    Charge
+
+BehaviorTree Never
+    Charge
+"""
+
+
+def test_what_scenarios_meet_is_in_the_gutter_and_two_may_have_one_title(code: Workbench, artifacts: Path) -> None:
+    code.write("fetch.btq", FETCHED)
+    code.write("once.btq", ONCE)
+    code.write("twice.btq", TWICE)
+    code.open("twice.btq")
+    code.see(".codelens-decoration a:text-is('run')")
+    code.command("Testing: Focus on Test Explorer View")
+    code.see(".test-explorer .monaco-list-row:has-text('twice.btq') .monaco-tl-twistie").click()
+    rows = code.page.locator(".test-explorer .monaco-list-row:has-text('E is closed')")
+    code.until(lambda: rows.count() == 2, lambda: str(rows.all_inner_texts()))
+    code.command("Test: Run All Tests with Coverage")
+    for state in ("passed", "failed"):
+        code.see(f".test-explorer .monaco-list-row:has-text('E is closed') .codicon-testing-{state}-icon")
+    code.open("fetch.btq")
+    lines = code.page.locator(".line-numbers.coverage-deco-gutter")
+
+    def met() -> dict[str, str]:
+        classes = ((each.inner_text(), str(each.get_attribute("class"))) for each in lines.all())
+        return {line: " ".join(word for word in ("hit", "miss") if f"-{word}" in of) for line, of in classes}
+
+    expected = {"2": "hit miss", "3": "hit miss", "4": "hit", "5": "hit miss", "8": "hit miss", "10": "miss"}
+    code.until(lambda: met() == expected, lambda: str(met()))
+    code.shot(artifacts / "vscode-coverage.png")
+    code.keys("Control+;", "Control+Shift+i")  # Toggle Inline Coverage
+    code.cursor(3, 9)
+    code.keys("Control+k", "Control+i")
+    code.see(".monaco-hover:not(.hidden):has-text('Branch MoveTo succeeds in')")
+    code.shot(artifacts / "vscode-coverage-hover.png")
+    code.keys("Escape")
+    code.keys("Control+;", "Control+Shift+i")
+
+
+EXPLORED = """\
+QualityReq most : reliability "It looks twice"
+    Look tries at most 2
+
+BehaviorTree Main
+    Retry (num_attempts = 3)
+        Look
+"""
+EXPLORE = ".codelens-decoration a:text-is('how can this be violated?')"
+
+
+def test_a_run_that_violates_a_requirement_is_opened_and_run(code: Workbench, artifacts: Path) -> None:
+    code.write("look.btq", EXPLORED)
+    code.open("look.btq")
+    code.see(EXPLORE).click()
+    answer = "most `Look tries at most 2` can be violated: "
+    code.see(f".notification-toast:has-text('{answer}yes, in 3 ticks')")
+    code.command("Notifications: Clear All Notifications")
+    code.see(".tab.active.dirty:has-text('most_violated.btq')")
+    code.until(lambda: code.text()[3:4] == ["    given Look fails 2 times, then succeeds"], lambda: str(code.text()))
+    code.see(".editor-group-container.active .codelens-decoration a:text-is('run')").click()
+    (row,) = code.problems("started 3 times; expected most satisfied, bound 2")
+    code.shot(artifacts / "vscode-explored.png")
+    assert row.endswith("btq test [Ln 5, Col 5]")
+    code.see(".tab:has-text('most_violated.btq')").click()
+    code.save()
+    (code.folder / "most_violated.btq").unlink()  # it was saved there, beside the mission
+    code.open("look.btq")
+    code.cursor(5, 28)
+    code.keys("Backspace")
+    code.type("2")
+    code.cursor(1, 13)
+    code.fixes()
+    code.see(".action-widget .monaco-list-row:has-text('Explore how `most` can be violated')").click()
+    code.see(f".notification-toast:has-text('{answer}no, in all 2 states')")
+    code.command("Notifications: Clear All Notifications")
+
+
+def test_the_next_key_ends_a_long_search(code: Workbench) -> None:
+    branches = (f"        ->\n            A{number}\n            B{number}\n" for number in range(12))
+    code.write("long.btq", EXPLORED.replace("Retry (num_attempts = 3)", "ParallelAll") + "".join(branches))
+    code.open("long.btq")
+    code.see(EXPLORE).click()
+    code.see(".statusbar-item:has-text('exploring most')")
+    code.focus()
+    code.type(" ")
+    code.see(".statusbar-item:has-text('a text was edited: ask again whether `most` can be violated')")
+
+
 @pytest.mark.scheduled
 def test_enter_indents_below_what_has_a_block_and_leaves_it_at_the_second(code: Workbench) -> None:
     code.write("typed.btq", "")

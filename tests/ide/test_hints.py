@@ -130,6 +130,7 @@ def test_requirements_that_name_their_own_subjects() -> None:
         """,
         "soon: 0 uses",
         "all_of_them: holds for 2 nodes",
+        "all_of_them: how can this be violated?",
         "run: holds for 1 node",
         "between: holds for 2 nodes",
         "added: holds for 2 nodes",

@@ -730,7 +730,7 @@ def test_code_actions(editor: Editor) -> None:
 def test_an_editor_knows_the_kinds_of_code_actions_and_gets_those_that_it_asks_for(editor: Editor) -> None:
     assert editor.capabilities["codeActionProvider"]["codeActionKinds"] == [
         *("quickfix", "refactor.extract", "refactor.inline", "refactor.rewrite"),
-        *("source.fixAll.btq", "source.organizeImports.btq"),
+        *("source.fixAll.btq", "source.organizeImports.btq", "btq.explore"),
     ]
     editor.open("lib.btq", "BehaviorTree Lib\n    Pick\n")
     head = 'include "lib.btq"\ninclude "lib.btq"  # twice\nsignal b : % from {b}\nRoot Main\n'

@@ -171,6 +171,66 @@ def test_the_texts_of_the_editor_are_run(editor: Editor) -> None:
     assert (editor.root / "deliver.btq").read_text(encoding="utf-8") == TREE
 
 
+COVERED = """\
+BehaviorTree Deliver
+    ->
+        /* 🤖 */ MoveTo (location = "A")
+        Ready
+
+BehaviorTree Leave
+    MoveTo (location = "B")
+
+Condition Ready
+"""
+COVERING = """\
+include "deliver.btq"
+
+given Ready answers true
+
+scenario "all is well" of Deliver
+    expect mission succeeds
+
+scenario "A is closed" of Deliver
+    given MoveTo fails
+    expect mission fails
+
+scenario "A is closed" of Deliver
+    given MoveTo fails
+    expect mission succeeds
+"""
+
+
+def test_what_scenarios_have_met_is_told_by_file(editor: Editor) -> None:
+    editor.open("deliver.btq", TREE)
+    editor.change("deliver.btq", COVERED)
+    editor.open("cases.btq", CASES)
+    editor.change("cases.btq", COVERING)
+
+    def cover(*titles: str) -> Any:
+        return command(editor, "btq.server.coverScenarios", {"uri": editor.uri("cases.btq")}, *titles)
+
+    def node(line: int, column: int, name: str, **scenarios: int) -> Message:
+        outcomes = [{"outcome": outcome, "scenarios": number} for outcome, number in scenarios.items()]
+        return {"position": {"line": line, "character": column}, "node": name, "outcomes": outcomes}
+
+    answer = cover()
+    assert [each["outcome"] for each in answer["results"]] == ["passed", "passed", "failed"]
+    assert answer["coverage"] == [
+        {
+            "uri": editor.uri("deliver.btq"),
+            "nodes": [
+                node(1, 4, "Sequence", succeeds=1, fails=2),
+                node(2, 17, "MoveTo", succeeds=1, fails=2),  # in UTF-16
+                node(3, 8, "Ready", succeeds=1, fails=0),
+            ],
+            "unused": [{"position": {"line": 5, "character": 0}, "tree": "Leave"}],
+        }
+    ]
+    answer = cover("all is well")
+    assert [each["title"] for each in answer["results"]] == ["all is well"]
+    assert answer["coverage"][0]["nodes"][1] == node(2, 17, "MoveTo", succeeds=1, fails=0)
+
+
 def test_an_edit_during_a_run_does_not_change_what_runs(editor: Editor) -> None:
     editor.open("cases.btq", CASES)
     asked = {"command": "btq.server.runScenarios", "arguments": [{"uri": editor.uri("cases.btq")}]}

@@ -38,9 +38,11 @@ if has('nvim')
   command! -buffer -bang BtqPreview lua require('btq.preview').run('<bang>' == '!')
   command! -buffer -nargs=? BtqRun lua require('btq.run').run(tonumber('<args>'))
   command! -buffer -nargs=? -complete=custom,s:tests BtqTest lua require('btq.test').run('<args>')
+  command! -buffer BtqExplore lua require('btq.explore').run()
 endif
 
 let b:undo_ftplugin = 'setlocal commentstring< comments< formatoptions< expandtab< shiftwidth< softtabstop<'
       \ . ' iskeyword< suffixesadd< include< makeprg< errorformat<'
       \ . (has('nvim-0.11') ? ' completeopt<' : '')
-      \ . (has('nvim') ? ' | delcommand -buffer BtqPreview | delcommand -buffer BtqRun | delcommand -buffer BtqTest' : '')
+      \ . (has('nvim') ? ' | delcommand -buffer BtqPreview | delcommand -buffer BtqRun | delcommand -buffer BtqTest'
+      \ . ' | delcommand -buffer BtqExplore' : '')

@@ -15,6 +15,7 @@ import {
 import { completion, watchTyping } from "./completion";
 import { convert } from "./conversion";
 import { isOurs, isTrees, SELECTOR } from "./documents";
+import { explore } from "./explore";
 import { OverviewView } from "./overview";
 import { activeInterpreter, onInterpreterChange } from "./pythonExtension";
 import { type AskUntil, Scenarios } from "./scenarios";
@@ -88,6 +89,9 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     }),
     vscode.commands.registerCommand("btq.runScenario", ({ uri }: { uri: string }, title: string) =>
       orSay(() => scenarios.runTitle(uri, title))(),
+    ),
+    vscode.commands.registerCommand("btq.explore", (document: { uri: string }, requirement: string) =>
+      orSay(() => explore(ask, document, requirement))(),
     ),
     vscode.commands.registerCommand("btq.build", () => tasks.run("build")),
     vscode.commands.registerCommand("btq.showTree", () => tree.show()),
@@ -195,7 +199,7 @@ async function start(
     );
     client.registerFeature({
       // The server sends clickable lenses only to clients that announce a command for them.
-      fillClientCapabilities: (capabilities) => (capabilities.experimental = { commands: ["btq.showReferences", "btq.runScenario"] }),
+      fillClientCapabilities: (capabilities) => (capabilities.experimental = { commands: ["btq.showReferences", "btq.runScenario", "btq.explore"] }),
       initialize: () => undefined,
       getState: () => ({ kind: "static" }),
       clear: () => undefined,

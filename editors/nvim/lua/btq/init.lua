@@ -32,7 +32,7 @@ end
 --- What the client can do, and the commands that the server's code lenses run.
 local function capabilities()
   local known = vim.lsp.protocol.make_client_capabilities()
-  known.experimental = { commands = { 'btq.showReferences', 'btq.runScenario' } }
+  known.experimental = { commands = { 'btq.showReferences', 'btq.runScenario', 'btq.explore' } }
   return known
 end
 
@@ -50,6 +50,10 @@ function M.setup()
   vim.lsp.commands['btq.runScenario'] = function(command, context)
     local buffer = vim.uri_to_bufnr(command.arguments[1].uri)
     require('btq.test').titled(vim.lsp.get_client_by_id(context.client_id), buffer, command.arguments[2])
+  end
+  vim.lsp.commands['btq.explore'] = function(command, context)
+    local buffer = vim.uri_to_bufnr(command.arguments[1].uri)
+    require('btq.explore').ask(vim.lsp.get_client_by_id(context.client_id), buffer, command.arguments)
   end
   local starts_by_itself = vim.lsp.config and vim.lsp.enable -- 0.11 and newer
   if starts_by_itself then

@@ -12,7 +12,7 @@ function M.of(buffer)
 end
 
 --- Send a request; returns its number.
-local function request(client, method, parameters, act, buffer)
+function M.request(client, method, parameters, act, buffer)
   local _, number
   if vim.fn.has('nvim-0.11') == 1 then
     _, number = client:request(method, parameters, act, buffer)
@@ -34,7 +34,7 @@ function M.ask(client, buffer, command, arguments, act)
     end
     act(result)
   end
-  local number = request(client, 'workspace/executeCommand', { command = command, arguments = arguments }, answer, buffer)
+  local number = M.request(client, 'workspace/executeCommand', { command = command, arguments = arguments }, answer, buffer)
   return function()
     is_cancelled = true
     if vim.fn.has('nvim-0.11') == 1 then
@@ -51,7 +51,7 @@ function M.renew(client, buffer)
   local provider = client.server_capabilities.diagnosticProvider
   if provider and vim.lsp.diagnostic.on_diagnostic then
     local parameters = { identifier = provider.identifier, textDocument = { uri = vim.uri_from_bufnr(buffer) } }
-    request(client, 'textDocument/diagnostic', parameters, nil, buffer)
+    M.request(client, 'textDocument/diagnostic', parameters, nil, buffer)
   end
 end
 
