@@ -53,15 +53,22 @@ def judged(mission: ScenarioMission, plan: Plan, run: ScenarioRun) -> tuple[Expe
 
 
 def _verdicts(mission: ScenarioMission, plan: Plan, run: ScenarioRun) -> dict[str, RequirementVerdict]:
-    """The verdicts of the requirements and claims that are expected, by name."""
+    """The verdicts of the requirements and claims that are expected, by name.
+
+    A scenario is a test, so it judges the clauses of a requirement whatever the ways to verify that.
+    """
     expected = [expectation.expected for expectation in plan.expectations]
     names = {each.name for each in expected if isinstance(each, WantedVerdict)}
     claims = [each for each in expected if isinstance(each, ExpectedClaims)]
     if not names and not claims:
         return {}
     requirements = mission.requirements
-    demanded = {name: requirement for name, requirement in requirements.all.items() if name in names}
-    applied = [each for each in requirements.applied if each.requirement.name in names]
+    demanded = {name: replace(each, ways=()) for name, each in requirements.all.items() if name in names}
+    applied = [
+        replace(each, requirement=replace(each.requirement, ways=()))
+        for each in requirements.applied
+        if each.requirement.name in names
+    ]
     candidate, joined = mission.judged_with(
         replace(
             requirements,

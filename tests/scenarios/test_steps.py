@@ -210,6 +210,21 @@ def test_a_requirement_whose_signal_nobody_gives_is_unknown(tmp_path: Path) -> N
     assert (scenario["outcome"], reasons(scenario)) == ("unknown", ["no samples of `person`"])
 
 
+@pytest.mark.parametrize("ways", ["test", 'test "S"', 'analysis, review "R-3"', "monitor, test"])
+def test_a_scenario_judges_what_is_verified_by_people(tmp_path: Path, ways: str) -> None:
+    (tmp_path / "main.btq").write_text(
+        'QualityReq soon : time-behaviour "Soon"\n    Move takes at most 3 s\n'
+        f"    verified by {ways}\nBehaviorTree Main\n    ->\n        Move\nAction Move\n"
+        + "".join(
+            f'scenario "{expect}" verifies soon\n    given Move takes {seconds} s\n    expect {expect}\n'
+            for seconds, expect in ((2, "soon"), (4, "soon violated"))
+        ),
+        encoding="utf-8",
+    )
+    code, out, err = run_btq("test", "main.btq", cwd=tmp_path)
+    assert (code, err, out.splitlines()[-1]) == (0, "", "2 scenarios: 2 passed")
+
+
 def test_a_requirement_whose_node_did_not_run_names_it(tmp_path: Path) -> None:
     scenario = result(tmp_path, "given Low answers true", "given First fails", "expect quick")
     assert reasons(scenario) == ["0 s Sequence::1:19 quick is never exercised: Dock::7 did not start in any run"]
