@@ -22,6 +22,7 @@ from btq_lang.evidence.verdicts import (
 )
 from btq_lang.evidence.wording import quantity
 from btq_lang.requirements.model import ResolvedSignal, signals_in
+from btq_lang.requirements.one_run import needs_runs, shown_by_one
 from btq_lang.scenarios.mission import ScenarioMission
 from btq_lang.scenarios.plan import (
     Expectation,
@@ -156,7 +157,8 @@ class _Judge:
         actual = verdict_in_words(verdict)
         if actual == expected.verdict:
             return None, ""
-        why = next((_why(clause) for clause in verdict.clauses if clause.why), "")
+        why = self._undecided(expected.name) if actual in (UNDECIDED, UNKNOWN) else ""
+        why = "; ".join(filter(None, (next((_why(clause) for clause in verdict.clauses if clause.why), ""), why)))
         if actual == UNKNOWN and expected.verdict in (SATISFIED, VIOLATED):
             return None, why
         wanted = f"{expected.name} {expected.verdict}"
@@ -165,6 +167,13 @@ class _Judge:
             first = min(violations, key=lambda violation: violation.at)
             return self._violation(first, f"{wanted}{f', bound {first.bound}' if first.bound else ''}"), ""
         return replace(self._at_end(wanted), happened=f"{expected.name} is {actual}{f': {why}' if why else ''}"), ""
+
+    def _undecided(self, name: str) -> str:
+        """Why this run alone cannot decide a requirement about many; empty if it is not about many."""
+        requirement = self._mission.requirements.all[name]
+        what = needs_runs(requirement)
+        shown = " and ".join(f"`expect {text}`" for text in shown_by_one(requirement))
+        return f"one run cannot decide {what}{f'; {shown} is what it can show' if shown else ''}" if what else ""
 
     # ---- values of ports ----
 

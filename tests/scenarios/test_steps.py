@@ -225,6 +225,50 @@ def test_a_scenario_judges_what_is_verified_by_people(tmp_path: Path, ways: str)
     assert (code, err, out.splitlines()[-1]) == (0, "", "2 scenarios: 2 passed")
 
 
+@pytest.mark.parametrize(
+    ("clauses", "why"),
+    [
+        (
+            ["mission succeeds within 40 min", "in at least 95 % of runs", "confidence 95 %"],
+            "often is undecided: one run cannot decide `in at least 95 % of runs` with confidence 95 %; "
+            "`expect mission succeeds within 40 min` is what it can show",
+        ),
+        (
+            ["mission takes at most 6 s on average", "confidence 95 %"],
+            "often is undecided: one run cannot decide `mission takes at most 6 s on average` with confidence 95 %; "
+            "`expect mission takes at most 6 s` is what it can show",
+        ),
+        (
+            ["Move takes at most 6 s", "in at least 95 % of activations", "confidence 95 %", "while not low"],
+            "often is undecided: one run cannot decide `in at least 95 % of activations` with confidence 95 %",
+        ),
+    ],
+)
+def test_one_run_cannot_decide_what_is_about_many(tmp_path: Path, clauses: list[str], why: str) -> None:
+    demanded = "".join(f"    {clause}\n" for clause in clauses)
+    (tmp_path / "main.btq").write_text(
+        f'signal low : bool from {{low}} initially false\nQualityReq often : reliability "Often"\n{demanded}'
+        "BehaviorTree Main\n    ->\n        Move\nAction Move\n"
+        'scenario "S"\n    given low = false\n    given Move takes 4 s\n    expect often\n',
+        encoding="utf-8",
+    )
+    _, out, _ = run_btq("test", "main.btq", "--format", "json", cwd=tmp_path)
+    (scenario,) = json.loads(out)["scenarios"]
+    assert (scenario["outcome"], scenario["expectations"][0]["step"]["happened"]) == ("failed", why)
+
+
+def test_what_hours_decide_is_unknown_after_one_run(tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text(
+        'QualityReq seldom : reliability "Seldom"\n    Move fails at most 1 per 1000 h\n'
+        'BehaviorTree Main\n    Move\nAction Move\nscenario "S"\n    given Move takes 4 s\n    expect seldom\n',
+        encoding="utf-8",
+    )
+    _, out, _ = run_btq("test", "main.btq", "--format", "json", cwd=tmp_path)
+    (scenario,) = json.loads(out)["scenarios"]
+    why = "0 in 4 s, 1000 h more are needed; one run cannot decide `Move fails at most 1 per 1000 h`"
+    assert (scenario["outcome"], scenario["expectations"][0]["why"]) == ("unknown", why)
+
+
 def test_a_requirement_whose_node_did_not_run_names_it(tmp_path: Path) -> None:
     scenario = result(tmp_path, "given Low answers true", "given First fails", "expect quick")
     assert reasons(scenario) == ["0 s Sequence::1:19 quick is never exercised: Dock::7 did not start in any run"]
