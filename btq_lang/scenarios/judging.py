@@ -91,12 +91,13 @@ class _Judge:
     def result(self, expectation: Expectation) -> ExpectationResult:
         """The result of an expectation."""
         expected = expectation.expected
-        why = ""
+        why = note = ""
         step: Step | None
         if isinstance(expected, ExpectedClaims):
             step, why = self._claims(self._verdicts[expected.requirement.name], expectation.text)
         elif isinstance(expected, WantedVerdict):
             step, why = self._verdict(self._verdicts[expected.name], expected)
+            note = _not_exercised(self._verdicts[expected.name])
         elif isinstance(expected, ExpectedValues):
             step, why = self._values(expected)
         elif isinstance(expected, ExpectedEnd):
@@ -104,7 +105,7 @@ class _Judge:
         else:
             step = None if self._run.end == expected.end else self._at_end(_EXPECTED[expected.end])
         outcome: Outcome = "failed" if step is not None else "unknown" if why else "passed"
-        return ExpectationResult(expectation.text, expectation.line, outcome, why, step)
+        return ExpectationResult(expectation.text, expectation.line, outcome, why, step, note)
 
     def node(self, uid: int) -> tuple[str, str, int]:
         """The path, the file and the line of a node; of a guard, those of the node that it guards."""
@@ -246,6 +247,15 @@ def verdict_in_words(verdict: RequirementVerdict) -> str:
     """A verdict as a scenario expects it."""
     is_not_applicable = verdict.verdict == NEVER and any(clause.not_applicable for clause in verdict.clauses)
     return "not applicable" if is_not_applicable else verdict.verdict
+
+
+def _not_exercised(verdict: RequirementVerdict) -> str:
+    """The clauses that nothing exercised at any node, if others were; empty without any."""
+    exercised = {clause.text for clause in verdict.clauses if clause.verdict != NEVER}
+    others = {clause.text: clause for clause in verdict.clauses if clause.text not in exercised}
+    if not exercised:
+        return ""
+    return "; ".join(f"`{text}` is never exercised: {_why(clause)}" for text, clause in others.items())
 
 
 class _NothingRuns(Nearby):

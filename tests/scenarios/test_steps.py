@@ -274,6 +274,31 @@ def test_a_requirement_whose_node_did_not_run_names_it(tmp_path: Path) -> None:
     assert reasons(scenario) == ["0 s Sequence::1:19 quick is never exercised: Dock::7 did not start in any run"]
 
 
+def test_a_clause_that_nothing_exercised_is_noted(tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text(
+        'QualityReq both : safety "Both"\n    Report starts within 60 s after Move fails\n    mission succeeds\n'
+        "BehaviorTree Main\n    ?\n        Move\n        Report\nAction Move\nAction Report\n"
+        'scenario "S"\n    given Move succeeds\n    expect both\n'
+        'scenario "T"\n    given Move fails\n    expect both\n'
+        'scenario "U"\n    given Move fails\n    given Report fails\n    expect both violated\n',
+        encoding="utf-8",
+    )
+    note = "`Report starts within 60 s after Move fails` is never exercised: Report::3 did not start in any run"
+    assert run_btq("test", "main.btq", cwd=tmp_path) == (
+        0,
+        "passed  S (main.btq:10): succeeds after 0 ms\n"
+        f"        line 12 expects both; {note}\n"
+        "passed  T (main.btq:13): succeeds after 0 ms\n"
+        "passed  U (main.btq:16): fails after 0 ms\n"
+        "3 scenarios: 3 passed\n",
+        "",
+    )
+    _, out, _ = run_btq("test", "main.btq", "--format", "json", cwd=tmp_path)
+    document = json.loads(out)
+    assert [*violations(document, SCHEMA)] == []
+    assert [each["expectations"][0]["note"] for each in document["scenarios"]] == [note, "", ""]
+
+
 def test_a_halted_mission_neither_succeeds_nor_fails(tmp_path: Path) -> None:
     scenario = result(
         tmp_path, *QUIET, "given Dock takes 9 s", "when Dock starts: mission halts", "expect mission succeeds"
