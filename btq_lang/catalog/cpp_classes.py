@@ -71,6 +71,10 @@ LIBRARIES: Final[dict[str, Category]] = {
     ),
     **dict.fromkeys(("RosTopicPubNode", "RosTopicSubNode"), "Condition"),
 }
+# Classes whose actions start only after a reset: they tick what has ended without starting it.
+STARTING_AFTER_RESET: Final = frozenset(
+    (*("StatefulActionNode", "ThreadedAction", "AsyncActionNode"), *("RosActionNode", "RosServiceNode", "BtActionNode"))
+)
 # By class of nav2_behavior_tree.
 _NAME: Final = BasePort("input", "server_name", "std::string", "Action server name")
 _TIMEOUT: Final = BasePort("input", "server_timeout", "std::chrono::milliseconds")

@@ -36,6 +36,16 @@ NO_DELAY: Final = BehaviorChange(
     "put a Sleep before the child",
     until="4.9",
 )
+# Up to 4.6 it is a trap, so that a file for these meets it without moving on.
+COPY_IS_UPDATE: Final = BehaviorChange(
+    "4.7",
+    ("SetBlackboard",),
+    "is an update where it copies an entry; before, no node noticed that",
+    "look at what waits for the update",
+    "value",
+    r"\{.*\}",
+    when="watched",
+)
 
 ENGINE_CHANGES: Final = (
     BehaviorChange(
@@ -117,6 +127,7 @@ ENGINE_CHANGES: Final = (
         when="queue of a script",
     ),
     NO_DELAY,
+    COPY_IS_UPDATE,
     BehaviorChange(
         "4.9",
         ("Delay",),

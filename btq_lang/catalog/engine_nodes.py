@@ -430,10 +430,10 @@ _LEAVES: Final = (
         "SetBlackboard",
         "Writes a value into a blackboard entry.",
         "output_key names the entry, without braces; {k} means the entry whose name is the value of k. A "
-        "value {k} copies that entry. From 4.7 on, a literal written over an entry without a type stores an "
-        "empty value: use Script instead.",
+        "value {k} copies that entry; from 4.7 on, it fails if that has no value. A literal that it writes over an "
+        "entry without a type stores an empty value then, too: use Script instead.",
         ports=(
-            _input("value", _ANYTHING, "The literal, or the entry to copy", required=True),
+            _input("value", _ANYTHING, "The literal, or the entry to copy", required=True, role="copied"),
             _key("output_key", "inout", _ANYTHING, "The entry to write, without braces", indirect=True),
         ),
         execution="synchronous",

@@ -85,8 +85,11 @@ OneTick: TypeAlias = Literal["", "first", "next", "both", "unskipped"]
 # time: how long it waits, or lets its child run.  successes, failures: how many of its children must succeed or
 # fail for it to do so; a negative number counts from the end.  otherwise: what it returns without its child.
 # retries: how often its second child may help its first.  wraps: whether its first child follows its last.  index:
-# the entry with the number of its child, which it counts on.
-Role: TypeAlias = Literal["", "count", "time", "successes", "failures", "otherwise", "retries", "wraps", "index"]
+# the entry with the number of its child, which it counts on.  copied: the value that it writes; if that is an entry
+# without a value, it fails.
+Role: TypeAlias = Literal[
+    "", "count", "time", "successes", "failures", "otherwise", "retries", "wraps", "index", "copied"
+]
 
 # The text of a port: a value, a script, or the name of a blackboard entry, written without braces.
 Content: TypeAlias = "Literal['value', 'script', 'key']"

@@ -15,6 +15,7 @@ the next.  Checks do not know what an edit changed, nor how findings are printed
     typed_numbers.py, passed_literals.py   values that a SubTree passes to the nodes below it
     entries.py, pointers.py, writers.py, misspelt.py, meant_entries.py, mixed_types.py   blackboard entries
     calls.py, flow.py, unset.py, arguments.py   entries across trees: read and never set, given and never read
+    entry_effects.py   entries that a node seems to remove or to update
     engines.py, version3.py   which versions of the engine a file is for
     moving.py, target_changes.py   what another version of the engine or distribution of Nav2 changes
     statuses.py, results.py, unreachable.py, reactive.py, preconditions.py, resets.py   what nodes return, and traps
@@ -43,6 +44,7 @@ from btq_lang.checks import (
     clauses,
     demands,
     elements,
+    entry_effects,
     includes,
     kinds,
     literals,
@@ -208,6 +210,9 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         nav2_literals.percentage_for_share,
         resets.memory_lost,
         resets.last_success_lost,
+        resets.stateful_condition,
+        entry_effects.unset_without_effect,
+        entry_effects.unnoticed_update,
         unread.default_instead,
         unread.error_code_not_collected,
         unread.foreign_error_code,
@@ -270,6 +275,7 @@ _OF_STRUCTURE: frozenset[Check] = frozenset(
         unreachable.unreachable_child,
         resets.memory_lost,
         resets.last_success_lost,
+        resets.stateful_condition,
     )
 )
 # A file has many models: `_OF_PORTS` concern those with ports, and these checks those of trees with ports.

@@ -20,6 +20,14 @@ def ends_at_once(workspace: Workspace, viewpoint: str, kind: Kind, name: str) ->
 
 
 @of_name
+def keeps_its_result(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
+    """Whether the C++ of a node shows that it starts only after a reset."""
+    definitions = workspace.scope(viewpoint).all(kind, name)
+    nodes = (workspace.files[definition.path].cpp_nodes.get(name) for definition in definitions)
+    return any(node.keeps_result for node in nodes if node is not None)
+
+
+@of_name
 def without(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> tuple[tuple[str, str], ...] | None:
     """The effect of each input of a node for which there is no value; None if the node is not made of C++."""
     definition = workspace.scope(viewpoint).find(kind, name)

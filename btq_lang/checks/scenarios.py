@@ -259,6 +259,8 @@ def _which_port(view: View, targets: Sequence[ResolvedNode], expectation: syntax
 def _impossible(targets: Sequence[ResolvedNode], given: syntax.NodesDo) -> Iterator[Diagnostic]:
     """Behaviors that none of some nodes can have: a condition answers, all other nodes do not, and nodes of the engine
     do what the engine does."""
+    from btq_lang.catalog.nav2.nodes import ASKING  # few files have scenarios
+
     if not targets:
         return
     span = Span(given.nodes.start, given.nodes.end)
@@ -268,11 +270,12 @@ def _impossible(targets: Sequence[ResolvedNode], given: syntax.NodesDo) -> Itera
         yield Diagnostic("impossible-step", span, message, notes=("say what the nodes of your robot below it do",))
         return
     categories = {target.category for target in targets if target.kind is None}
+    is_asked = any(target.id is not None and target.id.text in ASKING for target in targets)
     shown = targets[0].shown_kind
     for behavior in given.behaviors:
         for aspect in behavior.aspects:
             word = aspect.word.raw
-            if word == "answers" and categories <= {"Action", "Control", "Decorator"}:
+            if word == "answers" and categories <= {"Action", "Control", "Decorator"} and not is_asked:
                 message = f"{shown} is not a condition: it succeeds or fails, and answers nothing"
                 only = aspect.answers[0].raw if len(aspect.answers) == 1 else ""
                 meant = {"true": "succeeds", "false": "fails"}.get(only)

@@ -13,7 +13,7 @@ from typing import Final
 
 from btq_lang.catalog.kinds import Flow, NodeKind, Role
 from btq_lang.syntax.tree import Node, Word
-from btq_lang.workspace.node_names import wraps
+from btq_lang.workspace.node_names import copies, wraps
 
 SUCCESS: Final = 1
 FAILURE: Final = 2
@@ -32,7 +32,7 @@ def of_kind(kind: NodeKind, node: Node, children: Sequence[int], starting: bool)
     """
     flow = kind.flow
     if flow in _LEAVES:
-        return _LEAVES[flow]
+        return _LEAVES["answers" if copies(kind, node) else flow]
     if flow == "notices":
         return FAILURE if starting else SUCCESS | FAILURE
     if flow == "sleeps":

@@ -17,6 +17,7 @@ from btq_lang.catalog.nav2.changes import CHANGES, INSTEAD, RENAMED, RENAMED_POR
 from btq_lang.catalog.versions import ENTRIES_OF_SUBTREE, LAST_TREE_COUNTS, BehaviorChange, at_least, last_of
 from btq_lang.checks import lookups
 from btq_lang.checks.entries import mentions
+from btq_lang.checks.entry_effects import watcher_of_copy
 from btq_lang.checks.mixed_types import entry_with_two_types
 from btq_lang.checks.nav2_nodes import isolated_node
 from btq_lang.checks.pointers import pointed_at
@@ -228,4 +229,5 @@ _WHEN: Final[Mapping[str, Callable[[View, ResolvedNode], bool]]] = {
     "restarts": lambda view, resolved: _count_running(view, resolved) > 1,  # one of them is before another one
     "skipped in the end": _skipped_in_the_end,
     "queue of a script": _queue_of_script,
+    "watched": lambda view, resolved: watcher_of_copy(view, resolved) is not None,
 }

@@ -243,11 +243,12 @@ def _add_trace(parser: SuggestingParser) -> None:
     "test",
     "run the scenarios of missions without a robot: what happens when …",
     "exit codes: 0 all as expected; 1 a scenario failed, or is unknown; 2 usage, I/O, a mistake in a scenario,\n"
-    "or no scenario\n\n"
+    "no scenario, or no engine\n\n"
     "examples:\n  btq test                           all scenarios below this folder\n"
     "  btq test tests/deliver.btq --show  and how each run went\n"
     "  btq test -k station                those with `station` in their titles\n"
     "  btq test --coverage --mutants      what they do not test\n"
+    "  btq test --engine                  in an installed BehaviorTree.CPP, too\n"
     "  btq test --format junit -o scenarios.xml\n",
 )
 def _add_test(parser: SuggestingParser) -> None:
@@ -268,6 +269,13 @@ def _add_test(parser: SuggestingParser) -> None:
         help="change the tree in many ways, and say which changes no scenario notices; N: only so many of them",
     )
     parser.add("--rules", metavar="FILE", help="write what a scenario gives as substitution rules of the engine")
+    parser.add(
+        "--engine",
+        nargs="?",
+        const="",
+        metavar="PREFIX",
+        help="run them in an installed BehaviorTree.CPP, too, and judge what it does; PREFIX: where it is installed",
+    )
     parser.add("--jobs", type=int, default=0, metavar="N", help="run them in N processes; default: by their number")
     parser.add("--format", choices=SCENARIO_FORMATS, help="default: as the file of -o ends, else text")
     parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")

@@ -6,6 +6,7 @@ import os
 import sys
 from collections.abc import Sequence
 from functools import partial
+from typing import TYPE_CHECKING
 
 from btq_lang import scenarios
 from btq_lang.commands.output import form_of, form_problem, is_coloured, write_file, write_output
@@ -16,8 +17,13 @@ from btq_lang.projects.options import refuse
 from btq_lang.scenarios.parallel import result_of, results
 from btq_lang.scenarios.results import ScenarioReport, ScenarioResult
 from btq_lang.scenarios.suite import ScenarioPlace, Suite
-from btq_lang.util.record import Record
+from btq_lang.util.record import Record, replace
+from btq_lang.workspace.config import is_engine
 from btq_lang.workspace.file import SUFFIXES, XML_SUFFIXES
+from btq_lang.workspace.workspace import Workspace
+
+if TYPE_CHECKING:
+    from btq_lang.scenarios.installed_engine import InstalledEngine
 
 
 class ScenarioOptions(Record):
@@ -32,6 +38,7 @@ class ScenarioOptions(Record):
         coverage: say what no scenario has met.
         mutants: say which changes of the tree no scenario notices: of so many; 0: of all; None: no.
         rules: the file for the engine's substitution rules that say what is given; None: the scenario runs.
+        engine: the prefix of an installed engine in which they run, too; empty: wherever it is found; None: no.
         jobs: the number of processes; 0: as many as there are processors, if there are many scenarios.
     """
 
@@ -44,6 +51,7 @@ class ScenarioOptions(Record):
     coverage: bool
     mutants: int | None
     rules: str | None
+    engine: str | None
     jobs: int
     format: str | None
     output: str | None
@@ -78,10 +86,9 @@ def _run(options: ScenarioOptions, files: Files, messages: CommandOutput) -> tup
     groups, problems = files.groups(options.paths, options.stdin_filename)
     messages.problems(problems)
     watched = tuple(path for group in groups for path in group.watched)
-    workspaces = [group.workspace for group in groups]
-    if options.target:
-        workspaces = [for_target(each, options.target) for each in workspaces]
-    suites = [Suite(each, not options.no_enforce) for each in workspaces]
+    engine = _engine(options.engine)
+    workspaces = [_targeted(group.workspace, options.target, engine) for group in groups]
+    suites = [Suite(each, not options.no_enforce, engine) for each in workspaces]
     wanted = [
         (index, place)
         for index, group in enumerate(groups)
@@ -95,13 +102,35 @@ def _run(options: ScenarioOptions, files: Files, messages: CommandOutput) -> tup
     if options.rules is not None:
         return _write_rules(suites, wanted, options.rules, messages), watched
     jobs = options.jobs or (os.cpu_count() or 1 if len(wanted) >= _MANY else 1)
-    report = _report(suites, wanted, options, jobs)
+    report = replace(_report(suites, wanted, options, jobs), engine=engine.version if engine is not None else "")
     form = form_of(options.format, options.output, scenarios.FORMATS)
     colour = form == "text" and options.output in (None, "-") and is_coloured(options.color, sys.stdout.isatty())
     write_output(messages, options.output, scenarios.write(report, form, colour=colour), form)
     if problems or report.count("error"):
         return 2, watched
     return int(report.count("passed") < len(report.scenarios)), watched
+
+
+def _engine(prefix: str | None) -> InstalledEngine | None:
+    """The installed engine that is wanted; None if none is."""
+    if prefix is None:
+        return None
+    from btq_lang.scenarios.installed_engine import NoInstalledEngine, installed_engine
+
+    try:
+        return installed_engine(prefix)
+    except NoInstalledEngine as reason:
+        refuse(f"--engine: {reason}")
+        return None
+
+
+def _targeted(workspace: Workspace, target: str | None, engine: InstalledEngine | None) -> Workspace:
+    """A workspace for one version: the given one, or that of the engine if the project allows it."""
+    if target is None and engine is not None:
+        project = workspace.project
+        if is_engine(engine.line) and (engine.line in project.engines or not project.pinned):
+            target = engine.line
+    return for_target(workspace, target) if target else workspace
 
 
 def _write_rules(

@@ -78,6 +78,7 @@ class CppNode(Record):
         undeclared: reads and writes of ports that it does not provide.
         without: what its code does if it gets no value of an input, as where an entry has none: see `PortUse.without`.
         at_once: whether it is seen to end within the tick that starts it.
+        keeps_result: whether it is seen to start only after a reset: until then it has the result that it has.
         nav2_base: the class of nav2_behavior_tree from which its class derives; empty if from none.
     """
 
@@ -92,6 +93,7 @@ class CppNode(Record):
     undeclared: tuple[PortUse, ...] = ()
     without: tuple[tuple[str, str], ...] = ()
     at_once: bool = False
+    keeps_result: bool = False
     nav2_base: str = ""
 
     def goes_on_without(self, port: CppPort) -> bool:

@@ -9,6 +9,7 @@ import re
 from collections.abc import Container, Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.catalog.cpp_classes import NAMESPACE, STARTING_AFTER_RESET
 from btq_lang.catalog.kinds import Category
 from btq_lang.catalog.nav2 import DISTRIBUTIONS
 from btq_lang.cpp.grammar import LAMBDAS, arguments, callee, contents, enclosing, field, text_of, walk
@@ -152,6 +153,7 @@ class _Reader:
             uses.undeclared(ports) if complete else (),
             uses.without_each(ports),
             ends_within_tick(self.sources, bound),
+            keeps_result(self.sources, bound),
             self.sources.nav2_base(bound),
         )
 
@@ -196,6 +198,16 @@ def ends_within_tick(sources: CppSources, bound: BoundClass) -> bool:
         bodies = sources.methods(ancestor, "tick")
         if bodies or (ancestor.class_ is not None and "tick" in ancestor.class_.promised):
             return len(bodies) == 1 and _answers(bodies[0][0])
+    return False
+
+
+def keeps_result(sources: CppSources, bound: BoundClass) -> bool:
+    """Whether the nodes of a class are seen to start only after a reset."""
+    for ancestor in sources.ancestry(bound):
+        scope, _, name = ancestor.name.rpartition("::")
+        is_of_library = scope in ("BT", NAMESPACE) or (ancestor.class_ is None and not scope)
+        if is_of_library and name in STARTING_AFTER_RESET:
+            return True
     return False
 
 

@@ -1,7 +1,8 @@
 """Answers to questions about what can happen in a mission.
 
 One invariant: *no* is only said when every state was seen, with leaves that run on wherever that can matter; *yes* has
-a witness, which the model has made again.
+a witness, which the model has made again.  Where counting attempts takes more states than are allowed, a search without
+counts may still say no: more can happen in it than in the engine.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from btq_lang.exploration.missions import ExploredMission
 from btq_lang.exploration.opened import Opened, Watch
 from btq_lang.exploration.outcomes import UNKNOWN
 from btq_lang.exploration.questions import EndlessRun, Question
+from btq_lang.exploration.resuming import last_count
 from btq_lang.exploration.running import may_run
 from btq_lang.exploration.search import Search, SearchBudget
 from btq_lang.exploration.watching import Asking
@@ -32,6 +34,7 @@ class Answer(Record):
         circle: the ticks that a run can repeat without an end, if that was asked.
         is_assumed: the witness takes a value calculated from unknown ones to be something, which it may not be.
         unknown: what is not known of the tree, so that not all was seen.
+        is_counted: attempts and cycles were counted; else the answer holds for any number of them.
     """
 
     word: Word
@@ -40,6 +43,7 @@ class Answer(Record):
     circle: tuple[Tick, ...] = ()
     is_assumed: bool = False
     unknown: tuple[str, ...] = ()
+    is_counted: bool = True
 
 
 def answered(mission: ExploredMission, question: Question, budget: SearchBudget) -> Answer:
@@ -78,8 +82,22 @@ def answered_by(
             return Answer("yes", states, ticks[: len(ways)], ticks[len(ways) :], opened.snapshots.has_assumed)
         if leaves == running:
             unknown = tuple([end.message for end in search.ends if end.result == UNKNOWN])
-            return Answer("no" if search.is_closed else "not found", states, unknown=unknown)
+            if search.is_closed:
+                return Answer("no", states)
+            if not (unknown or is_circle) and (rough := without_counts(opened, watch, leaves, budget)) is not None:
+                return Answer("no", rough.states, is_counted=False)
+            return Answer("not found", states, unknown=unknown)
     raise AssertionError("the last pass has an answer")
+
+
+def without_counts(opened: Opened, watch: Watch, leaves: frozenset[int], budget: SearchBudget) -> Search | None:
+    """A search of all states in which each attempt and each cycle may be the last; None: what is asked was found in
+    it, it was cut off, or the tree has no counts."""
+    if not any(map(last_count, opened.machine.nodes)):
+        return None
+    opened.begin(watch, leaves)
+    search = Search(opened.snapshots, budget, counts=False).run()
+    return search if search.is_closed and search.way is None else None
 
 
 def full_runs(opened: Opened, asked: Collection[int] = ()) -> frozenset[int]:

@@ -13,7 +13,7 @@ from time import process_time
 from typing import Final, TypeAlias
 
 from btq_lang.exploration.choices import Choices
-from btq_lang.exploration.resuming import is_endless, is_resumed
+from btq_lang.exploration.resuming import is_endless, is_resumed, last_count
 from btq_lang.exploration.snapshots import Memories, Shared, Snapshots
 from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.nodes import SimulatedNode
@@ -67,10 +67,14 @@ class Outcome:
 class Outcomes:
     """Computes outcomes, and remembers them."""
 
-    def __init__(self, snapshots: Snapshots, most_runs: int, deadline: float | None = None) -> None:
+    def __init__(
+        self, snapshots: Snapshots, most_runs: int, deadline: float | None = None, counts: bool = True
+    ) -> None:
         """Begin with nothing remembered.
 
         Args:
+            counts: Repeat and Retry count; else each time may be their last, so that more can happen than in the
+                engine, and nothing less.
             most_runs: how many ways are tried before `OutOfWork` is raised.
             deadline: until when, in seconds of processor time; None: any.
         """
@@ -84,6 +88,7 @@ class Outcomes:
         self._parents: Final = {child.uid: node for node in nodes for child in node.children}
         self._resumed: Final = {node.uid for node in nodes if is_resumed(node)}
         self._uncounted: Final = {node.uid for node in nodes if is_endless(node)}
+        self._last: Final = {node.uid: last for node in nodes if not counts and (last := last_count(node))}
         self._kept = 0
         self._running: SimulatedNode | None = None  # whose run goes on
         self._has_ticked = False  # it has ticked a child in this run
@@ -156,6 +161,8 @@ class Outcomes:
         try:
             if before is not None:
                 before()
+            if node.index == 0 and node.uid in self._last and snapshots.choose(2):
+                node.count = self._last[node.uid]
             result = tick_itself(snapshots.machine, node, goes_on)
         except Happened:
             return Outcome(ENDED, snapshots.choices.log)
@@ -165,7 +172,7 @@ class Outcomes:
             return Outcome(UNKNOWN, snapshots.choices.log, message=str(error))
         except _GoesOn:
             result = _GOES_ON
-        if node.uid in self._uncounted:
+        if node.uid in self._uncounted or node.uid in self._last:
             node.count = 0
         return Outcome(result, snapshots.choices.log, snapshots.memories(node), snapshots.shared())
 

@@ -45,7 +45,7 @@ def _lines(explored: Explored) -> Iterator[str]:
     mission = explored.mission
     engine = f"BehaviorTree.CPP {mission.dialect.version}"
     nav2 = f", Nav2 {mission.dialect.nav2.title()}" if mission.dialect.nav2 else ""
-    nav2 += f' (assumed; name it: nodes = ["nav2-{mission.dialect.nav2}"])' if mission.is_nav2_assumed else ""
+    nav2 += f' (assumed; name it: nodes = ["nav2-{mission.dialect.nav2}"])' if mission.program.is_nav2_assumed else ""
     yield f"{shown(mission.path)}: tree {mission.tree}, {engine}{nav2}"
     for asked in explored.asked:
         answer = asked.answer
@@ -67,10 +67,11 @@ def _lines(explored: Explored) -> Iterator[str]:
     if explored.survey is not None:
         survey = explored.survey
         seen = "all" if survey.is_closed else "not all: the first"
-        yield f"  {seen} {counted(survey.states, 'state')} seen"
+        yield f"  {seen} {counted(survey.states, 'state')} seen{'' if survey.is_counted else _UNCOUNTED}"
         yield from (f"    not known: {reason}" for reason in survey.unknown)
         for finding in survey.findings:
-            yield f"  {finding.kind}: {finding.text}{_at(mission, finding.uid)}"
+            rule = f"; btq check: {finding.rule}" if finding.rule else ""
+            yield f"  {finding.kind}: {finding.text}{_at(mission, finding.uid)}{rule}"
             yield from _run(mission, finding.witness, 1)
 
 
@@ -83,7 +84,7 @@ def _word(answer: Answer) -> str:
     if answer.word == "yes":
         return f"yes, in {counted(len(answer.witness) + len(answer.circle), 'tick')}"
     if answer.word == "no":
-        return f"no, in all {counted(answer.states, 'state')}"
+        return f"no, in all {counted(answer.states, 'state')}{'' if answer.is_counted else _UNCOUNTED}"
     return f"not found in {counted(answer.states, 'state')}"
 
 
@@ -139,11 +140,13 @@ def _mission(explored: Explored) -> Json:
             "states": survey.states,
             "closed": survey.is_closed,
             "unknown": list(survey.unknown),
+            "counted": survey.is_counted,
             "findings": [
                 {
                     "kind": finding.kind,
                     "text": finding.text,
                     **_node(mission, finding.uid),
+                    **({"rule": finding.rule} if finding.rule else {}),
                     "witness": _ticks(mission, finding.witness),
                 }
                 for finding in survey.findings
@@ -158,6 +161,7 @@ def _answer(mission: ExploredMission, answer: Answer) -> dict[str, Json]:
         "states": answer.states,
         "assumed": answer.is_assumed,
         "unknown": list(answer.unknown),
+        "counted": answer.is_counted,
         "witness": _ticks(mission, answer.witness),
         "circle": _ticks(mission, answer.circle),
     }
@@ -183,4 +187,5 @@ def _node(mission: ExploredMission, uid: int) -> dict[str, Json]:
     return {"uid": uid} if place is None else {"uid": uid, "file": shown(place[0]), "line": place[1]}
 
 
+_UNCOUNTED: Final = ", with any number of attempts"
 _VERSION: Final = 1

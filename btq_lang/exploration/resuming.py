@@ -23,6 +23,15 @@ def is_endless(node: SimulatedNode) -> bool:
     return is_resumed(node) and any(node.ports.get(port, "").strip() == "-1" for port in _COUNTS[:2])
 
 
+def last_count(node: SimulatedNode) -> int:
+    """The count of a node after which it does not tick its first child again; 0: it has none, or no count before it."""
+    if not is_resumed(node):
+        return 0
+    text = next((node.ports[port].strip() for port in _COUNTS if port in node.ports), "")
+    most = int(text) if text.isdecimal() and len(text) < 10 else 0
+    return most if node.rules.flow == nav2.tick_recovery else max(most - 1, 0)
+
+
 _COUNTS: Final = ("num_cycles", "num_attempts", "number_of_retries")
 _RESUMED: Final[tuple[Flow, ...]] = (
     controls.tick_sequence,

@@ -56,10 +56,13 @@ class Search:
         edges: for each state the states that a tick can lead to, and how; empty unless they were to be kept.
     """
 
-    def __init__(self, snapshots: Snapshots, budget: SearchBudget, keeps_edges: bool = False) -> None:
+    def __init__(
+        self, snapshots: Snapshots, budget: SearchBudget, keeps_edges: bool = False, counts: bool = True
+    ) -> None:
         self._snapshots: Final = snapshots
         self._budget: Final = budget
         self._keeps_edges: Final = keeps_edges
+        self._counts: Final = counts
         self.ends: Final[dict[End, Sequence[Sequence[int]]]] = {}
         self.way: Sequence[Sequence[int]] | None = None
         self.is_closed = False
@@ -80,7 +83,7 @@ class Search:
     def _run(self) -> Search:
         snapshots, root = self._snapshots, self._snapshots.machine.root
         limit = None if self._budget.seconds is None else process_time() + self._budget.seconds
-        outcomes = Outcomes(snapshots, self._budget.states * _RUNS_A_STATE, limit)
+        outcomes = Outcomes(snapshots, self._budget.states * _RUNS_A_STATE, limit, self._counts)
         timers: Callable[[], object] = partial(fire_timers, snapshots)
         states = self._states
         states.append((snapshots.memories(root), snapshots.shared()))

@@ -59,7 +59,7 @@ class Tick(Record):
         result: of the root: runs, succeeds, fails, is skipped, throws or is not known; empty: the tick is not finished,
             for what was asked has happened.
         message: of what was thrown, or why it is not known.
-        at: when the program ticks, in milliseconds, if it does so every 10 ms and whenever a node wakes it up.
+        at: when the program ticks, in milliseconds, if nothing but its driver delays that.
         given: the entries that the program sets before, in the first tick.
         changes: the leaves that have other statuses, by number, and their statuses; without those that are reset.
     """
@@ -156,7 +156,7 @@ class _Recorder:
         try:
             fired = fire_timers(snapshots)
             self._deeds += [Deed(node.uid, node.path, "goes off") for node in fired]
-            now = opened.machine.now = max([dues[node.uid] for node in fired], default=now)
+            now = opened.machine.now = self._tick_at([dues[node.uid] for node in fired])
             result = _WORDS[execute_tick(opened.machine, opened.machine.root)]
         except Happened:
             pass
@@ -166,8 +166,14 @@ class _Recorder:
             result, message = "is not known", str(error)
         if choices.log != list(way):
             raise NotReplayed
-        self._next = now if opened.machine.is_woken else now + _PERIOD
+        is_again = opened.machine.is_woken and opened.driver.function != "tick_exactly_once"
+        self._next = now if is_again else now + opened.driver.period
         return Tick(tuple(self._deeds), self._changed_entries(), result, message, now, changes=tuple(self._changes))
+
+    def _tick_at(self, dues: Sequence[int]) -> int:
+        """When the next tick is if timers have gone off at some times before it."""
+        driver, last = self._opened.driver, max(dues, default=self._next)
+        return last if driver.is_woken else max(self._next, driver.tick_after(self._next, last))
 
     def with_values(self, ticks: Sequence[Tick]) -> tuple[Tick, ...]:
         """The ticks with values of entries that are as the run has compared them."""
@@ -222,7 +228,6 @@ def described(domain: Domain) -> str:
 
 
 _Value: TypeAlias = tuple[str, int, str]  # the entry or port, the number of the value, and the type of the entry
-_PERIOD: Final = 10  # ms
 _LIMIT: Final = 2.0**31 - 1  # beyond it, a limit is that of a type
 _WORDS: Final = {
     SUCCESS: "succeeds",

@@ -31,6 +31,7 @@ from btq_lang.requirements.budget_parts import (
 )
 from btq_lang.requirements.durations import ANY, ZERO, Range, cut, from_zero, hull, plus, times, without_end
 from btq_lang.util.record import replace
+from btq_lang.workspace.node_names import copies
 from btq_lang.workspace.resolved import ResolvedNode
 
 
@@ -42,7 +43,8 @@ def compose(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
         children: one for each, verbatim XML too; their terms are the children themselves.
     """
     if node.flow in _LEAVES:
-        return _LEAVES[node.flow]
+        is_copy = node.behavior is not None and copies(node.behavior, node.node)
+        return _LEAVES["answers" if is_copy else node.flow]
     if node.flow == "sleeps":
         return Budget(port_range(node), None)
     budget: Budget | None = None

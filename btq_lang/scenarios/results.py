@@ -144,11 +144,17 @@ class MutantReport(Record):
 
 
 class ScenarioReport(Record):
-    """All scenarios that ran; coverage, mutants: if they were wanted."""
+    """All scenarios that ran.
+
+    Attributes:
+        coverage, mutants: if they were wanted.
+        engine: the version of the engine in which they ran, too; empty: in none.
+    """
 
     scenarios: tuple[ScenarioResult, ...]
     coverage: CoverageReport | None = None
     mutants: MutantReport | None = None
+    engine: str = ""
 
     def count(self, outcome: Outcome) -> int:
         """How many have an outcome."""

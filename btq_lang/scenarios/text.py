@@ -26,7 +26,8 @@ def render(report: ScenarioReport, colour: bool = False) -> str:
 def counts(report: ScenarioReport) -> str:
     """How many scenarios there are, and of each outcome."""
     numbers = [f"{number} {word}" for outcome, word in _COUNTED.items() if (number := report.count(outcome))]
-    return f"{counted(len(report.scenarios), 'scenario')}: {', '.join(numbers)}"
+    where = f" in BehaviorTree.CPP {report.engine}" if report.engine else ""
+    return f"{counted(len(report.scenarios), 'scenario')}{where}: {', '.join(numbers)}"
 
 
 def scenario_lines(scenario: ScenarioResult, paint: Paint) -> Iterator[str]:

@@ -185,6 +185,16 @@ class Board:
             entry.value = _into(entry, key, value, type_)
         entry.number += 1
 
+    def give(self, key: str, value: Value, type_: str) -> None:
+        """Write a value that is given: for an entry of any type but numbers and texts it is one of that type.
+
+        Raises:
+            EngineError: `write` does.
+        """
+        entry = self.entry(key)
+        is_opaque = entry is not None and entry.type not in (UNTYPED, STRING, *_FLOATING, *LIMITS)
+        self.write(key, value, entry.type if entry is not None and is_opaque else type_)
+
     def replace(self, key: str, value: Value, type_: str) -> None:
         """Write a value of any type, which it keeps, as SetBlackboard does.
 

@@ -113,6 +113,7 @@ class Skills:
     Attributes:
         assumed: the actions of which nothing was given that have run, by path.
         applied: the identities of what is given and was about some activation.
+        writes: a list to which all that leaves write is added, with the keys of entries; None: it is not noted.
         machine: whose leaves they are; to be set before the first tick.
     """
 
@@ -132,6 +133,7 @@ class Skills:
         self.machine: Machine
         self.assumed: Final[set[str]] = set()
         self.applied: Final[set[int]] = set()
+        self.writes: list[Write] | None = None
         self._givens: Final = sorted(givens, key=lambda given: -given.rank)
         self._conditions: Final = frozenset(conditions)
         self._outputs: Final = outputs
@@ -166,6 +168,24 @@ class Skills:
         self._write(node, activation.writes, is_skipped=activation.result == SKIPPED)
         return activation.result
 
+    def has_answer(self, node: SimulatedNode) -> bool:
+        """Whether it is given what a node of Nav2 answers that reads the time or the world."""
+        return any(given.answers and given.concerns(node) for given in self._givens)
+
+    def answer(self, node: SimulatedNode) -> bool:
+        """What such a node answers.
+
+        Raises:
+            Unanswered: nothing is given.
+        """
+        return self._answer(node) == SUCCESS
+
+    def update(self, node: SimulatedNode) -> None:
+        """Write the goals that a GoalUpdater has received, which are unknown if they are not given."""
+        given = self._given(node)
+        if not self.has_answer(node) or self.answer(node):
+            self._write(node, given.writes or () if given is not None else ())
+
     def _write(
         self, node: SimulatedNode, writes: Sequence[Write], only_empty: bool = False, is_skipped: bool = False
     ) -> None:
@@ -182,7 +202,7 @@ class Skills:
             entry = node.board.entry(key)
             if only_empty and entry is not None and entry.value == write.value:
                 continue  # a tick that changes nothing can be passed over
-            node.board.write(key, write.value, write.type)
+            self._put(node, key, write.value, write.type)
 
     def _write_unsaid(self, node: SimulatedNode, given: Iterable[str], only_empty: bool = False) -> None:
         """Write unknown values into the entries of outputs of which no value is given.
@@ -202,7 +222,12 @@ class Skills:
             entry = node.board.entry(key)
             is_empty = entry is None or entry.value is None
             if is_empty or not (only_empty or outputs is None):
-                node.board.write(key, Unsaid(node.path, key), entry.type if entry is not None else UNTYPED)
+                self._put(node, key, Unsaid(node.path, key), entry.type if entry is not None else UNTYPED)
+
+    def _put(self, node: SimulatedNode, key: str, value: Value, type_: str) -> None:
+        if self.writes is not None:
+            self.writes.append(Write(key, value, type_))
+        node.board.give(key, value, type_)
 
     def halt(self, node: SimulatedNode) -> None:
         """Halt a skill that runs."""

@@ -90,6 +90,13 @@ def wraps(kind: NodeKind, node: Node) -> bool | None:
     return None if is_pointer(value.text) else value.text.lower() not in ("false", "0")
 
 
+def copies(kind: NodeKind, node: Node) -> bool:
+    """Whether a node that writes an entry copies another one, and so fails from 4.7 on if that has no value."""
+    port = kind.port_for("copied")
+    value = node.attribute(port.name) if port is not None else None
+    return value is not None and is_pointer(value.text)
+
+
 def tag_of(node: Node) -> str:
     """The XML tag of a node's word; a custom node's is its own name.  Verbatim XML counts among its children."""
     name = node.id

@@ -154,6 +154,7 @@ def test_roles_of_ports() -> None:
         "Delay.delay_msec": "time",
         "Sleep.msec": "time",
         "Precondition.else": "otherwise",
+        "SetBlackboard.value": "copied",
         **{f"Loop{item}.if_empty": "otherwise" for item in ("Int", "Bool", "Double", "String")},
     }
     assert [name for name, port in ports if port.removes] == ["UnsetBlackboard.key"]

@@ -75,6 +75,7 @@ SAMPLES_OF_ENGINE = {
     "completes at once": ("{node}", "    AlwaysSuccess"),
     "runs on": ("{node} ({port})", "    Drive"),
     "queue of a script": ("->", "    Script (code = \"q := '1;2'\")", "    {node} ({port})", "        Drive"),
+    "watched": ("->", "    {node} ({port}, output_key = e)", "    WaitValueUpdate (entry = e)", "        Drive"),
     "skipped in the end": ("{node}", "    Drive (_while = ready)"),
 }
 

@@ -228,6 +228,14 @@ def test_what_waits_for_a_change_is_kept_only_as_a_condition_that_is_asked_again
         assert lost(tree(parent, "    GoalUpdated")) == [never.format(parent.split()[0])]
 
 
+def test_an_action_that_calls_a_server_guards_nothing_as_a_condition() -> None:
+    text = tree("WhileDoElse", "    Spin", "    Wait")
+    assert [line for line in found(text, "jazzy") if "stateful-condition" in line] == [
+        "3:9 warning stateful-condition «Spin» `Spin` is not started again while a later child runs: "
+        "`WhileDoElse` does not reset it"
+    ]
+
+
 def test_a_throttle_is_kept_in_a_pipeline_before_its_last_child() -> None:
     rate = ("RateController", "    Spin")
     assert lost(within(KEEPING, *rate)) == []

@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 from check_asserts import after, findings, problems
 
+from btq_lang.checks import check
+from btq_lang.projects.opening import open_workspace
 from btq_lang.workspace.config import Project
 
 TRAPS = (
@@ -397,3 +399,100 @@ def test_every_prefix_of_a_mission_full_of_traps() -> None:
     )
     for end in range(len(text)):
         problems(text[:end], *TRAPS, "classic-placeholder", "placeholder-clash", "script-error")
+
+
+# ---- stateful-condition ----
+
+STATEFUL = "stateful-condition"
+
+
+def test_an_action_may_keep_its_failure_as_the_condition_of_a_choice_of_two() -> None:
+    choice = ("IfThenElse", "    Action Ask", "    Action Work")
+    assert findings(tree(*choice), STATEFUL) == [
+        "3 hint «Ask» if `Ask` is a StatefulActionNode, it is not started again after it has failed: `IfThenElse` does "
+        "not reset it"
+    ]
+    for others in (
+        (*choice, "    AlwaysFailure"),
+        ("IfThenElse", "    Condition Ask", "    Action Work"),
+        ("IfThenElse", "    Unknown", "    Action Work"),
+        ("IfThenElse", "    Inverter", "        Action Ask", "    Action Work"),
+        ("IfThenElse", "    Sleep (msec = 1 s)", "    Action Work"),  # it never fails
+        ("WhileDoElse", "    Action Ask", "    Action Work"),
+    ):
+        assert findings(tree(*others), STATEFUL) == []
+
+
+def test_an_action_that_takes_time_guards_nothing_in_a_loop() -> None:
+    guarded = tree("WhileDoElse", "    Sleep (msec = 1 s)", "    {}")
+    assert findings(guarded.format("Action Work"), STATEFUL) == [
+        "3 warning «Sleep» `Sleep` is not started again while a later child runs: `WhileDoElse` does not reset it"
+    ]
+    assert findings(guarded.format("AlwaysSuccess"), STATEFUL) == []
+
+
+def test_the_class_of_an_action_in_cpp_says_whether_it_keeps_its_result(tmp_path: Path) -> None:
+    pytest.importorskip("tree_sitter_cpp", reason="the C++ grammar is not installed: pip install -e '.[cpp]'")
+    code = (
+        "class Ask : public BT::{} {{ public: static BT::PortsList providedPorts() {{ return {{}}; }} }};\n"
+        'BT_REGISTER_NODES(factory) {{ factory.registerNodeType<Ask>("Ask"); }}\n'
+    )
+    (tmp_path / "btq.toml").write_text('nodes = ["ask.cpp"]\n', encoding="utf-8")
+    for kind, base, severity in (
+        ("IfThenElse", "StatefulActionNode", "warning"),
+        ("WhileDoElse", "StatefulActionNode", "warning"),
+        ("IfThenElse", "SyncActionNode", None),
+        ("WhileDoElse", "ConditionNode", None),
+    ):
+        (tmp_path / "ask.cpp").write_text(code.format(base), encoding="utf-8")
+        (tmp_path / "main.btq").write_text(tree(kind, "    Ask", "    Action Work"), encoding="utf-8")
+        path = str(tmp_path / "main.btq")
+        found = [each for each in check(open_workspace(path), path) if each.rule == STATEFUL]
+        assert [each.effective_severity.value for each in found] == ([severity] if severity else [])
+
+
+# ---- unset-without-effect, unnoticed-update ----
+
+KEPT = "unset-without-effect"
+BELOW = "\nBehaviorTree Below\n    UnsetBlackboard (key = goal)\n"
+
+
+def test_an_entry_that_a_tree_gets_stays() -> None:
+    calls = tree("->", "    SubTree Below ({})") + BELOW
+    own = "6 warning «goal» `UnsetBlackboard` removes nothing here: `goal` is an entry of another tree"
+    assert findings(calls.format("goal = {target}"), KEPT) == [own]
+    assert findings(calls.format("_autoremap = true"), KEPT) == [own]
+    assert findings(calls.format("goal = 3"), KEPT) == []
+    assert findings(calls.format("_autoremap = true, goal = 3"), KEPT) == []
+    assert findings(calls.format("other = {goal}"), KEPT) == []
+    assert findings(calls.format("_autoremap = true").replace("key = goal", "key = _goal"), KEPT) == []
+    assert findings(tree("UnsetBlackboard (key = goal)"), KEPT) == []
+    assert findings(tree('UnsetBlackboard (key = "@goal")'), KEPT) == [
+        '2 warning «"@goal"» `UnsetBlackboard` removes nothing: a key with `@` is never an entry of its own tree'
+    ]
+
+
+def test_the_subtrees_that_pass_the_entry_are_named() -> None:
+    text = tree("->", "    SubTree Below (goal = {a})", "    SubTree Below (goal = {b})", "    SubTree Below") + BELOW
+    (found,) = problems(text, KEPT)
+    assert [each.message for each in found.related] == ["passes it to `Below` (and 1 more SubTree)"]
+
+
+def test_up_to_4_6_a_copy_of_an_entry_is_no_update() -> None:
+    update = "unnoticed-update"
+    text = tree(
+        "->",
+        "    SetBlackboard (value = {a}, output_key = {key})",
+        "    WaitValueUpdate (entry = {entry})",
+        "        Work",
+    ).replace("{key}", "goal")
+    watched = text.replace("{entry}", "goal")
+    expected = [
+        "3 warning «SetBlackboard» `WaitValueUpdate` does not notice this copy: in 4.6 it does not update `goal`"
+    ]
+    assert findings(watched, update, project=Project(engines=("4.6",))) == expected
+    assert findings(text.replace("{entry}", "{goal}"), update, project=Project(engines=("4.6", "4.8"))) == expected
+    assert findings(watched, update, project=Project(engines=("4.8",))) == []
+    assert findings(watched, update) == []
+    assert findings(text.replace("{entry}", "other"), update, project=Project(engines=("4.6",))) == []
+    assert findings(watched.replace("{a}", "3"), update, project=Project(engines=("4.6",))) == []

@@ -392,6 +392,23 @@ def test_the_class_of_nav2_from_which_a_node_derives(base: str, above: str, nav2
 
 
 @pytest.mark.parametrize(
+    ("base", "above", "keeps_result"),
+    [
+        ("BT::StatefulActionNode", "", True),
+        ("StatefulActionNode", "", True),
+        ("Base", "struct Base : BT::ThreadedAction {};", True),
+        ("RosActionNode<A>", "", True),
+        ("BtActionNode<M>", "template<class T> struct BtActionNode : BT::SyncActionNode {};", False),
+        ("elsewhere::StatefulActionNode", "struct elsewhere::StatefulActionNode : BT::ActionNodeBase {};", False),
+        ("BT::SyncActionNode", "", False),
+        ("BT::ConditionNode", "", False),
+    ],
+)
+def test_the_classes_whose_nodes_start_only_after_a_reset(base: str, above: str, keeps_result: bool) -> None:
+    assert moved("static PortsList providedPorts() { return {}; }", base, above).keeps_result == keeps_result
+
+
+@pytest.mark.parametrize(
     ("base", "tick", "at_once"),
     [
         ("BT::SyncActionNode", "return status_;", True),

@@ -121,6 +121,10 @@ def seen(row: BehaviorChange, node: str) -> Seen:
         beside = BESIDE.format(f'<{node} entry="e" _while="go">{LONG}</{node}>')
         tree = f"<Sequence>{start}{beside.replace('<Two', f'{write}<Two')}</Sequence>"
         return Seen(tree, halted, {"4.6": False, "4.9": True})
+    if node == "SetBlackboard":
+        asked = '<Sequence><WasEntryUpdated entry="e"/><SetBlackboard value="{a}" output_key="e"/></Sequence>'
+        tree = f'<Sequence><Script code="a := 1; e := 2"/><Repeat num_cycles="2">{asked}</Repeat></Sequence>'
+        return Seen(tree, ended, {"4.6": "FAILURE", "4.7": "SUCCESS"})
     return in_turn(node)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from exploring import Exploring
 
 FETCH = """
@@ -177,8 +178,36 @@ BehaviorTree Main
         "  all 3 states seen",
         "  reads-unset: Go::6 can read {place} before it has a value  (mission.btq:13)",
         "  cannot-end: the mission cannot end",
-        "  never-runs: Never never runs  (mission.btq:15)",
+        "  never-runs: Never never runs  (mission.btq:15); btq check: unreachable-child",
         "  never-ends: Loop never ends  (mission.btq:16)",
+    ]
+
+
+def test_what_a_rule_reports_too_names_it(explore: Exploring) -> None:
+    explore.mission(
+        """
+Action Plan
+    output path : Path
+Action Follow
+    input path : Path
+    input speed : double
+
+BehaviorTree Main
+    ->
+        Follow (path = {path}, speed = {speed})
+        Plan (path = {path})
+        ?
+            Follow (path = {path}, speed = {next_speed})
+            Script (code = "next_speed := 1.0")
+        AlwaysFailure
+        Plan (path = {path})
+"""
+    )
+    (survey,) = [each["survey"] for each in explore.json()["missions"]]
+    assert [(each["text"], each["line"], each.get("rule")) for each in survey["findings"] if "uid" in each] == [
+        ("Follow::2 can read {path} before it has a value", 10, "unset-entry"),
+        ("Follow::5 can read {next_speed} before it has a value", 13, None),
+        ("Plan::8 never runs", 16, "unreachable-child"),
     ]
 
 
@@ -187,6 +216,20 @@ def test_exceptions_of_the_engine(explore: Exploring) -> None:
     code, out, _ = explore()
     assert code == 1
     assert "throws: the engine can throw: Exception in node 'ScriptCondition::3' [ScriptCondition]" in out
+
+
+def test_entries_that_cpp_sets_have_a_value_before(explore: Exploring) -> None:
+    pytest.importorskip("tree_sitter_cpp", reason="the C++ grammar is not installed: pip install -e '.[cpp]'")
+    scripts = '<Script code="mode = 3"/><ScriptCondition code="speed &gt; 1"/><Script code="speed = 1"/>'
+    explore.tree(f"<Sequence>{scripts}</Sequence>")
+    assert "doesn't exist, yet" in explore()[1]
+    (explore.folder / "btq.toml").write_text('nodes = ["main.cpp"]\n', encoding="utf-8")
+    code = (
+        'void start(BT::BehaviorTreeFactory& factory, BT::Blackboard& board) { factory.registerSimpleAction("A", a);\n'
+        'board.set("mode", 1); board.set("speed", 2.0); }\n'
+    )
+    (explore.folder / "main.cpp").write_text(code, encoding="utf-8")
+    assert explore() == (0, "tree.xml: tree Main, BehaviorTree.CPP 4.10\n  all 1 state seen\n", "")
 
 
 def test_two_callers_of_a_server(explore: Exploring) -> None:
@@ -244,3 +287,55 @@ def test_entries_that_bt_navigator_sets_have_a_value(explore: Exploring) -> None
     )
     findings = explore.json()["missions"][0]["survey"]["findings"]
     assert [finding["text"] for finding in findings] == ["FollowPath::3 can read {path} before it has a value"]
+
+
+def test_a_node_that_the_engine_does_not_have_yet_is_refused(explore: Exploring) -> None:
+    explore.tree("<TryCatch>\n<Pick/>\n<Home/>\n</TryCatch>")
+    assert explore()[0] == 0
+    (explore.folder / "btq.toml").write_text('engine = "4.6"\n', encoding="utf-8")
+    assert explore() == (
+        2,
+        "",
+        "btq explore: tree.xml: the engine refuses the tree: tree.xml:3: `TryCatch` requires BehaviorTree.CPP 4.9; "
+        "4.6 does not have it\n",
+    )
+
+
+def test_a_node_of_the_program_may_have_the_name_of_a_later_one(explore: Exploring) -> None:
+    explore.tree("<TryCatch/>")
+    model = '<TreeNodesModel><Action ID="TryCatch"/></TreeNodesModel>'
+    text = (explore.folder / "tree.xml").read_text(encoding="utf-8").replace("</root>", f"{model}</root>")
+    explore.mission(text, "tree.xml")
+    (explore.folder / "btq.toml").write_text('engine = "4.6"\n', encoding="utf-8")
+    assert explore()[2] == ""
+
+
+MANY_ATTEMPTS = (
+    "<Sequence><ParallelAll>"
+    + "".join(f'<RetryUntilSuccessful num_attempts="100"><A name="{name}"/></RetryUntilSuccessful>' for name in "abc")
+    + "</ParallelAll><Home/></Sequence>"
+)
+
+
+def test_attempts_are_not_counted_if_that_takes_too_many_states(explore: Exploring) -> None:
+    explore.tree(MANY_ATTEMPTS)
+    few = ("--states", "500")
+    assert explore.can("Home starts before a succeeds", *few) == (
+        1,
+        "  can Home starts before a succeeds: no, in all 57 states, with any number of attempts\n",
+    )
+    assert explore.can("ParallelAll fails before a fails or b fails or c fails", *few) == (
+        1,
+        "  can ParallelAll fails before a fails or b fails or c fails: no, in all 64 states, "
+        "with any number of attempts\n",
+    )
+    code, out, _ = explore(*few)
+    assert (code, out.splitlines()[1:]) == (0, ["  all 57 states seen, with any number of attempts"])
+
+
+def test_what_happens_only_after_many_attempts_is_not_made_up(explore: Exploring) -> None:
+    explore.tree(MANY_ATTEMPTS)
+    assert explore.can("ParallelAll fails", "--states", "60") == (
+        1,
+        "  can ParallelAll fails: not found in 60 states\n",
+    )

@@ -14,10 +14,12 @@ from btq_lang.exploration.answers import full_runs
 from btq_lang.exploration.leaves import LeafKind
 from btq_lang.exploration.opened import Opened
 from btq_lang.exploration.outcomes import Happened
+from btq_lang.exploration.resuming import last_count
 from btq_lang.exploration.search import Search, SearchBudget
 from btq_lang.exploration.witness import replay
 from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.nodes import SimulatedNode
+from btq_lang.simulator.programs import KnownProgram
 from btq_lang.simulator.versions import Dialect
 
 KINDS = {
@@ -30,7 +32,7 @@ MOST = 60
 def opened(xml: str, version: str) -> Opened:
     document = read(xml).document
     assert document is not None
-    return Opened([document], "Main", Dialect(version), KINDS)
+    return Opened([document], "Main", KnownProgram(Dialect(version)), KINDS)
 
 
 class Seen:
@@ -89,3 +91,30 @@ def test_same_states_changes_and_ends(seed: int) -> None:
         assert (answer.way is not None) == (pair in orders)
         if answer.way is not None:
             assert replay(tree, Seen(tree, pair), leaves, answer.way)[-1].result == ""
+
+
+@pytest.mark.parametrize("seed", seeds(300))
+def test_all_that_happens_also_happens_with_any_number_of_attempts(seed: int) -> None:
+    random = Random(seed)
+    xml, version = drawn(random), random.choice(("4.6", "4.10"))
+    try:
+        tree = opened(xml, version)
+    except (EngineError, NotModelled):
+        return
+    counted, uncounted = Seen(tree), Seen(tree)
+    tree.begin(counted, full_runs(tree))
+    exact = Search(tree.snapshots, SearchBudget(1_000)).run()
+    tree.begin(uncounted, full_runs(tree))
+    rough = Search(tree.snapshots, SearchBudget(1_000), counts=False).run()
+    if rough.is_closed:
+        assert counted.changes <= uncounted.changes
+        assert {(end.result, end.message) for end in exact.ends} <= {(end.result, end.message) for end in rough.ends}
+        changes = sorted(counted.changes)
+        for pair in [(random.choice(changes), random.choice(changes)) for _ in changes[:5]]:
+            ways = []
+            for counts in (True, False):
+                tree.begin(Seen(tree, pair), full_runs(tree))
+                ways.append(Search(tree.snapshots, SearchBudget(1_000), counts=counts).run().way)
+            assert ways[0] is None or ways[1] is not None, pair
+    if not any(map(last_count, tree.machine.nodes)) and exact.is_closed:
+        assert (rough.states, rough.is_closed) == (exact.states, True)

@@ -229,6 +229,17 @@ _TABLE: tuple[str | Rule, ...] = (  # a string is the subject of the rules below
     Rule("while-skip-is-success", _W, "`_while` halts the node and the parent continues as if it had succeeded"),
     Rule("memory-lost", _W, "a node that needs its memory, below one that resets it before it ticks it again"),
     Rule("last-success-lost", _W, "a node that fails after its last child, even if that succeeds"),
+    Rule(
+        "stateful-condition",
+        _W,
+        "an action that is the condition of an IfThenElse or WhileDoElse, and not started again",
+    ),
+    Rule("unset-without-effect", _W, "the removal of an entry that belongs to another tree, and so stays"),
+    Rule(
+        "unnoticed-update",
+        _W,
+        "a copy into an entry whose updates a node waits for; up to 4.6 it does not count as one",
+    ),
     Rule("isolated-node", _E, "a SubTree that does not pass the entries that nodes of Nav2 need to be created"),
     Rule("shared-server", _W, "two nodes of Nav2 that may call one action server at the same time"),
     Rule("default-instead", _W, "a value that a node never reads, so that its default counts"),
