@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from btq_lang.commands.explored_scenarios import RUN_SUFFIXES, drawn_runs, write_runs
 from btq_lang.commands.output import write_output
 from btq_lang.exploration.answers import Answer, answered
-from btq_lang.exploration.clauses import clause_answers
+from btq_lang.exploration.clauses import clause_answers, unasked_clauses
 from btq_lang.exploration.missions import ExploredMission, NotExplored, explorable
 from btq_lang.exploration.questions import NoQuestion, Question, parse_question
 from btq_lang.exploration.report import AskedQuestion, Explored, as_json, as_text
@@ -79,7 +79,8 @@ def run(options: ExploreOptions, messages: CommandOutput) -> int:
             codes = [_code_of(each.answer, each.is_wanted, options.strict) for each in asked]
             codes += [_code_of(clause.answer, False, options.strict) for clause in clauses]
             code = max(code, _survey_code(survey, options.strict), *codes)
-            explored.append(Explored(mission, tuple(asked), clauses, survey))
+            unasked = unasked_clauses(mission) if not questions else ()
+            explored.append(Explored(mission, tuple(asked), clauses, survey, unasked))
     if not explored and not code:
         raise Refused("no mission has a main tree; choose one with --tree")
     if explored:

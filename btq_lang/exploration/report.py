@@ -7,13 +7,13 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from btq_lang.exploration.answers import Answer
-from btq_lang.exploration.clauses import ClauseAnswer
+from btq_lang.exploration.clauses import ClauseAnswer, UnaskedClause
 from btq_lang.exploration.missions import ExploredMission
 from btq_lang.exploration.questions import Question
 from btq_lang.exploration.surveys import Survey
 from btq_lang.exploration.witness import Tick
 from btq_lang.requirements.fingerprint import Json
-from btq_lang.util.record import Record
+from btq_lang.util.record import Record, as_dict
 from btq_lang.util.text import counted
 from btq_lang.workspace.loader import shown
 
@@ -33,6 +33,7 @@ class Explored(Record):
     asked: tuple[AskedQuestion, ...]
     clauses: tuple[ClauseAnswer, ...]
     survey: Survey | None
+    unasked: tuple[UnaskedClause, ...] = ()
 
 
 def as_text(explored: Sequence[Explored]) -> str:
@@ -62,6 +63,7 @@ def _lines(explored: Explored) -> Iterator[str]:
             yield "    if what is calculated from entries can have such values"
         yield from (f"    not known: {reason}" for reason in clause.answer.unknown)
         yield from _run(mission, clause.answer.witness, 1)
+    yield from (f"  not asked: {each.requirement} `{each.text}`: {each.why}" for each in explored.unasked)
     if explored.survey is not None:
         survey = explored.survey
         seen = "all" if survey.is_closed else "not all: the first"
@@ -130,6 +132,7 @@ def _mission(explored: Explored) -> Json:
             for clause in explored.clauses
         ],
     }
+    record["not_asked"] = [as_dict(clause) for clause in explored.unasked]
     if mission.dialect.nav2:
         record["nav2"] = mission.dialect.nav2
     if (survey := explored.survey) is not None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import check
 from btq_lang.diagnostics.rules import Severity
+from btq_lang.requirements.verifying import scenario_fingerprint
 from btq_lang.scenarios.drawing import drawing
 from btq_lang.scenarios.judging import judged
 from btq_lang.scenarios.mission import NotRunnable, ScenarioMission, as_program, line_of, main_tree, with_named_tree
@@ -24,7 +25,7 @@ from btq_lang.workspace.workspace import Workspace
 if TYPE_CHECKING:
     from btq_lang.scenarios.installed_engine import InstalledEngine
 
-_Head: TypeAlias = tuple[str, str, int, str, tuple[str, ...]]  # of a result
+_Head: TypeAlias = tuple[str, str, int, str, tuple[str, ...], str]  # of a result
 # What a result begins with, the tree that a scenario runs, and what it says; its result if it cannot run.
 _Prepared: TypeAlias = "ScenarioResult | tuple[_Head, ScenarioMission, Plan]"
 
@@ -125,7 +126,7 @@ class Suite:
         file, line = line_of(self.workspace, place.path, scenario, scenario.start)
         tree = scenario.tree.text if scenario.tree is not None else self._main(place.path)
         verifies = tuple(word.text for word in scenario.verifies)
-        head = _title(scenario), file, line, tree, verifies
+        head = _title(scenario), file, line, tree, verifies, scenario_fingerprint(self.workspace, place.path, scenario)
         if not tree:
             return _wrong(head, [self._without_tree(place.path, line)])
         if scenario.tree is not None and self.workspace.scope(place.path).find(Kind.TREE, tree) is None:

@@ -40,6 +40,8 @@ def scenario_lines(scenario: ScenarioResult, paint: Paint) -> Iterator[str]:
     for expectation in scenario.expectations:
         if expectation.outcome != "passed":
             yield from (printable(f"{blank}{line}") for line in _expectation(expectation))
+        if expectation.note:
+            yield printable(f"{blank}line {expectation.line} expects {expectation.text}; {expectation.note}")
     yield from (printable(f"{blank}{note}") for note in scenario.notes)
     yield from (printable(f"{blank}  {line}") for line in scenario.drawing)
     if scenario.assumed and (scenario.drawing or scenario.outcome != "passed"):

@@ -124,6 +124,15 @@ def test_why_there_is_no_number() -> None:
     assert shown(text) == "No exact prediction: RunOnce: it remembers that it has run."
 
 
+def test_a_driver_with_another_period_has_no_number() -> None:
+    other = declared('[simulate]\ndriver = { tick_once = "100 ms" }\nskills = { Pick = { takes = "2 s" } }\n')
+    assert outlook(Fixture(MISSION, project=other).workspace, "main.btq", "Waits") == ""
+    same = declared('[simulate]\ndriver = { tick_while_running = "10 ms" }\nskills = { Pick = { takes = "2 s" } }\n')
+    assert (
+        outlook(Fixture(MISSION, project=same).workspace, "main.btq", "Waits") == "succeeds 100 %, p95 2 s (declared)"
+    )
+
+
 def test_a_message_ends_it() -> None:
     workspace = Fixture(MISSION, project=SKILLS).workspace
     for most in range(100_000):

@@ -139,6 +139,28 @@ def test_a_condition_keeps_the_reading_that_is_given(tmp_path: Path, given: str,
     assert ran(tmp_path, nodes, "given Seen answers true", given, "expect mission succeeds") == result
 
 
+@pytest.mark.parametrize(
+    ("action", "result"),
+    [
+        ("\n    on violation halt", ("passed", "")),
+        ("", ("unknown", "nothing says what Sense::2 writes into {@edge}; write `given edge = …`")),
+    ],
+)
+def test_a_value_initially_is_that_of_an_entry_only_where_a_guard_reads_it(
+    tmp_path: Path, action: str, result: tuple[str, str]
+) -> None:
+    (tmp_path / "main.btq").write_text(
+        "signal edge : m from {@edge} initially 3 m\n"
+        f'QualityReq far : safety "Far"\n    mission keeps edge >= 1 m{action}\n'
+        "Condition Sense\n    output edge : double\nBehaviorTree Main\n    ->\n        Sense (edge = {@edge})\n"
+        'scenario "S"\n    given Sense answers true\n    expect far\n',
+        encoding="utf-8",
+    )
+    _, out, _ = run_btq("test", "main.btq", "--format", "json", cwd=tmp_path)
+    (scenario,) = json.loads(out)["scenarios"]
+    assert (scenario["outcome"], scenario["expectations"][0]["why"]) == result
+
+
 def test_an_endless_run_is_noticed(tmp_path: Path) -> None:
     nodes = "KeepRunningUntilFailure\n    Dock (place = {place})"
     assert ran(tmp_path, nodes, "expect mission does not end")[:2] == ("passed", "does not end")
