@@ -13,8 +13,10 @@ from btq_lang.btcpp.reader import read
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2.creation import SERVERS
 from btq_lang.checks import cpp_lookups, lookups
+from btq_lang.checks.calls import callers, is_main
 from btq_lang.checks.kinds import newer_engine_node
 from btq_lang.checks.view import View
+from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.evidence.identity import Build, Candidate
 from btq_lang.exploration.leaves import LeafKind
@@ -125,9 +127,22 @@ class ExploredMission:
         node = self._written.get(uid)
         if node is None:
             return None
-        file = self.workspace.files[node.path]
-        span = file.on_disk(file.span_of(node.place))
-        return node.path, file.source_lines.position(span.start).line + 1
+        return self._line(node.path, node.place)
+
+    def call(self) -> tuple[str, int] | None:
+        """The file and the line, from 1, of the first SubTree that calls the tree; None: the program runs it, or
+        nothing is seen to."""
+        store = self.workspace.store
+        if store.ask(is_main, self.path, self.tree) or not store.ask(callers, self.path, self.tree):
+            return None
+        uses = store.ask(lookups.uses_of_tree, self.path, self.tree)
+        return next((self._line(use.path, use) for use in uses if use.path is not None), None)
+
+    def _line(self, path: str, place: Place) -> tuple[str, int]:
+        """A file, and the line of a place in it."""
+        file = self.workspace.files[path]
+        span = file.on_disk(file.span_of(place))
+        return path, file.source_lines.position(span.start).line + 1
 
     def server(self, node: SimulatedNode) -> str:
         """The action server that a leaf calls; empty if none is known."""

@@ -207,6 +207,7 @@ BehaviorTree Main
     assert [(each["text"], each["line"], each.get("rule")) for each in survey["findings"] if "uid" in each] == [
         ("Follow::2 can read {path} before it has a value", 10, "unset-entry"),
         ("Follow::5 can read {next_speed} before it has a value", 13, None),
+        ("the mission cannot succeed: AlwaysFailure::7 never succeeds", 15, None),
         ("Plan::8 never runs", 16, "unreachable-child"),
     ]
 
