@@ -15,13 +15,14 @@ from btq_lang.exploration.answers import full_runs, without_counts
 from btq_lang.exploration.missions import ExploredMission
 from btq_lang.exploration.opened import Opened
 from btq_lang.exploration.outcomes import THROWN, UNKNOWN
-from btq_lang.exploration.reasons import reasons
+from btq_lang.exploration.reasons import Reason, reasons
 from btq_lang.exploration.search import Search, SearchBudget
 from btq_lang.exploration.witness import Tick, replay
 from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SUCCESS, SimulatedNode
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace.loader import shown
+from btq_lang.workspace.resolved import ResolvedNode
 
 
 class SurveyFinding(Record):
@@ -185,25 +186,43 @@ def _shared(mission: ExploredMission, opened: Opened, search: Search, rules: _Ru
 
 
 def _missing_ends(mission: ExploredMission, opened: Opened, search: Search, watch: _Watch) -> Iterator[SurveyFinding]:
-    """How the tree cannot end, and the nodes that are the reason."""
+    """How the tree cannot end, and how those that it calls cannot although nodes in them can, with the reasons."""
     results = {end.result for end in search.ends}
-    subject = _subject(mission)
-    if not results & {SUCCESS, FAILURE}:
+    root = opened.machine.root
+    subject = _called(mission.tree, mission.call())
+    if not results & _WORDS.keys():
         yield SurveyFinding("cannot-end", f"{subject} cannot end")
         return
-    for result, kind in ((SUCCESS, "cannot-succeed"), (FAILURE, "cannot-fail")):
-        if result not in results:
-            causes = reasons(opened.machine.root, result, watch.results)
-            names = [f"{node.path} never {_WORDS[missing]}s" for node, missing in causes[:_MOST_NAMED]]
-            more = [f"nor do {len(causes) - _MOST_NAMED} others"] if len(causes) > _MOST_NAMED else []
-            reason = f": {', '.join([*names, *more])}" if names else ""
-            yield SurveyFinding(kind, f"{subject} cannot {_WORDS[result]}{reason}", causes[0][0].uid if causes else 0)
+    named: set[tuple[ResolvedNode | None, int]] = set()  # a tree may run many times
+    for result in (result for result in _WORDS if result not in results):
+        causes = reasons(root, result, watch.results)
+        named |= {(mission.written(node.uid), missing) for node, missing in causes}
+        yield _cannot(subject, result, causes)
+    for node in opened.machine.nodes:
+        subtree = mission.written(node.uid)
+        ends = [result for result in _WORDS if (node.uid, result) in watch.results]
+        if subtree is None or not subtree.is_subtree or subtree.id is None or len(ends) != 1:
+            continue
+        result = FAILURE if ends == [SUCCESS] else SUCCESS
+        causes = reasons(node, result, watch.results)
+        written = {(mission.written(cause.uid), missing) for cause, missing in causes}
+        if not written <= named:
+            named |= written
+            yield _cannot(_called(subtree.id.text, mission.place(node.uid)), result, causes)
 
 
-def _subject(mission: ExploredMission) -> str:
-    """The mission, or a tree and where another tree calls it."""
-    place = mission.call()
-    return "the mission" if place is None else f"the tree {mission.tree}, called at {shown(place[0])}:{place[1]},"
+def _called(tree: str, place: tuple[str, int] | None) -> str:
+    """A tree and where it is called; None: it is the mission."""
+    return "the mission" if place is None else f"the tree {tree}, called at {shown(place[0])}:{place[1]},"
+
+
+def _cannot(subject: str, result: int, causes: Sequence[Reason]) -> SurveyFinding:
+    """That a tree cannot have a result."""
+    names = [f"{node.path} never {_WORDS[missing]}s" for node, missing in causes[:_MOST_NAMED]]
+    more = [f"nor do {len(causes) - _MOST_NAMED} others"] if len(causes) > _MOST_NAMED else []
+    reason = f": {', '.join([*names, *more])}" if names else ""
+    word = _WORDS[result]
+    return SurveyFinding(f"cannot-{word}", f"{subject} cannot {word}{reason}", causes[0][0].uid if causes else 0)
 
 
 def _never(opened: Opened, watch: _Watch, rules: _Rules) -> Iterator[SurveyFinding]:

@@ -76,3 +76,29 @@ def test_a_tree_that_another_one_calls(explore: Exploring) -> None:
         "  cannot-fail: the tree EnoughBattery, called at deliver.btq:8, cannot fail: ForceSuccess::3 never fails  "
         "(skills.btq:9)"
     ]
+
+
+def test_a_tree_that_the_mission_calls(explore: Exploring) -> None:
+    explore.mission(SKILLS, "skills.btq")
+    explore.mission(CHARGING.replace("Drive", "ForceFailure\n            Drive\n        SubTree EnoughBattery"))
+    code, out, err = explore()
+    assert (code, err) == (1, "")
+    assert [line for line in out.splitlines() if "cannot" in line] == [
+        "  cannot-succeed: the mission cannot succeed: ForceFailure::9 never succeeds  (mission.btq:9)",
+        "  cannot-fail: the tree EnoughBattery, called at mission.btq:8, cannot fail: "
+        "EnoughBattery::2/ForceSuccess::5 never fails  (skills.btq:9)",
+    ]
+
+
+def test_a_tree_for_which_the_mission_cannot_fail_is_not_named_again(explore: Exploring) -> None:
+    explore.mission(SKILLS, "skills.btq")
+    explore.mission(CHARGING.replace("        Drive\n", ""))
+    assert [line for line in explore()[1].splitlines() if "cannot" in line] == [
+        "  cannot-fail: the mission cannot fail: EnoughBattery::2/ForceSuccess::5 never fails  (skills.btq:9)"
+    ]
+
+
+def test_a_tree_of_which_no_leaf_fails_is_not_named(explore: Exploring) -> None:
+    explore.mission(SKILLS + "\nBehaviorTree Nothing\n    AlwaysSuccess\n", "skills.btq")
+    explore.mission(CHARGING.replace("EnoughBattery", "Nothing"))
+    assert "cannot" not in explore()[1]
