@@ -260,6 +260,60 @@ def test_questions_that_are_none(explore: Exploring) -> None:
         assert err.startswith(message)
 
 
+@pytest.mark.parametrize(
+    ("question", "message"),
+    [
+        ("node Grasp and Ready fails", "(`Ready fails`) {}; {}: `Grasp starts after Ready fails`"),
+        ("Ready fails and node Grasp", "(`Ready fails`) {}; {}: `Grasp starts after Ready fails`"),
+        ("node Grasp starts", "(`Grasp starts`) {}; {}: `Pick starts after Grasp starts`"),
+    ],
+)
+def test_an_event_in_a_condition(explore: Exploring, question: str, message: str) -> None:
+    explore.mission(MISSION)
+    expected = message.format("cannot be part of a condition", "ask for it alone, or for what happens after it")
+    assert explore("--can", question) == (2, "", f"btq explore: `{question}`: an event {expected}\n")
+
+
+def test_brackets_around_events(explore: Exploring) -> None:
+    explore.mission(MISSION)
+    plain = explore.json("--can", "Grasp starts before DetectCup succeeds or Wait succeeds")
+    bracketed = explore.json("--can", "(Grasp starts) before (DetectCup succeeds or Wait succeeds)")
+    bracketed["missions"][0]["questions"][0]["text"] = plain["missions"][0]["questions"][0]["text"]
+    assert bracketed == plain
+    for question, problem in (
+        ("Grasp starts before (Wait succeeds", "missing `)` for this `(`"),
+        ("(Grasp starts before Wait succeeds)", "expected `)`, found `before`"),
+        ("Grasp starts before (Wait)", "expected starts, succeeds, fails, finishes or halts, found `)`"),
+        ("Grasp starts before (", "missing `)` for this `(`"),
+    ):
+        assert explore("--can", question)[2].startswith(f"btq explore: `{question}`: {problem}")
+
+
+def test_a_question_is_asked_of_the_missions_that_have_its_nodes(explore: Exploring) -> None:
+    explore.mission(MISSION, "fetch.btq")
+    explore.mission("Action Spray\n\nRoot Clean\n\nBehaviorTree Clean\n    Spray\n", "clean.btq")
+    both = ("fetch.btq", "clean.btq")
+    assert explore.json(*both, "--can", "Spray fails", "--can", "Wait fails", "--can", "mission fails") == {
+        **explore.json("fetch.btq", "--can", "Wait fails", "--can", "mission fails"),
+        "missions": [
+            *explore.json("fetch.btq", "--can", "Wait fails", "--can", "mission fails")["missions"],
+            *explore.json("clean.btq", "--can", "Spray fails", "--can", "mission fails")["missions"],
+        ],
+    }
+    code, out, err = explore(*both, "--can", "Spray fails")
+    assert (code, out.splitlines()[0], err) == (0, "clean.btq: tree Clean, BehaviorTree.CPP 4.10", "")
+    assert explore(*both, "--can", "Spray fails", "--can", "Sing fails")[::2] == (
+        2,
+        "btq explore: fetch.btq: no node of the tree Fetch is called `Sing`\n"
+        "btq explore: clean.btq: no node of the tree Clean is called `Sing`\n",
+    )
+    assert explore(*both, "--can", "Spray fails before Wait fails")[::2] == (
+        2,
+        "btq explore: fetch.btq: no node of the tree Fetch is called `Spray`\n"
+        "btq explore: clean.btq: no node of the tree Clean is called `Wait`\n",
+    )
+
+
 def test_the_same_bytes_again(explore: Exploring) -> None:
     explore.mission(MISSION)
     first = explore("--format", "json", "--can", "Grasp halts", "--never", "mission fails")
