@@ -14,7 +14,7 @@ from btq_lang.catalog.standard_answers import STANDARD_ANSWERS
 from btq_lang.exploration import report
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "what-can-happen.md"
-BLOCK = re.compile(r"^```(xml|console)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+BLOCK = re.compile(r"^```(xml|btq|console)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 
 
 def test_the_commands_print_what_the_page_shows(tmp_path: Path, update: bool, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -22,7 +22,7 @@ def test_the_commands_print_what_the_page_shows(tmp_path: Path, update: bool, mo
 
     def with_output(block: re.Match[str]) -> str:
         language, text = block.groups()
-        if language == "xml":
+        if language != "console":
             (tmp_path / text.split()[1]).write_text(text, encoding="utf-8")
         else:
             command = text.splitlines()[0]
