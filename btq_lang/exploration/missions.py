@@ -22,6 +22,7 @@ from btq_lang.evidence.identity import Build, Candidate
 from btq_lang.exploration.leaves import LeafKind
 from btq_lang.exploration.opened import Opened
 from btq_lang.exploration.watching import Unasked
+from btq_lang.exploration.witness import Tick
 from btq_lang.requirements.model import MissionRun, NodeTarget
 from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.nav2_models import ports_in
@@ -80,6 +81,7 @@ class ExploredMission:
             instance.uid: node for instance, node in build.running.all if instance.uid is not None and node is not None
         }
         self.kinds: Final = self._kinds()
+        self._guarded: frozenset[str] | None = None  # entries that only nodes read that enforce requirements
 
     def open(self, asked: Collection[str] = ()) -> Opened:
         """The tree, ready to be explored; `asked`: the entries that a question reads.
@@ -121,6 +123,19 @@ class ExploredMission:
     def written(self, uid: int) -> ResolvedNode | None:
         """A node as it is written; None: it only enforces a requirement."""
         return self._written.get(uid)
+
+    def without_part(self, ticks: Sequence[Tick]) -> frozenset[str]:
+        """The entries that have no part in a run: those that only guards of requirements read, if none refuses."""
+        if all(node is not None for _, node in self.build.running.all):
+            return frozenset()
+        if any(self.written(uid) is None for tick in ticks for uid in tick.refusals):
+            return frozenset()
+        if self._guarded is None:
+            opened = self.open()
+            nodes = opened.machine.nodes
+            read = opened.read_by([node for node in nodes if self.written(node.uid) is not None])
+            self._guarded = opened.read_by(nodes) - read
+        return self._guarded
 
     def place(self, uid: int) -> tuple[str, int] | None:
         """The file and the line of a node, from 1; None: it is not written."""

@@ -125,6 +125,8 @@ def test_missions_that_need_not_end(explore: Exploring) -> None:
     )
     explore.tree('<Sequence><A/><Repeat num_cycles="3"><B/></Repeat></Sequence>')
     assert explore.can("mission does not end")[0] == 1
+    explore.tree('<Sequence><A/><Repeat num_cycles="-1"><B/></Repeat></Sequence>')
+    assert explore.can("mission does not end")[0] == 0
 
 
 def test_two_actions_that_interrupt_each_other_for_ever(explore: Exploring) -> None:
@@ -312,6 +314,53 @@ def test_a_question_is_asked_of_the_missions_that_have_its_nodes(explore: Explor
         "btq explore: fetch.btq: no node of the tree Fetch is called `Spray`\n"
         "btq explore: clean.btq: no node of the tree Clean is called `Wait`\n",
     )
+
+
+def test_entries_of_guards_are_shown_where_a_guard_refuses(explore: Exploring) -> None:
+    explore.mission(
+        """
+signal speed : m/s from {base_speed}
+
+Action Drive
+Action Look
+    input lamp : bool
+Condition Read
+    output speed : double
+    output lamp : bool
+
+QualityReq slow : safety "Slow"
+    keeps speed <= 0.8 m/s
+    on violation halt
+
+Root Main
+
+BehaviorTree Main
+    R->
+        Read (speed = {base_speed}, lamp = {lamp})
+        ->
+            Drive satisfies slow
+            ScriptCondition (code = "lamp == false")
+            Look (lamp = {lamp})
+"""
+    )
+
+    def entries(question: str) -> list[str]:
+        return [line.strip() for line in explore.can(question)[1].splitlines() if line.startswith("      {")]
+
+    assert entries("Drive fails") == ["{lamp} has a value"]
+    assert entries("Look fails") == ["{lamp} = 0"]
+    assert entries("{base_speed} < 0.5 and node Drive") == ["{base_speed} < 0.5", "{lamp} has a value"]
+    assert entries("Drive halts before Read fails") == [
+        "{base_speed} <= 0.8",
+        "{lamp} has a value",
+        "{slow_stop} = 0.0",
+        "{base_speed} > 0.8",
+        "{slow_stop} = 1.0",
+    ]
+    assert explore("--can", "{base_speed} > 0.8 and node Drive")[0] == 0  # before the guard halts it, in the same tick
+    assert explore("--can", "Drive succeeds after when {base_speed} > 0.8 and node Drive")[0] == 1
+    (question,) = explore.json("--can", "Drive fails")["missions"][0]["questions"]
+    assert sorted(question["witness"][0]["entries"]) == ["base_speed", "lamp", "slow_stop"]
 
 
 def test_the_same_bytes_again(explore: Exploring) -> None:
