@@ -14,6 +14,7 @@ from btq_lang.exploration.outcomes import Happened
 from btq_lang.exploration.search import fire_timers
 from btq_lang.exploration.values import Domain, FreeValue, domain_of, sample
 from btq_lang.simulator.errors import EngineError, NotModelled
+from btq_lang.simulator.leaves import tick_script_condition
 from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, SimulatedNode
 from btq_lang.simulator.ports import key_of
 from btq_lang.simulator.ticking import execute_tick
@@ -128,7 +129,7 @@ class _Recorder:
             self._changes.append((node.uid, after))
             if after == IDLE:
                 self._deeds.append(Deed(node.uid, node.path, "is halted"))
-        if after == FAILURE and node.id == "ScriptCondition":
+        if after == FAILURE and node.rules.flow is tick_script_condition:
             self._refusals.append(node.uid)
         if self._watch is not None:
             self._watch.changed(node, before, after)
