@@ -13,13 +13,16 @@ from btq_lang.btcpp.reader import read
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2.creation import SERVERS
 from btq_lang.checks import cpp_lookups, lookups
+from btq_lang.checks.calls import callers, is_main
 from btq_lang.checks.kinds import newer_engine_node
 from btq_lang.checks.view import View
+from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.evidence.identity import Build, Candidate
 from btq_lang.exploration.leaves import LeafKind
 from btq_lang.exploration.opened import Opened
 from btq_lang.exploration.watching import Unasked
+from btq_lang.exploration.witness import Tick
 from btq_lang.requirements.model import MissionRun, NodeTarget
 from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.nav2_models import ports_in
@@ -78,6 +81,7 @@ class ExploredMission:
             instance.uid: node for instance, node in build.running.all if instance.uid is not None and node is not None
         }
         self.kinds: Final = self._kinds()
+        self._guarded: frozenset[str] | None = None  # entries that only nodes read that enforce requirements
 
     def open(self, asked: Collection[str] = ()) -> Opened:
         """The tree, ready to be explored; `asked`: the entries that a question reads.
@@ -120,14 +124,40 @@ class ExploredMission:
         """A node as it is written; None: it only enforces a requirement."""
         return self._written.get(uid)
 
+    def without_part(self, ticks: Sequence[Tick]) -> frozenset[str]:
+        """The entries that have no part in a run: those that only guards of requirements read, if none refuses."""
+        if all(node is not None for _, node in self.build.running.all):
+            return frozenset()
+        if any(self.written(uid) is None for tick in ticks for uid in tick.refusals):
+            return frozenset()
+        if self._guarded is None:
+            opened = self.open()
+            nodes = opened.machine.nodes
+            read = opened.read_by([node for node in nodes if self.written(node.uid) is not None])
+            self._guarded = opened.read_by(nodes) - read
+        return self._guarded
+
     def place(self, uid: int) -> tuple[str, int] | None:
         """The file and the line of a node, from 1; None: it is not written."""
         node = self._written.get(uid)
         if node is None:
             return None
-        file = self.workspace.files[node.path]
-        span = file.on_disk(file.span_of(node.place))
-        return node.path, file.source_lines.position(span.start).line + 1
+        return self._line(node.path, node.place)
+
+    def call(self) -> tuple[str, int] | None:
+        """The file and the line, from 1, of the first SubTree that calls the tree; None: the program runs it, or
+        nothing is seen to."""
+        store = self.workspace.store
+        if store.ask(is_main, self.path, self.tree) or not store.ask(callers, self.path, self.tree):
+            return None
+        uses = store.ask(lookups.uses_of_tree, self.path, self.tree)
+        return next((self._line(use.path, use) for use in uses if use.path is not None), None)
+
+    def _line(self, path: str, place: Place) -> tuple[str, int]:
+        """A file, and the line of a place in it."""
+        file = self.workspace.files[path]
+        span = file.on_disk(file.span_of(place))
+        return path, file.source_lines.position(span.start).line + 1
 
     def server(self, node: SimulatedNode) -> str:
         """The action server that a leaf calls; empty if none is known."""

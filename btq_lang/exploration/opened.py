@@ -6,7 +6,7 @@ before: it has a value, which is unknown.  All others begin without one.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Final, Protocol, TypeAlias
 
 from btq_lang.btcpp.document import Document
@@ -99,6 +99,11 @@ class Opened:
         self.watch = watch
         self.snapshots.watched = watch.begin() if watch is not None else None
         self.machine.recall = None
+
+    def read_by(self, nodes: Iterable[SimulatedNode]) -> frozenset[str]:
+        """The entries of the root blackboard whose values matter to some nodes."""
+        root = id(self.machine.root.board.root)
+        return frozenset([name for node in nodes for board, name in self._read(node) if board == root])
 
     def _changed(self, node: SimulatedNode, before: int, after: int) -> None:
         if self.watch is not None:
