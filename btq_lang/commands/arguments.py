@@ -10,13 +10,13 @@ from typing import Final, TypeAlias
 
 from btq_lang.commands.simulate_options import add_simulate_options
 from btq_lang.commands.suggesting_parser import SuggestingParser
+from btq_lang.commands.testing_options import add_scenario_options
 from btq_lang.commands.verify_options import VerifyOptions, add_verify_options
 from btq_lang.evidence.compare import FORMATS as COMPARISON_FORMATS
 from btq_lang.graph import DIRECTIONS
 from btq_lang.graph import FORMATS as GRAPH_FORMATS
 from btq_lang.projects.options import CheckOptions, add_server_options
 from btq_lang.render import FORMATS
-from btq_lang.scenarios import FORMATS as SCENARIO_FORMATS
 from btq_lang.trace import FORMATS as TRACE_FORMATS
 from btq_lang.util.record import as_dict
 from btq_lang.util.version import __version__
@@ -253,34 +253,8 @@ def _add_trace(parser: SuggestingParser) -> None:
     "  btq test --format junit -o scenarios.xml\n",
 )
 def _add_test(parser: SuggestingParser) -> None:
-    from btq_lang.catalog.versions import targets  # as above
-
     _add_paths(parser)
-    parser.add("-k", "--title", default="", metavar="TEXT", help="only scenarios with this text in their titles")
-    parser.add("--target", choices=targets(), help="the engine's version; default: the project's newest")
-    parser.flag("--no-enforce", "run the tree as btq build --no-enforce writes it")
-    parser.flag("--show", "draw the run of each scenario, and not only of those that fail")
-    parser.flag("--coverage", "say which outcomes of nodes no scenario has met")
-    parser.add(
-        "--mutants",
-        nargs="?",
-        type=int,
-        const=0,
-        metavar="N",
-        help="change the tree in many ways, and say which changes no scenario notices; N: only so many of them",
-    )
-    parser.add("--rules", metavar="FILE", help="write what a scenario gives as substitution rules of the engine")
-    parser.add(
-        "--engine",
-        nargs="?",
-        const="",
-        metavar="PREFIX",
-        help="run them in an installed BehaviorTree.CPP, too, and judge what it does; PREFIX: where it is installed",
-    )
-    parser.add("--jobs", type=int, default=0, metavar="N", help="run them in N processes; default: by their number")
-    parser.add("--format", choices=SCENARIO_FORMATS, help="default: as the file of -o ends, else text")
-    parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
-    parser.flag("--watch", "run again whenever a file changes, until Ctrl+C")
+    add_scenario_options(parser)
     _add_config(parser)
     _add_color(parser)
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang import scenarios
 from btq_lang.commands.output import form_of, form_problem, is_coloured, write_file, write_output
+from btq_lang.commands.testing_options import ScenarioOptions
 from btq_lang.projects.building import for_target
 from btq_lang.projects.files import Files, usage_problem
 from btq_lang.projects.messages import CommandOutput
@@ -17,46 +18,13 @@ from btq_lang.projects.options import refuse
 from btq_lang.scenarios.parallel import result_of, results
 from btq_lang.scenarios.results import ScenarioReport, ScenarioResult
 from btq_lang.scenarios.suite import ScenarioPlace, Suite
-from btq_lang.util.record import Record, replace
+from btq_lang.util.record import replace
 from btq_lang.workspace.config import is_engine
 from btq_lang.workspace.file import SUFFIXES, XML_SUFFIXES
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
     from btq_lang.scenarios.installed_engine import InstalledEngine
-
-
-class ScenarioOptions(Record):
-    """The options of `btq test`.
-
-    Attributes:
-        paths: files and folders, or `-` for standard input.
-        title: only scenarios whose titles contain this text.
-        target: the version of the engine; None: the newest of the project.
-        no_enforce: without the nodes that enforce requirements.
-        show: draw the runs of all scenarios.
-        coverage: say what no scenario has met.
-        mutants: say which changes of the tree no scenario notices: of so many; 0: of all; None: no.
-        rules: the file for the engine's substitution rules that say what is given; None: the scenario runs.
-        engine: the prefix of an installed engine in which they run, too; empty: wherever it is found; None: no.
-        jobs: the number of processes; 0: as many as there are processors, if there are many scenarios.
-    """
-
-    paths: Sequence[str]
-    stdin_filename: str | None
-    title: str
-    target: str | None
-    no_enforce: bool
-    show: bool
-    coverage: bool
-    mutants: int | None
-    rules: str | None
-    engine: str | None
-    jobs: int
-    format: str | None
-    output: str | None
-    watch: bool
-    color: str
 
 
 def run(options: ScenarioOptions, messages: CommandOutput) -> int:
