@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from random import Random
 
 CONTROLS = (
@@ -23,21 +24,27 @@ LEAVES = (
 )
 
 
-def drawn(random: Random) -> str:
-    """The XML of a tree."""
+def drawn(
+    random: Random,
+    controls: Sequence[str] = CONTROLS,
+    decorators: Sequence[str] = DECORATORS,
+    leaves: Sequence[str] = LEAVES,
+) -> str:
+    """The XML of a tree of some kinds of nodes."""
     left = random.randint(2, 12)
 
     def node(depth: int) -> str:
         nonlocal left
         left -= 1
         if left <= 0 or depth > 4 or (depth and random.random() < 0.35):
-            return f"<{random.choice(LEAVES)}/>"
+            return f"<{random.choice(leaves)}/>"
         if random.random() < 0.35:
-            start = random.choice(DECORATORS)
+            start = random.choice(decorators)
             return f"<{start}>{node(depth + 1)}</{start.split()[0]}>"
-        tag = random.choice(CONTROLS)
-        number = random.randint(*CHILDREN.get(tag, (1, 3)))
+        tag = random.choice(controls)
+        name = tag.split()[0]
+        number = random.randint(*CHILDREN.get(name, (1, 3)))
         ports = ' variable="{x}" case_1="1" case_2="4"' if tag == "Switch2" else ""
-        return f"<{tag}{ports}>{''.join(node(depth + 1) for _ in range(number))}</{tag}>"
+        return f"<{tag}{ports}>{''.join(node(depth + 1) for _ in range(number))}</{name}>"
 
     return f'<root BTCPP_format="4"><BehaviorTree ID="Main">{node(0)}</BehaviorTree></root>'

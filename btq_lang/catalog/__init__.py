@@ -10,6 +10,7 @@ qualities   look-up of quality names; `quality_model` and `quality_words` hold t
 units       which words are units, and how values convert; used by the lexer
 language    the words of the language, as completion and `btq explain` show them; `name_kinds`, what names can name
 verbs       the verbs of clauses, and what their numbers measure; `verdicts`, the results of verification
+standard_answers  what `btq explore` says without a question
 nav2/       Nav2's nodes and libraries, and what bt_navigator sets
 
 One invariant: tables and look-ups only.  Nothing here knows a file, a tree or a diagnostic.

@@ -185,7 +185,7 @@ clause
         `keeps`, `never`, `runs`: counts only the time in which it holds; others: activations in which it always holds
     when | when fragile | only when a condition holds | counts only activations at whose start the condition holds
     assuming | assuming visibility >= 1 m | not applicable otherwise | \
-        runs, or activations of a node, in which the condition does not hold all along are counted apart
+        in its requirement alone: runs, or activations, in which the condition does not hold all along are counted apart
     until | from Pick starts until Place succeeds | only between two events | \
         for `keeps` and `never`: only the time from an event until the next other one, or the end of the run
     on average | on average | the mean | \

@@ -252,6 +252,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         scenarios.duplicate_title,
         scenarios.unknown_requirement,
         scenarios.expects_nothing,
+        scenarios.undecidable_expectation,
         scenarios.ambiguous_given,
         scenarios.wrong_step,
     ),

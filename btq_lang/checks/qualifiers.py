@@ -32,6 +32,8 @@ def qualifier_of_all(view: View) -> Iterator[Diagnostic]:
                 message = f"`{_words(view.text, clause)}` holds for all {len(claims)} claims of this requirement"
                 span, notes = Span(clause.start, clause.end), (f"put it on its own line; {SPLIT}",)
                 fixes = _fixes(view.text, requirement, clause)
+                if isinstance(clause, syntax.FromUntil) and not all(VERBS[claim.row].is_of_moments for claim in claims):
+                    notes, fixes = (f"{SPLIT}: `from … until` is for `keeps` and `never` only",), ()
                 yield Diagnostic("qualifier-of-all", span, message, notes=notes, fixes=fixes)
 
 

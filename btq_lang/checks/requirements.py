@@ -12,6 +12,7 @@ from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks import lookups
 from btq_lang.checks.chain import in_other_clause, is_external, is_refined, may_be_external, near_external
 from btq_lang.checks.includes import NOWHERE, include_fix
+from btq_lang.checks.qualifiers import SPLIT
 from btq_lang.checks.qualities import other_word
 from btq_lang.checks.view import (
     COUNTS,
@@ -26,7 +27,8 @@ from btq_lang.checks.view import (
 )
 from btq_lang.diagnostics.model import Diagnostic, Related, Tag, replace_fix
 from btq_lang.grammar.clause_slips import OF_MISSION
-from btq_lang.syntax.tree import Claim, Context, How, OnViolation, Requirement, Signal, Tree, written
+from btq_lang.grammar.cursor import shown
+from btq_lang.syntax.tree import Assuming, Claim, Context, How, OnViolation, Requirement, Signal, Tree, written
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts
@@ -117,23 +119,28 @@ def _unused_notes(requirement: Requirement) -> Iterator[str]:
         yield OF_MISSION
         return
     yield CLAIMS_OF_MISSION
-    ways = {way.method.raw for clause in requirement.clauses if isinstance(clause, How) for way in clause.ways}
-    if ways and "monitor" not in ways:
+    if (ways := _ways(requirement)) and "monitor" not in ways:
         yield AS_PROSE
 
 
 def requirement_without_text(view: View) -> Iterator[Diagnostic]:
-    """A requirement with neither a text nor a clause, or with nothing that its `on violation` could apply to."""
+    """A requirement with neither a text nor a clause, or with nothing to which its `on violation` or assumption could
+    apply."""
     for symbol, requirement in view.requirements:
-        action = _idle_action(view, requirement)
-        if action is None and not _is_empty(requirement):
+        idle = _idle_clause(view, requirement)
+        if idle is None and not _is_empty(requirement):
             continue
         if view.is_torn(requirement.start, requirement.end):
             continue  # its contents may be on a line that could not be read
         message = f"the requirement `{symbol.name}` demands nothing"
-        if action is not None:
-            message += f" that can be violated, so `on violation {action}` has no effect"
-        note = "add a clause such as `takes at most 30 s`" + ("" if action else ", or a title in quotes")
+        if idle is not None:
+            words = " ".join(view.text[idle.start : idle.end].split())
+            message += f" that can be violated, so `{shown(words, most=80)}` has no effect"
+        note = "add a clause such as `takes at most 30 s`" + ("" if idle else ", or a title in quotes")
+        if isinstance(idle, Assuming):
+            note = (
+                "an assumption counts for the clauses of its own requirement only: write it in each that relies on it"
+            )
         yield Diagnostic("requirement-without-text", symbol.span, message, notes=(note,))
 
 
@@ -171,12 +178,24 @@ def _differ(symbol: Symbol, first: Symbol) -> bool:
     )
 
 
-def _idle_action(view: View, requirement: Requirement) -> str | None:
-    """The action on violation of a requirement that claims nothing, neither by a clause nor in its description."""
+def _idle_clause(view: View, requirement: Requirement) -> OnViolation | Assuming | None:
+    """What to do on violation, or an assumption, of a requirement that claims nothing, neither by a clause nor in its
+    description; of one that people verify, an assumption tells them something.
+    """
     if any(isinstance(clause, Claim) for clause in requirement.clauses) or view.constraints(requirement):
         return None
-    actions = (clause.action for clause in requirement.clauses if isinstance(clause, OnViolation))
-    return next((action.text for action in actions if action is not None), None)
+    ways = _ways(requirement)
+    for clause in requirement.clauses:
+        if isinstance(clause, OnViolation) and clause.action is not None:
+            return clause
+        if isinstance(clause, Assuming) and (not ways or "monitor" in ways):
+            return clause
+    return None
+
+
+def _ways(requirement: Requirement) -> set[str]:
+    """How a requirement is verified."""
+    return {way.method.raw for clause in requirement.clauses if isinstance(clause, How) for way in clause.ways}
 
 
 def _is_empty(requirement: Requirement) -> bool:
@@ -269,6 +288,8 @@ def _without_subject(view: View, name: str) -> Iterator[Diagnostic]:
         elif resolved is not None and resolved.span is not None and not VERBS[claim.verb].is_of_moments:
             message = f"`{claim.verb}` is not about the time in `{resolved.span.text}`, so nothing can check it"
             note = "`from … until` is for `keeps` and `never`; of other verbs, `while` and `when` limit what counts"
+            if any(VERBS[other.verb].is_of_moments for other in claims):
+                note = f"{SPLIT}; {note}"
             yield _diagnostic(claim, message, note)
         elif claim.subject is None and not is_about_nothing and not view.ask(_is_attached, name):
             message = f"missing subject of `{claim.text}`"
@@ -289,5 +310,8 @@ def _is_attached(store: Store[Workspace], viewpoint: str, name: str) -> bool:
 _MOST_COMPARED = 200_000  # pairs of names: some tenths of a second
 CLAIMS_OF_MISSION: Final = (
     "at the root node of the main tree its claims are about the whole mission, as with `mission` before the verb"
+)
+_OF_ITS_OWN: Final = (
+    "an assumption counts for the clauses of its own requirement only: write it in each that relies on it"
 )
 AS_PROSE: Final = "what people verify needs no claim: without it, what the requirement demands is prose in its title"

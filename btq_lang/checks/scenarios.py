@@ -55,6 +55,22 @@ def expects_nothing(view: View) -> Iterator[Diagnostic]:
     yield Diagnostic("expects-nothing", span, "this scenario expects nothing", notes=(note,))
 
 
+def undecidable_expectation(view: View) -> Iterator[Diagnostic]:
+    """A requirement that a scenario expects to be satisfied, though that needs more runs than the one that it is."""
+    from btq_lang.requirements.definitions import requirement  # few files have scenarios
+    from btq_lang.requirements.one_run import never_satisfied_by_one, shown_by_one
+
+    for step in view.item.steps if isinstance(view.item, syntax.Scenario) else ():
+        expected = step.expectation if isinstance(step, syntax.Expect) else None
+        if not isinstance(expected, syntax.ExpectedVerdict) or [word.raw for word in expected.words] not in _SATISFIED:
+            continue
+        resolved, _ = view.ask(requirement, expected.name.text)
+        if resolved is not None and (what := never_satisfied_by_one(resolved)):
+            message = f"a scenario is one run, which cannot decide {what}"
+            notes = tuple(f"`expect {text}` is what one run can show" for text in shown_by_one(resolved))
+            yield Diagnostic("undecidable-expectation", expected.name.span, message, notes=notes)
+
+
 def duplicate_title(view: View) -> Iterator[Diagnostic]:
     """A scenario with the title of an earlier one of its file."""
     title = view.item.title if isinstance(view.item, syntax.Scenario) else None
@@ -243,6 +259,8 @@ def _which_port(view: View, targets: Sequence[ResolvedNode], expectation: syntax
 def _impossible(targets: Sequence[ResolvedNode], given: syntax.NodesDo) -> Iterator[Diagnostic]:
     """Behaviors that none of some nodes can have: a condition answers, all other nodes do not, and nodes of the engine
     do what the engine does."""
+    from btq_lang.catalog.nav2.nodes import ASKING  # few files have scenarios
+
     if not targets:
         return
     span = Span(given.nodes.start, given.nodes.end)
@@ -252,11 +270,12 @@ def _impossible(targets: Sequence[ResolvedNode], given: syntax.NodesDo) -> Itera
         yield Diagnostic("impossible-step", span, message, notes=("say what the nodes of your robot below it do",))
         return
     categories = {target.category for target in targets if target.kind is None}
+    is_asked = any(target.id is not None and target.id.text in ASKING for target in targets)
     shown = targets[0].shown_kind
     for behavior in given.behaviors:
         for aspect in behavior.aspects:
             word = aspect.word.raw
-            if word == "answers" and categories <= {"Action", "Control", "Decorator"}:
+            if word == "answers" and categories <= {"Action", "Control", "Decorator"} and not is_asked:
                 message = f"{shown} is not a condition: it succeeds or fails, and answers nothing"
                 only = aspect.answers[0].raw if len(aspect.answers) == 1 else ""
                 meant = {"true": "succeeds", "false": "fails"}.get(only)
@@ -372,6 +391,7 @@ def _clash(stated: _Stated, other: _Stated) -> tuple[_Stated, str] | None:
     return None
 
 
+_SATISFIED: Final[tuple[list[str], ...]] = ([], ["satisfied"])
 _OF_ACTIONS: Final = ("succeeds", "fails", "does", "takes", "after")
 _ASPECTS: Final = {
     **dict.fromkeys(("succeeds", "fails", "skips", "does"), "result"),

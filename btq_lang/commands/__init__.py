@@ -12,7 +12,7 @@ How to check, build or judge is unknown here; other packages do that.
     explain.py         with explain_nav2, a page about a node of Nav2
     init.py            with init_from_xml, whose parts are init_lines and packages
     explore.py         what can happen; explored_scenarios.py writes its runs as scenarios
-    testing.py         `btq test`: scenarios
+    testing.py         `btq test`: scenarios; with testing_options
     simulating.py      `btq simulate`: runs that are drawn; with simulate_options
     verify.py          with verify_options, candidates, stored, live, live_screen, recorded, verdict_report and
                        verdict_events

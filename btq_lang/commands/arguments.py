@@ -10,13 +10,13 @@ from typing import Final, TypeAlias
 
 from btq_lang.commands.simulate_options import add_simulate_options
 from btq_lang.commands.suggesting_parser import SuggestingParser
+from btq_lang.commands.testing_options import add_scenario_options
 from btq_lang.commands.verify_options import VerifyOptions, add_verify_options
 from btq_lang.evidence.compare import FORMATS as COMPARISON_FORMATS
 from btq_lang.graph import DIRECTIONS
 from btq_lang.graph import FORMATS as GRAPH_FORMATS
 from btq_lang.projects.options import CheckOptions, add_server_options
 from btq_lang.render import FORMATS
-from btq_lang.scenarios import FORMATS as SCENARIO_FORMATS
 from btq_lang.trace import FORMATS as TRACE_FORMATS
 from btq_lang.util.record import as_dict
 from btq_lang.util.version import __version__
@@ -244,35 +244,17 @@ def _add_trace(parser: SuggestingParser) -> None:
     "test",
     "run the scenarios of missions without a robot: what happens when …",
     "exit codes: 0 all as expected; 1 a scenario failed, or is unknown; 2 usage, I/O, a mistake in a scenario,\n"
-    "or no scenario\n\n"
+    "no scenario, or no engine\n\n"
     "examples:\n  btq test                           all scenarios below this folder\n"
     "  btq test tests/deliver.btq --show  and how each run went\n"
     "  btq test -k station                those with `station` in their titles\n"
     "  btq test --coverage --mutants      what they do not test\n"
+    "  btq test --engine                  in an installed BehaviorTree.CPP, too\n"
     "  btq test --format junit -o scenarios.xml\n",
 )
 def _add_test(parser: SuggestingParser) -> None:
-    from btq_lang.catalog.versions import targets  # as above
-
     _add_paths(parser)
-    parser.add("-k", "--title", default="", metavar="TEXT", help="only scenarios with this text in their titles")
-    parser.add("--target", choices=targets(), help="the engine's version; default: the project's newest")
-    parser.flag("--no-enforce", "run the tree as btq build --no-enforce writes it")
-    parser.flag("--show", "draw the run of each scenario, and not only of those that fail")
-    parser.flag("--coverage", "say which outcomes of nodes no scenario has met")
-    parser.add(
-        "--mutants",
-        nargs="?",
-        type=int,
-        const=0,
-        metavar="N",
-        help="change the tree in many ways, and say which changes no scenario notices; N: only so many of them",
-    )
-    parser.add("--rules", metavar="FILE", help="write what a scenario gives as substitution rules of the engine")
-    parser.add("--jobs", type=int, default=0, metavar="N", help="run them in N processes; default: by their number")
-    parser.add("--format", choices=SCENARIO_FORMATS, help="default: as the file of -o ends, else text")
-    parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
-    parser.flag("--watch", "run again whenever a file changes, until Ctrl+C")
+    add_scenario_options(parser)
     _add_config(parser)
     _add_color(parser)
 

@@ -1,4 +1,4 @@
-"""`btq explain`: explains a rule, a node, a quality, a word of the language, a port, a verdict or a unit."""
+"""`btq explain`: explains a rule, a node, a quality, a word of the language, a port, a verdict, an answer or a unit."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from btq_lang.catalog.language import PHRASES, SIGNS, phrases_of
 from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.nodes import BUILTINS, ELSEWHERE, KNOWN_WORDS, NodeKind, lookup, spellings
 from btq_lang.catalog.qualities import Quality, find, parts, qualities, siblings
+from btq_lang.catalog.standard_answers import STANDARD_ANSWERS
 from btq_lang.catalog.units import dimension_name, nearest_units, parse_unit, symbols
 from btq_lang.catalog.verdicts import VERDICTS, Verdict
 from btq_lang.commands.explain_nav2 import nav2_nodes, nav2_page
@@ -75,6 +76,11 @@ def _own_pages(name: str) -> Iterator[str]:
         yield "\n".join(_quality(quality, name, match.explanation))
     if name in VERDICTS:
         yield _verdict(VERDICTS[name])
+    if name in STANDARD_ANSWERS:
+        answer = STANDARD_ANSWERS[name]
+        meaning, then = (f"{text[0].upper()}{text[1:]}." for text in (answer.meaning, answer.then))
+        lines = _wrapped(f"An answer of `btq explore`. {meaning}")
+        yield "\n".join((f"# {name}", "", *lines, "", "## What to do", "", *_wrapped(then)))
     for phrase in phrases_of(name):
         yield f"# {phrase.words} ({phrase.part})\n\n    {phrase.form}\n\n{phrase.sentence}"
     if name in ("verdict", "verdicts"):
@@ -243,7 +249,7 @@ def _lists() -> dict[str, Callable[[], Iterable[str]]]:
 
 
 def _rules() -> list[str]:
-    return [*RULES, *(quality.id for quality in qualities())]
+    return [*RULES, *STANDARD_ANSWERS, *(quality.id for quality in qualities())]
 
 
 def _nodes() -> list[str]:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from btq_lang.commands.explored_scenarios import RUN_SUFFIXES, drawn_runs, write_runs
 from btq_lang.commands.output import write_output
 from btq_lang.exploration.answers import Answer, answered
-from btq_lang.exploration.clauses import clause_answers
+from btq_lang.exploration.clauses import clause_answers, unasked_clauses
 from btq_lang.exploration.missions import ExploredMission, NotExplored, explorable
 from btq_lang.exploration.questions import NoQuestion, Question, parse_question
 from btq_lang.exploration.report import AskedQuestion, Explored, as_json, as_text
@@ -60,18 +60,16 @@ def run(options: ExploreOptions, messages: CommandOutput) -> int:
     budget = SearchBudget(options.states, options.seconds)
     code = 0
     explored: list[Explored] = []
+    unasked: list[tuple[Question, str, str]] = []
     for group in groups:
         paths = group.given if options.tree else tuple(explorable(group.workspace, group.given))
         for path in paths:
             try:
                 mission = ExploredMission(group.workspace, path, options.tree or "")
-                asked = [
-                    AskedQuestion(question, is_wanted, answered(mission, question, budget))
-                    for question, is_wanted in questions
-                ]
+                asked = [*_asked(mission, questions, budget, unasked)]
                 clauses = tuple(clause_answers(mission, budget)) if not questions else ()
                 survey = surveyed(mission, budget) if not questions else None
-            except (NotExplored, Unasked, RecursionError) as problem:
+            except (NotExplored, RecursionError) as problem:
                 reason = "its tree is nested too deeply" if isinstance(problem, RecursionError) else problem
                 messages.remark(f"btq explore: {shown(path)}: {reason}")
                 code = 2
@@ -79,7 +77,14 @@ def run(options: ExploreOptions, messages: CommandOutput) -> int:
             codes = [_code_of(each.answer, each.is_wanted, options.strict) for each in asked]
             codes += [_code_of(clause.answer, False, options.strict) for clause in clauses]
             code = max(code, _survey_code(survey, options.strict), *codes)
-            explored.append(Explored(mission, tuple(asked), clauses, survey))
+            if asked or not questions:
+                clauses_left_out = unasked_clauses(mission) if not questions else ()
+                explored.append(Explored(mission, tuple(asked), clauses, survey, clauses_left_out))
+    answered_somewhere = [each.question for one in explored for each in one.asked]
+    for question, path, reason in unasked:
+        if question not in answered_somewhere:
+            messages.remark(f"btq explore: {shown(path)}: {reason}")
+            code = 2
     if not explored and not code:
         raise Refused("no mission has a main tree; choose one with --tree")
     if explored:
@@ -102,6 +107,20 @@ def _question(text: str) -> Question:
         return parse_question(text)
     except NoQuestion as problem:
         raise Refused(f"`{text}`: {problem}") from None
+
+
+def _asked(
+    mission: ExploredMission,
+    questions: Sequence[tuple[Question, bool]],
+    budget: SearchBudget,
+    unasked: list[tuple[Question, str, str]],
+) -> Iterator[AskedQuestion]:
+    """The questions with their answers; `unasked`: gets those that cannot be asked of the mission, and why."""
+    for question, is_wanted in questions:
+        try:
+            yield AskedQuestion(question, is_wanted, answered(mission, question, budget))
+        except Unasked as problem:
+            unasked.append((question, mission.path, str(problem)))
 
 
 def _survey_code(survey: Survey | None, strict: bool) -> int:

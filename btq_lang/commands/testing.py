@@ -6,9 +6,11 @@ import os
 import sys
 from collections.abc import Sequence
 from functools import partial
+from typing import TYPE_CHECKING
 
 from btq_lang import scenarios
 from btq_lang.commands.output import form_of, form_problem, is_coloured, write_file, write_output
+from btq_lang.commands.testing_options import ScenarioOptions
 from btq_lang.projects.building import for_target
 from btq_lang.projects.files import Files, usage_problem
 from btq_lang.projects.messages import CommandOutput
@@ -16,39 +18,13 @@ from btq_lang.projects.options import refuse
 from btq_lang.scenarios.parallel import result_of, results
 from btq_lang.scenarios.results import ScenarioReport, ScenarioResult
 from btq_lang.scenarios.suite import ScenarioPlace, Suite
-from btq_lang.util.record import Record
+from btq_lang.util.record import replace
+from btq_lang.workspace.config import is_engine
 from btq_lang.workspace.file import SUFFIXES, XML_SUFFIXES
+from btq_lang.workspace.workspace import Workspace
 
-
-class ScenarioOptions(Record):
-    """The options of `btq test`.
-
-    Attributes:
-        paths: files and folders, or `-` for standard input.
-        title: only scenarios whose titles contain this text.
-        target: the version of the engine; None: the newest of the project.
-        no_enforce: without the nodes that enforce requirements.
-        show: draw the runs of all scenarios.
-        coverage: say what no scenario has met.
-        mutants: say which changes of the tree no scenario notices: of so many; 0: of all; None: no.
-        rules: the file for the engine's substitution rules that say what is given; None: the scenario runs.
-        jobs: the number of processes; 0: as many as there are processors, if there are many scenarios.
-    """
-
-    paths: Sequence[str]
-    stdin_filename: str | None
-    title: str
-    target: str | None
-    no_enforce: bool
-    show: bool
-    coverage: bool
-    mutants: int | None
-    rules: str | None
-    jobs: int
-    format: str | None
-    output: str | None
-    watch: bool
-    color: str
+if TYPE_CHECKING:
+    from btq_lang.scenarios.installed_engine import InstalledEngine
 
 
 def run(options: ScenarioOptions, messages: CommandOutput) -> int:
@@ -78,10 +54,9 @@ def _run(options: ScenarioOptions, files: Files, messages: CommandOutput) -> tup
     groups, problems = files.groups(options.paths, options.stdin_filename)
     messages.problems(problems)
     watched = tuple(path for group in groups for path in group.watched)
-    workspaces = [group.workspace for group in groups]
-    if options.target:
-        workspaces = [for_target(each, options.target) for each in workspaces]
-    suites = [Suite(each, not options.no_enforce) for each in workspaces]
+    engine = _engine(options.engine)
+    workspaces = [_targeted(group.workspace, options.target, engine) for group in groups]
+    suites = [Suite(each, not options.no_enforce, engine) for each in workspaces]
     wanted = [
         (index, place)
         for index, group in enumerate(groups)
@@ -95,13 +70,35 @@ def _run(options: ScenarioOptions, files: Files, messages: CommandOutput) -> tup
     if options.rules is not None:
         return _write_rules(suites, wanted, options.rules, messages), watched
     jobs = options.jobs or (os.cpu_count() or 1 if len(wanted) >= _MANY else 1)
-    report = _report(suites, wanted, options, jobs)
+    report = replace(_report(suites, wanted, options, jobs), engine=engine.version if engine is not None else "")
     form = form_of(options.format, options.output, scenarios.FORMATS)
     colour = form == "text" and options.output in (None, "-") and is_coloured(options.color, sys.stdout.isatty())
     write_output(messages, options.output, scenarios.write(report, form, colour=colour), form)
     if problems or report.count("error"):
         return 2, watched
     return int(report.count("passed") < len(report.scenarios)), watched
+
+
+def _engine(prefix: str | None) -> InstalledEngine | None:
+    """The installed engine that is wanted; None if none is."""
+    if prefix is None:
+        return None
+    from btq_lang.scenarios.installed_engine import NoInstalledEngine, installed_engine
+
+    try:
+        return installed_engine(prefix)
+    except NoInstalledEngine as reason:
+        refuse(f"--engine: {reason}")
+        return None
+
+
+def _targeted(workspace: Workspace, target: str | None, engine: InstalledEngine | None) -> Workspace:
+    """A workspace for one version: the given one, or that of the engine if the project allows it."""
+    if target is None and engine is not None:
+        project = workspace.project
+        if is_engine(engine.line) and (engine.line in project.engines or not project.pinned):
+            target = engine.line
+    return for_target(workspace, target) if target else workspace
 
 
 def _write_rules(

@@ -19,6 +19,7 @@ determines: what leaves return and write, when timers go off, and how values com
     answers.py     answers to questions
     askable.py     which clauses of requirements can be asked
     clauses.py     clauses of requirements that can be violated
+    reasons.py     which nodes are why a tree cannot succeed or fail
     surveys.py     answers to the standard questions
     report.py      both as text and as JSON
 """

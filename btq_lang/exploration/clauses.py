@@ -1,7 +1,8 @@
 """Clauses of a mission about order or occurrence, each asked whether it can be violated.
 
 One invariant: a clause is asked only if a single run can violate it and time has no part in that: `follows`, `each … is
-followed by`, `never` of nodes that run, `tries at most` and `succeeds`, without scopes and shares of runs.
+followed by`, `never` of nodes that run, `tries at most` and `succeeds`, without shares of runs, and without scopes
+but those of `never`: while nodes run, and from one event of nodes until another.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from collections.abc import Callable, Iterator
 from typing import Final, TypeAlias
 
 from btq_lang.exploration.answers import Answer, answered_by
-from btq_lang.exploration.askable import askable_claims
+from btq_lang.exploration.askable import askable_claims, why_not_asked
 from btq_lang.exploration.missions import ExploredMission
 from btq_lang.exploration.outcomes import Happened
 from btq_lang.exploration.search import SearchBudget
@@ -49,6 +50,21 @@ class ClauseAnswer(Record):
     requirement: str
     text: str
     answer: Answer
+
+
+class UnaskedClause(Record):
+    """A clause that cannot be asked; why: in words after it."""
+
+    requirement: str
+    text: str
+    why: str
+
+
+def unasked_clauses(mission: ExploredMission) -> tuple[UnaskedClause, ...]:
+    """The clauses that cannot be asked, each once."""
+    pairs = [(applied, claim) for applied in mission.applied for claim in applied.requirement.claims]
+    unasked = (UnaskedClause(each.requirement.name, claim.text, why_not_asked(each, claim)) for each, claim in pairs)
+    return tuple(dict.fromkeys(clause for clause in unasked if clause.why))
 
 
 def clause_answers(mission: ExploredMission, budget: SearchBudget, only: str = "") -> Iterator[ClauseAnswer]:
@@ -118,6 +134,26 @@ class _Holds(_Violation):
             raise Happened
 
 
+class _HoldsWithin(_Holds):
+    """Nodes that must not run from each of some events until the next of others."""
+
+    def __init__(
+        self, snapshots: Snapshots, test: _Test, tracked: dict[int, SimulatedNode], first: _Events, last: _Events
+    ) -> None:
+        super().__init__(snapshots, test, tracked)
+        self._first: Final = first
+        self._last: Final = last
+
+    def changed(self, node: SimulatedNode, before: int, after: int) -> None:
+        for is_start in (True, False):  # a node that ends at once starts before
+            if _is_any(_starts(self._last, is_start), node, before, after):
+                self.snapshots.watched = 0
+            if _is_any(_starts(self._first, is_start), node, before, after):
+                self.snapshots.watched = 1
+        if self.snapshots.watched:
+            super().changed(node, before, after)
+
+
 class _Follows(_Violation):
     """Starts that need an event since the start before."""
 
@@ -159,6 +195,10 @@ def _is_any(events: _Events, node: SimulatedNode, before: int, after: int) -> bo
     return any(node.uid in uids and happens(word, before, after) for uids, word in events)
 
 
+def _starts(events: _Events, is_start: bool) -> _Events:
+    return [event for event in events if (event[1] == "starts") == is_start]
+
+
 def _watch(mission: ExploredMission, applied: Applied, claim: ResolvedClaim, snapshots: Snapshots) -> _Watch:
     """Who watches for the violation of a claim that can be asked."""
     subject = claim.subject or applied.subject
@@ -177,10 +217,14 @@ def _watch(mission: ExploredMission, applied: Applied, claim: ResolvedClaim, sna
         return _Occurs(snapshots, [(uids, "starts")], int(claim.limit.value.si), per)
     tracked: dict[int, SimulatedNode] = {}
     assert claim.condition is not None, "as above"
-    test = _test(mission, claim.condition, snapshots, tracked)
+    conditions = (claim.condition, *(scope.condition for scope in applied.requirement.scopes))
+    test = _test(mission, All(conditions), snapshots, tracked)
     if isinstance(subject, NodeTarget):
         while_running = _runs(uids, snapshots, tracked)
         return _Holds(snapshots, lambda: while_running() and test(), tracked)
+    span = applied.requirement.span
+    if span is not None:
+        return _HoldsWithin(snapshots, test, tracked, _events(mission, span.first), _events(mission, span.last))
     return _Holds(snapshots, test, tracked)
 
 

@@ -10,10 +10,9 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import Final
 
 from btq_lang.exploration.snapshots import Snapshots
-from btq_lang.simulator import nav2, nav2_conditions
-from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SUCCESS, Flow, Machine, SimulatedNode, TickRules
+from btq_lang.simulator.nav2 import UPDATED
+from btq_lang.simulator.nodes import FAILURE, RUNNING, SUCCESS, SimulatedNode
 from btq_lang.simulator.ports import key_of
-from btq_lang.simulator.ticking import execute_tick, reset_child, set_status
 from btq_lang.simulator.world import World
 from btq_lang.util.record import Record
 
@@ -95,6 +94,22 @@ class FreeLeaves:
             written.append(key)
         return written
 
+    def has_answer(self, node: SimulatedNode) -> bool:
+        """Nodes of Nav2 that read the time or the world answer anything, too."""
+        return True
+
+    def answer(self, node: SimulatedNode) -> bool:
+        """What such a node answers."""
+        return self.snapshots.choose(2) == 0
+
+    def update(self, node: SimulatedNode) -> None:
+        """Write a goal that a GoalUpdater may have received."""
+        for port in UPDATED:
+            key = key_of(node.ports.get(port, ""), port)
+            board, name = node.board.home(key) if key is not None else (node.board, "")
+            if (id(board), name) in self.relevant and self.answer(node):
+                board.entries[name].value = self.snapshots.new_value(board.entries[name].type)
+
     def halt(self, node: SimulatedNode) -> None:
         """Nothing more than the engine does."""
 
@@ -129,86 +144,4 @@ class FreeWorld(World):
         return bool(self.snapshots.choose(2))
 
 
-def set_free(node: SimulatedNode, snapshots: Snapshots) -> None:
-    """Have a node of Nav2 that reads the time or the world do whatever it may."""
-    flow = _FREE.get(node.rules.flow)
-    if flow is not None:
-        node.rules = TickRules(flow(snapshots), node.rules.halt, is_decorator=node.rules.is_decorator)
-
-
-def _answering(snapshots: Snapshots) -> Flow:
-    """A condition that answers anything, but fails when it begins."""
-
-    def tick(_: Machine, node: SimulatedNode) -> int:
-        return FAILURE if node.status == IDLE or snapshots.choose(2) else SUCCESS
-
-    return tick
-
-
-def _at_any_time(snapshots: Snapshots) -> Flow:
-    """A condition that answers anything."""
-
-    def tick(_: Machine, node: SimulatedNode) -> int:
-        return FAILURE if snapshots.choose(2) else SUCCESS
-
-    return tick
-
-
-def _letting_through(snapshots: Snapshots) -> Flow:
-    """A decorator that ticks its child when it begins, while the child runs, and again at any time."""
-
-    def tick(machine: Machine, node: SimulatedNode) -> int:
-        is_first = node.status == IDLE
-        set_status(machine, node, RUNNING)
-        if is_first or node.child.status == RUNNING or snapshots.choose(2):
-            return execute_tick(machine, node.child)
-        return RUNNING
-
-    return tick
-
-
-def _when_longer(snapshots: Snapshots) -> Flow:
-    """A PathLongerOnApproach whose path may be longer at any time."""
-
-    def tick(machine: Machine, node: SimulatedNode) -> int:
-        set_status(machine, node, RUNNING)
-        if not snapshots.choose(2):
-            return SUCCESS
-        result = execute_tick(machine, node.child)
-        if result in (SUCCESS, FAILURE):
-            reset_child(machine, node.child)
-        return result
-
-    return tick
-
-
 _UNDECLARED: Final = LeafKind()
-_FREE: Final[dict[Flow, Callable[[Snapshots], Flow]]] = {
-    **dict.fromkeys(
-        (
-            nav2.tick_rate_controller,
-            nav2.tick_distance_controller,
-            nav2.tick_speed_controller,
-            nav2.tick_goal_updated_controller,
-        ),
-        _letting_through,
-    ),
-    nav2.tick_path_longer: _when_longer,
-    **dict.fromkeys(
-        (
-            nav2_conditions.tick_goal_updated,
-            nav2_conditions.tick_time_expired,
-            nav2_conditions.tick_distance_traveled,
-        ),
-        _answering,
-    ),
-    **dict.fromkeys(
-        (
-            nav2_conditions.tick_global_updated_goal,
-            nav2_conditions.tick_path_expiring_timer,
-            nav2_conditions.tick_initial_pose_received,
-            nav2_conditions.tick_error_codes,
-        ),
-        _at_any_time,
-    ),
-}

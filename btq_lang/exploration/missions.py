@@ -11,28 +11,27 @@ from typing import Final
 from btq_lang.btcpp.document import Document
 from btq_lang.btcpp.reader import read
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nav2 import ENGINES, assumed_distribution, distribution_among
 from btq_lang.catalog.nav2.creation import SERVERS
-from btq_lang.catalog.nav2.navigator import ENTRIES
-from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks import cpp_lookups, lookups
+from btq_lang.checks.calls import callers, is_main
 from btq_lang.checks.kinds import newer_engine_node
 from btq_lang.checks.view import View
+from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.evidence.identity import Build, Candidate
 from btq_lang.exploration.leaves import LeafKind
 from btq_lang.exploration.opened import Opened
 from btq_lang.exploration.watching import Unasked
+from btq_lang.exploration.witness import Tick
 from btq_lang.requirements.model import MissionRun, NodeTarget
 from btq_lang.simulator.errors import EngineError, NotModelled
-from btq_lang.simulator.kinds import is_of_nav2
 from btq_lang.simulator.nav2_models import ports_in
 from btq_lang.simulator.nodes import SimulatedNode
 from btq_lang.simulator.ports import key_of
-from btq_lang.simulator.versions import Dialect
+from btq_lang.simulator.programs import program_of
 from btq_lang.syntax.tree import Path
+from btq_lang.util.record import replace
 from btq_lang.util.spelling import did_you_mean, near
-from btq_lang.workspace.engine_version import written_for
 from btq_lang.workspace.loader import shown
 from btq_lang.workspace.port_types import as_kind
 from btq_lang.workspace.resolved import ResolvedNode
@@ -48,9 +47,9 @@ class ExploredMission:
 
     Attributes:
         tree: the name of the tree that runs.
+        program: that runs it.
         dialect: the engine.
         kinds: what is known of its leaves, by name.
-        is_nav2_assumed: no distribution of Nav2 is named, and the tree has nodes of Nav2.
     """
 
     def __init__(self, workspace: Workspace, path: str, tree: str = "") -> None:
@@ -62,11 +61,6 @@ class ExploredMission:
         self.workspace: Final = workspace
         self.path: Final = path
         file = workspace.files[path]
-        scope = workspace.scope(path)
-        distribution = distribution_among(scope.node_paths)
-        versions = written_for(workspace.project, distribution, workspace.store.ask(lookups.signs, path))
-        version = workspace.project.target if not versions else versions[-1]
-        is_old = is_before_4(version)
         mission = Candidate(workspace, path, path, None)
         name = tree or (main.symbol.name if (main := workspace.main_tree(path)) is not None else "")
         build = next(mission.builds(name), None) if name else None
@@ -76,11 +70,8 @@ class ExploredMission:
         self.build: Final[Build] = build
         self.nodes: Final = mission.requirements.nodes
         self.applied: Final = mission.requirements.applied
-        nodes = [node for _, node in build.running.all if node is not None]
-        has_nav2 = any(node.children and node.id is not None and is_of_nav2(node.id.text) for node in nodes)
-        self.is_nav2_assumed: Final = distribution is None and has_nav2
-        nav2 = distribution or (assumed_distribution(is_old) if has_nav2 else "")
-        self.dialect: Final = Dialect(ENGINES[nav2] if is_old and nav2 else version, nav2)
+        self.program: Final = program_of(workspace, path, [node for _, node in build.running.all if node is not None])
+        self.dialect: Final = self.program.dialect
         if file.is_xml:
             self._refuse_newer_nodes()
             self._documents: Sequence[Document] = self._plain()
@@ -90,6 +81,7 @@ class ExploredMission:
             instance.uid: node for instance, node in build.running.all if instance.uid is not None and node is not None
         }
         self.kinds: Final = self._kinds()
+        self._guarded: frozenset[str] | None = None  # entries that only nodes read that enforce requirements
 
     def open(self, asked: Collection[str] = ()) -> Opened:
         """The tree, ready to be explored; `asked`: the entries that a question reads.
@@ -97,10 +89,10 @@ class ExploredMission:
         Raises:
             NotExplored: the engine refuses it, or it has something whose effect is not known.
         """
-        preset = [key for key, letters in ENTRIES.items() if self.dialect.nav2[:1] in letters and self.dialect.nav2]
-        preset += self.workspace.store.ask(cpp_lookups.set_in_cpp, self.path).names
+        set_in_cpp = self.workspace.store.ask(cpp_lookups.set_in_cpp, self.path).names
+        program = replace(self.program, preset=(*self.program.preset, *set_in_cpp))
         try:
-            return Opened(list(self._documents), self.tree, self.dialect, self.kinds, asked, preset)
+            return Opened(list(self._documents), self.tree, program, self.kinds, asked)
         except EngineError as error:
             raise NotExplored(f"the engine refuses the tree: {error}") from None
         except NotModelled as error:
@@ -132,14 +124,40 @@ class ExploredMission:
         """A node as it is written; None: it only enforces a requirement."""
         return self._written.get(uid)
 
+    def without_part(self, ticks: Sequence[Tick]) -> frozenset[str]:
+        """The entries that have no part in a run: those that only guards of requirements read, if none refuses."""
+        if all(node is not None for _, node in self.build.running.all):
+            return frozenset()
+        if any(self.written(uid) is None for tick in ticks for uid in tick.refusals):
+            return frozenset()
+        if self._guarded is None:
+            opened = self.open()
+            nodes = opened.machine.nodes
+            read = opened.read_by([node for node in nodes if self.written(node.uid) is not None])
+            self._guarded = opened.read_by(nodes) - read
+        return self._guarded
+
     def place(self, uid: int) -> tuple[str, int] | None:
         """The file and the line of a node, from 1; None: it is not written."""
         node = self._written.get(uid)
         if node is None:
             return None
-        file = self.workspace.files[node.path]
-        span = file.on_disk(file.span_of(node.place))
-        return node.path, file.source_lines.position(span.start).line + 1
+        return self._line(node.path, node.place)
+
+    def call(self) -> tuple[str, int] | None:
+        """The file and the line, from 1, of the first SubTree that calls the tree; None: the program runs it, or
+        nothing is seen to."""
+        store = self.workspace.store
+        if store.ask(is_main, self.path, self.tree) or not store.ask(callers, self.path, self.tree):
+            return None
+        uses = store.ask(lookups.uses_of_tree, self.path, self.tree)
+        return next((self._line(use.path, use) for use in uses if use.path is not None), None)
+
+    def _line(self, path: str, place: Place) -> tuple[str, int]:
+        """A file, and the line of a place in it."""
+        file = self.workspace.files[path]
+        span = file.on_disk(file.span_of(place))
+        return path, file.source_lines.position(span.start).line + 1
 
     def server(self, node: SimulatedNode) -> str:
         """The action server that a leaf calls; empty if none is known."""
@@ -183,7 +201,7 @@ class ExploredMission:
                 for ports in store.ask(lookups.ports_of_models, self.path, Kind.MODEL, name)
                 for port in map(as_kind, ports)
             }
-            if self.is_nav2_assumed and not declared:
+            if self.program.is_nav2_assumed and not declared:
                 declared = {port.name: port for port in ports_in(self.dialect.nav2).get(name, ())}
             kinds[name] = LeafKind(
                 is_condition=node.category == "Condition",

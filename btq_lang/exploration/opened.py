@@ -6,20 +6,22 @@ before: it has a value, which is unknown.  All others begin without one.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Final, Protocol, TypeAlias
 
 from btq_lang.btcpp.document import Document
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.exploration.choices import Choices
-from btq_lang.exploration.leaves import FreeLeaves, FreeWorld, LeafKind, set_free
+from btq_lang.exploration.leaves import FreeLeaves, FreeWorld, LeafKind
 from btq_lang.exploration.snapshots import Memories, Shared, Snapshots
 from btq_lang.simulator.errors import EngineError
 from btq_lang.simulator.leaves import tick_custom
 from btq_lang.simulator.loading import load
+from btq_lang.simulator.nav2 import UPDATED
+from btq_lang.simulator.nav2_answered import set_answered
 from btq_lang.simulator.nodes import Machine, SimulatedNode
 from btq_lang.simulator.ports import key_of
-from btq_lang.simulator.versions import Dialect
+from btq_lang.simulator.programs import KnownProgram
 from btq_lang.syntax.script.tree import variables
 
 _Home: TypeAlias = tuple[int, str]  # a blackboard and a name there
@@ -42,6 +44,7 @@ class Opened:
     """A tree.
 
     Attributes:
+        driver: how the program ticks it.
         start: the memories of all nodes, and what they share, before the first tick.
         watch: to be set before the first tick.
     """
@@ -50,17 +53,16 @@ class Opened:
         self,
         documents: list[Document],
         main: str,
-        dialect: Dialect,
+        program: KnownProgram,
         kinds: Mapping[str, LeafKind],
         asked: Collection[str] = (),
-        preset: Collection[str] = (),
     ) -> None:
         """Load the tree `main`.
 
         Args:
-            kinds: of the leaves of the program, by name.
+            program: that runs it; the entries that it sets have a value, also if the tree writes them.
+            kinds: of its leaves, by name.
             asked: the entries of the root blackboard that a question reads.
-            preset: those that the program sets before, also if the tree writes them.
 
         Raises:
             EngineError: the engine refuses the tree.
@@ -70,16 +72,18 @@ class Opened:
         self.leaves: Final = FreeLeaves(kinds)
         world = FreeWorld()
         actions = [name for name, kind in kinds.items() if kind.is_action]
-        self.machine: Final[Machine] = load(documents, main, dialect, self.leaves, self._changed, None, actions, world)
+        self.driver: Final = program.driver
+        arguments = documents, main, program.dialect, self.leaves, self._changed, None, actions, world
+        self.machine: Final[Machine] = load(*arguments)
         for node in self.machine.nodes:
             _refuse(node)
         self.snapshots: Final = Snapshots(self.machine)
         self.leaves.snapshots = world.snapshots = self.snapshots
         self.leaves.unset_read = self._unset_read
         self.custom: Final = [node for node in self.machine.nodes if node.rules.flow is tick_custom]
-        self._set_entries(asked, preset)
+        self._set_entries(asked, program.preset)
         for node in self.machine.nodes:
-            set_free(node, self.snapshots)
+            set_answered(node, self.leaves)
         self.start: Final[tuple[Memories, Shared]] = (
             self.snapshots.memories(self.machine.root),
             self.snapshots.shared(),
@@ -95,6 +99,11 @@ class Opened:
         self.watch = watch
         self.snapshots.watched = watch.begin() if watch is not None else None
         self.machine.recall = None
+
+    def read_by(self, nodes: Iterable[SimulatedNode]) -> frozenset[str]:
+        """The entries of the root blackboard whose values matter to some nodes."""
+        root = id(self.machine.root.board.root)
+        return frozenset([name for node in nodes for board, name in self._read(node) if board == root])
 
     def _changed(self, node: SimulatedNode, before: int, after: int) -> None:
         if self.watch is not None:
@@ -175,4 +184,4 @@ def _home(node: SimulatedNode, key: str) -> _Home:
     return id(board), name
 
 
-_WRITTEN: Final = ("output_key", "current_child_idx", "value")  # of nodes of the engine and of Nav2
+_WRITTEN: Final = ("output_key", "current_child_idx", "value", *UPDATED)  # of nodes of the engine and of Nav2

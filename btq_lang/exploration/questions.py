@@ -6,6 +6,7 @@ scenarios; only the words around them are read here.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import Final, TypeAlias
 
@@ -13,7 +14,7 @@ from btq_lang.grammar.claims import parse_event
 from btq_lang.grammar.conditions import parse_cond, parse_path
 from btq_lang.grammar.cursor import Cursor
 from btq_lang.requirements.entries import key_of, line_of_text
-from btq_lang.syntax.tokens import BRACED, NEWLINE
+from btq_lang.syntax.tokens import BRACED, CLOSE, NEWLINE, OPEN
 from btq_lang.syntax.tree import AnyEvent, Condition, Event, Path, Word
 from btq_lang.util.record import Record
 
@@ -81,7 +82,7 @@ def parse_question(text: str) -> Question:
         cursor.expected("`before`, `after` or the end of the question")
     problems = [*cursor.problems, *cursor.lexer.problems]
     if problems or asked is None:
-        raise NoQuestion(f"{problems[0].message}; {_FORMS}" if problems else _FORMS)
+        raise NoQuestion(_mixed(text) or (f"{problems[0].message}; {_FORMS}" if problems else _FORMS))
     return Question(text, asked, tuple(dict.fromkeys(key_of(word) for word in _entries(cursor))))
 
 
@@ -91,6 +92,17 @@ def _entries(cursor: Cursor) -> Iterator[Word]:
         word = cursor.take()
         if word.kind == BRACED:
             yield word
+
+
+def _mixed(text: str) -> str:
+    """What to say of an event and a condition in one question; empty if it has no such two."""
+    event, node = _EVENT_IN_TEXT.search(text), _NODE_IN_TEXT.search(text)
+    if event is None or _JOINT.search(text) is None:
+        return ""
+    return (
+        f"an event (`{event[0]}`) cannot be part of a condition; ask for it alone, "
+        f"or for what happens after it: `{node[1] if node is not None else 'Pick'} starts after {event[0]}`"
+    )
 
 
 def _reads_unset(cursor: Cursor) -> ReadsUnset | None:
@@ -114,22 +126,39 @@ def _asked(cursor: Cursor) -> Asked | None:
     if not _has_event(cursor):
         condition = parse_cond(cursor)
         return Holds(condition) if condition is not None else None
-    event = parse_event(cursor)
+    event = _event(cursor)
     if event is None:
         return None
     for word in ("before", "after"):
         if cursor.accept_word(word):
-            other = parse_event(cursor)
+            other = _event(cursor)
             return Order(event, word, other) if other is not None else None
     return Order(event)
 
 
+def _event(cursor: Cursor) -> Event | AnyEvent | None:
+    """Event | "(" Event ")"; `or` joins events before `before` joins them, so the brackets may as well be left out."""
+    if cursor.kind != OPEN:
+        return parse_event(cursor)
+    cursor.advance()
+    event = parse_event(cursor)
+    if event is not None:
+        if cursor.kind != CLOSE:
+            cursor.expected("`)`")
+            return None
+        cursor.advance()
+    return event
+
+
 def _has_event(cursor: Cursor) -> bool:
-    words = cursor.raws
+    words = [word for word in cursor.raws if word != "("]
     return words[0] in ("when", "mission") or (words[0] not in ("node", "not") and not _EVENT_WORDS.isdisjoint(words))
 
 
 _EVENT_WORDS: Final = frozenset(("starts", "succeeds", "fails", "finishes", "halts", "before", "after"))
+_EVENT_IN_TEXT: Final = re.compile(r"(?:[\w/]+|'[^']*'|\"[^\"]*\") (?:starts|succeeds|fails|finishes|halts)\b")
+_NODE_IN_TEXT: Final = re.compile(r"\bnode ([\w/]+)\b(?! (?:starts|succeeds|fails|finishes|halts)\b)")
+_JOINT: Final = re.compile(r"\b(?:and|not|node)\b")
 _FORMS: Final = (
     "a question is an event (`Pick starts`), one `before` or `after` another, a condition "
     "(`node Pick and {done} == 1`), `Pick reads {pose} unset` or `mission does not end`"

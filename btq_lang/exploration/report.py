@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from typing import Final
 
 from btq_lang.exploration.answers import Answer
-from btq_lang.exploration.clauses import ClauseAnswer
+from btq_lang.exploration.clauses import ClauseAnswer, UnaskedClause
 from btq_lang.exploration.missions import ExploredMission
 from btq_lang.exploration.questions import Question
 from btq_lang.exploration.surveys import Survey
 from btq_lang.exploration.witness import Tick
 from btq_lang.requirements.fingerprint import Json
-from btq_lang.util.record import Record
+from btq_lang.util.record import Record, as_dict
 from btq_lang.util.text import counted
 from btq_lang.workspace.loader import shown
 
@@ -33,6 +33,7 @@ class Explored(Record):
     asked: tuple[AskedQuestion, ...]
     clauses: tuple[ClauseAnswer, ...]
     survey: Survey | None
+    unasked: tuple[UnaskedClause, ...] = ()
 
 
 def as_text(explored: Sequence[Explored]) -> str:
@@ -44,7 +45,7 @@ def _lines(explored: Explored) -> Iterator[str]:
     mission = explored.mission
     engine = f"BehaviorTree.CPP {mission.dialect.version}"
     nav2 = f", Nav2 {mission.dialect.nav2.title()}" if mission.dialect.nav2 else ""
-    nav2 += f' (assumed; name it: nodes = ["nav2-{mission.dialect.nav2}"])' if mission.is_nav2_assumed else ""
+    nav2 += f' (assumed; name it: nodes = ["nav2-{mission.dialect.nav2}"])' if mission.program.is_nav2_assumed else ""
     yield f"{shown(mission.path)}: tree {mission.tree}, {engine}{nav2}"
     for asked in explored.asked:
         answer = asked.answer
@@ -52,16 +53,18 @@ def _lines(explored: Explored) -> Iterator[str]:
         if answer.is_assumed:
             yield "    if what is calculated from entries can have such values"
         yield from (f"    not known: {reason}" for reason in answer.unknown)
-        yield from _run(mission, answer.witness, 1)
+        hidden = mission.without_part([*answer.witness, *answer.circle]).difference(asked.question.keys)
+        yield from _run(mission, answer.witness, hidden)
         if answer.circle:
             yield "    and from here again and again:"
-            yield from _run(mission, answer.circle, len(answer.witness) + 1)
+            yield from _run(mission, answer.circle, hidden, len(answer.witness) + 1)
     for clause in explored.clauses:
         yield f"  {in_words(clause)}"
         if clause.answer.is_assumed:
             yield "    if what is calculated from entries can have such values"
         yield from (f"    not known: {reason}" for reason in clause.answer.unknown)
-        yield from _run(mission, clause.answer.witness, 1)
+        yield from _run(mission, clause.answer.witness, mission.without_part(clause.answer.witness))
+    yield from (f"  not asked: {each.requirement} `{each.text}`: {each.why}" for each in explored.unasked)
     if explored.survey is not None:
         survey = explored.survey
         seen = "all" if survey.is_closed else "not all: the first"
@@ -70,7 +73,7 @@ def _lines(explored: Explored) -> Iterator[str]:
         for finding in survey.findings:
             rule = f"; btq check: {finding.rule}" if finding.rule else ""
             yield f"  {finding.kind}: {finding.text}{_at(mission, finding.uid)}{rule}"
-            yield from _run(mission, finding.witness, 1)
+            yield from _run(mission, finding.witness, mission.without_part(finding.witness))
 
 
 def in_words(clause: ClauseAnswer) -> str:
@@ -86,13 +89,13 @@ def _word(answer: Answer) -> str:
     return f"not found in {counted(answer.states, 'state')}"
 
 
-def _run(mission: ExploredMission, ticks: Sequence[Tick], first: int) -> Iterator[str]:
+def _run(mission: ExploredMission, ticks: Sequence[Tick], hidden: Collection[str], first: int = 1) -> Iterator[str]:
+    """A run, tick by tick, without some entries; `first`: the number of its first tick."""
     for number, tick in enumerate(ticks, start=first):
         yield f"    tick {number}"
         for deed in tick.deeds:
             yield f"      {deed.path} {deed.what}{_at(mission, deed.uid)}"
-        for key, text in tick.entries:
-            yield f"      {{{key}}} {text}"
+        yield from (f"      {{{key}}} {text}" for key, text in tick.entries if key not in hidden)
         if tick.result not in ("runs", ""):
             yield f"      the mission {tick.result}{f': {tick.message}' if tick.message else ''}"
 
@@ -130,6 +133,7 @@ def _mission(explored: Explored) -> Json:
             for clause in explored.clauses
         ],
     }
+    record["not_asked"] = [as_dict(clause) for clause in explored.unasked]
     if mission.dialect.nav2:
         record["nav2"] = mission.dialect.nav2
     if (survey := explored.survey) is not None:

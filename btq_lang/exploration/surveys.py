@@ -15,11 +15,14 @@ from btq_lang.exploration.answers import full_runs, without_counts
 from btq_lang.exploration.missions import ExploredMission
 from btq_lang.exploration.opened import Opened
 from btq_lang.exploration.outcomes import THROWN, UNKNOWN
+from btq_lang.exploration.reasons import Reason, reasons
 from btq_lang.exploration.search import Search, SearchBudget
 from btq_lang.exploration.witness import Tick, replay
 from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SUCCESS, SimulatedNode
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
+from btq_lang.workspace.loader import shown
+from btq_lang.workspace.resolved import ResolvedNode
 
 
 class SurveyFinding(Record):
@@ -81,7 +84,7 @@ def surveyed(mission: ExploredMission, budget: SearchBudget) -> Survey:
     rough, seen = all_seen
     is_closed = rough is search or _happens(mission, opened, *all_seen) == _happens(mission, opened, search, watch)
     never = [finding for finding in _never(opened, seen, rules) if mission.place(finding.uid) is not None]
-    findings += [*_missing_ends(rough), *never]  # without nodes that only enforce requirements
+    findings += [*_missing_ends(mission, opened, *all_seen), *never]  # without nodes that only enforce requirements
     states = rough.states if is_closed else search.states
     return Survey(states, is_closed, tuple(findings), unknown, rough is search or not is_closed)
 
@@ -90,18 +93,25 @@ class _Watch:
     """Writes down what happens, wherever in a search."""
 
     def __init__(self) -> None:
-        self.ran: Final[set[int]] = set()
-        self.ended: Final[set[int]] = set()
+        self.results: Final[set[tuple[int, int]]] = set()  # numbers of nodes, with the statuses that they had
         self.unset: Final[dict[tuple[int, str], None]] = {}
+
+    @property
+    def ran(self) -> set[int]:
+        """The nodes that ran."""
+        return {uid for uid, _ in self.results}
+
+    @property
+    def ended(self) -> set[int]:
+        """The nodes that ended."""
+        return {uid for uid, status in self.results if status != RUNNING}
 
     def begin(self) -> object:
         return None
 
     def changed(self, node: SimulatedNode, before: int, after: int) -> None:
         if after != IDLE:
-            self.ran.add(node.uid)
-            if after != RUNNING:
-                self.ended.add(node.uid)
+            self.results.add((node.uid, after))
 
     def unset_read(self, node: SimulatedNode, key: str) -> None:
         self.unset[node.uid, key] = None
@@ -175,24 +185,60 @@ def _shared(mission: ExploredMission, opened: Opened, search: Search, rules: _Ru
                     yield SurveyFinding("shared-server", text, other.uid, rule=rule)
 
 
-def _missing_ends(search: Search) -> Iterator[SurveyFinding]:
+def _missing_ends(mission: ExploredMission, opened: Opened, search: Search, watch: _Watch) -> Iterator[SurveyFinding]:
+    """How the tree cannot end, and how those that it calls cannot although nodes in them can, with the reasons."""
     results = {end.result for end in search.ends}
-    for result, kind, word in ((SUCCESS, "cannot-succeed", "succeed"), (FAILURE, "cannot-fail", "fail")):
-        if result not in results and results & {SUCCESS, FAILURE}:
-            yield SurveyFinding(kind, f"the mission cannot {word}")
-    if not results & {SUCCESS, FAILURE}:
-        yield SurveyFinding("cannot-end", "the mission cannot end")
+    root = opened.machine.root
+    subject = _called(mission.tree, mission.call())
+    if not results & _WORDS.keys():
+        yield SurveyFinding("cannot-end", f"{subject} cannot end")
+        return
+    named: set[tuple[ResolvedNode | None, int]] = set()  # a tree may run many times
+    for result in (result for result in _WORDS if result not in results):
+        causes = reasons(root, result, watch.results)
+        named |= {(mission.written(node.uid), missing) for node, missing in causes}
+        yield _cannot(subject, result, causes)
+    for node in opened.machine.nodes:
+        subtree = mission.written(node.uid)
+        ends = [result for result in _WORDS if (node.uid, result) in watch.results]
+        if subtree is None or not subtree.is_subtree or subtree.id is None or len(ends) != 1:
+            continue
+        result = FAILURE if ends == [SUCCESS] else SUCCESS
+        causes = reasons(node, result, watch.results)
+        written = {(mission.written(cause.uid), missing) for cause, missing in causes}
+        if not written <= named:
+            named |= written
+            yield _cannot(_called(subtree.id.text, mission.place(node.uid)), result, causes)
+
+
+def _called(tree: str, place: tuple[str, int] | None) -> str:
+    """A tree and where it is called; None: it is the mission."""
+    return "the mission" if place is None else f"the tree {tree}, called at {shown(place[0])}:{place[1]},"
+
+
+def _cannot(subject: str, result: int, causes: Sequence[Reason]) -> SurveyFinding:
+    """That a tree cannot have a result."""
+    names = [f"{node.path} never {_WORDS[missing]}s" for node, missing in causes[:_MOST_NAMED]]
+    more = [f"nor do {len(causes) - _MOST_NAMED} others"] if len(causes) > _MOST_NAMED else []
+    reason = f": {', '.join([*names, *more])}" if names else ""
+    word = _WORDS[result]
+    return SurveyFinding(f"cannot-{word}", f"{subject} cannot {word}{reason}", causes[0][0].uid if causes else 0)
 
 
 def _never(opened: Opened, watch: _Watch, rules: _Rules) -> Iterator[SurveyFinding]:
     """Nodes that never run, the topmost ones only, and nodes that never end."""
+    ran, ended = watch.ran, watch.ended
     stack = [opened.machine.root]
     while stack:
         node = stack.pop()
-        if node.uid not in watch.ran:
+        if node.uid not in ran:
             rule = rules.at(node.uid, "unreachable-child")
             yield SurveyFinding("never-runs", f"{node.path} never runs", node.uid, rule=rule)
             continue
-        if node.uid not in watch.ended and node is not opened.machine.root:
+        if node.uid not in ended and node is not opened.machine.root:
             yield SurveyFinding("never-ends", f"{node.path} never ends", node.uid)
         stack += reversed(node.children)
+
+
+_WORDS: Final = {SUCCESS: "succeed", FAILURE: "fail"}
+_MOST_NAMED: Final = 3  # reasons, in one line

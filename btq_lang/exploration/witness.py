@@ -5,7 +5,7 @@ One invariant: nothing is remembered here; a witness is what the model does when
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Final, TypeAlias
 
 from btq_lang.exploration.choices import Choices
@@ -14,6 +14,7 @@ from btq_lang.exploration.outcomes import Happened
 from btq_lang.exploration.search import fire_timers
 from btq_lang.exploration.values import Domain, FreeValue, domain_of, sample
 from btq_lang.simulator.errors import EngineError, NotModelled
+from btq_lang.simulator.leaves import tick_script_condition
 from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, SimulatedNode
 from btq_lang.simulator.ports import key_of
 from btq_lang.simulator.ticking import execute_tick
@@ -59,9 +60,10 @@ class Tick(Record):
         result: of the root: runs, succeeds, fails, is skipped, throws or is not known; empty: the tick is not finished,
             for what was asked has happened.
         message: of what was thrown, or why it is not known.
-        at: when the program ticks, in milliseconds, if it does so every 10 ms and whenever a node wakes it up.
+        at: when the program ticks, in milliseconds, if nothing but its driver delays that.
         given: the entries that the program sets before, in the first tick.
         changes: the leaves that have other statuses, by number, and their statuses; without those that are reset.
+        refusals: the numbers of the ScriptConditions that fail.
     """
 
     deeds: tuple[Deed, ...]
@@ -71,6 +73,7 @@ class Tick(Record):
     at: int = 0
     given: tuple[Written, ...] = ()
     changes: tuple[tuple[int, int], ...] = ()
+    refusals: tuple[int, ...] = ()
 
 
 class NotReplayed(Exception):
@@ -109,6 +112,8 @@ class _Recorder:
         self._deeds: list[Deed] = []
         self._entries: dict[str, str] = {}
         self._changes: list[tuple[int, int]] = []
+        self._refusals: list[int] = []
+        self._types: Final[dict[int, str]] = {}  # of values, by number
         self._next = 0  # when the next tick is, if no timer goes off before
         self._given: Final[list[_Value]] = []
         self._written: Final[dict[int, list[_Value]]] = {}  # by the identity of the deed
@@ -124,6 +129,8 @@ class _Recorder:
             self._changes.append((node.uid, after))
             if after == IDLE:
                 self._deeds.append(Deed(node.uid, node.path, "is halted"))
+        if after == FAILURE and node.rules.flow is tick_script_condition:
+            self._refusals.append(node.uid)
         if self._watch is not None:
             self._watch.changed(node, before, after)
 
@@ -140,9 +147,8 @@ class _Recorder:
         for key in written:
             entry = node.board.entry(key)
             if entry is not None and isinstance(entry.value, FreeValue):
-                self._written.setdefault(id(deed), []).append(
-                    (ports[key], entry.value.number, entry.type or types.get(ports[key], ""))
-                )
+                type_ = self._types[entry.value.number] = entry.type or types.get(ports[key], "")
+                self._written.setdefault(id(deed), []).append((ports[key], entry.value.number, type_))
 
     def tick(self, way: Sequence[int]) -> Tick:
         """One tick with these choices."""
@@ -150,13 +156,13 @@ class _Recorder:
         self._deeds = []
         snapshots.choices = choices = Choices(way)
         result, message = "", ""
-        self._changes = []
+        self._changes, self._refusals = [], []
         now = self._next
         dues = {node.uid: node.due for node in opened.machine.timed}
         try:
             fired = fire_timers(snapshots)
             self._deeds += [Deed(node.uid, node.path, "goes off") for node in fired]
-            now = opened.machine.now = max([dues[node.uid] for node in fired], default=now)
+            now = opened.machine.now = self._tick_at([dues[node.uid] for node in fired])
             result = _WORDS[execute_tick(opened.machine, opened.machine.root)]
         except Happened:
             pass
@@ -166,8 +172,15 @@ class _Recorder:
             result, message = "is not known", str(error)
         if choices.log != list(way):
             raise NotReplayed
-        self._next = now if opened.machine.is_woken else now + _PERIOD
-        return Tick(tuple(self._deeds), self._changed_entries(), result, message, now, changes=tuple(self._changes))
+        is_again = opened.machine.is_woken and opened.driver.function != "tick_exactly_once"
+        self._next = now if is_again else now + opened.driver.period
+        deeds, changes, refusals = tuple(self._deeds), tuple(self._changes), tuple(self._refusals)
+        return Tick(deeds, self._changed_entries(), result, message, now, changes=changes, refusals=refusals)
+
+    def _tick_at(self, dues: Sequence[int]) -> int:
+        """When the next tick is if timers have gone off at some times before it."""
+        driver, last = self._opened.driver, max(dues, default=self._next)
+        return last if driver.is_woken else max(self._next, driver.tick_after(self._next, last))
 
     def with_values(self, ticks: Sequence[Tick]) -> tuple[Tick, ...]:
         """The ticks with values of entries that are as the run has compared them."""
@@ -190,26 +203,30 @@ class _Recorder:
 
     def _changed_entries(self) -> tuple[tuple[str, str], ...]:
         before = self._entries
-        self._entries = dict(entries(self._opened))
+        self._entries = dict(_entries(self._opened, self._types))
         return tuple([(key, text) for key, text in self._entries.items() if before.get(key) != text])
 
 
-def entries(opened: Opened) -> Sequence[tuple[str, str]]:
-    """The entries of the root blackboard that have values, and what is known of these."""
+def _entries(opened: Opened, types: Mapping[int, str]) -> Sequence[tuple[str, str]]:
+    """The entries of the root blackboard that have values, and what is known of these; `types`: of values that leaves
+    have written, by number.
+    """
     snapshots = opened.snapshots
     board = opened.machine.root.board.root
     texts: list[tuple[str, str]] = []
     for key, entry in sorted(board.entries.items()):
         value = entry.value
         if isinstance(value, FreeValue):
-            texts.append((key, described(snapshots.domains[value.number])))
+            texts.append((key, _described(snapshots.domains[value.number], types.get(value.number, entry.type))))
         elif value is not None:
             texts.append((key, f"= {value!r}"))
     return texts
 
 
-def described(domain: Domain) -> str:
-    """What is known of a value, to follow the name of its entry."""
+def _described(domain: Domain, type_: str) -> str:
+    """What is known of a value, to follow the name of its entry; `type_`: of that."""
+    if domain == domain_of(type_):
+        return "has a value"
     if domain.fixed is not None:
         return f"= {domain.fixed!r}"
     parts: list[str] = []
@@ -222,7 +239,6 @@ def described(domain: Domain) -> str:
 
 
 _Value: TypeAlias = tuple[str, int, str]  # the entry or port, the number of the value, and the type of the entry
-_PERIOD: Final = 10  # ms
 _LIMIT: Final = 2.0**31 - 1  # beyond it, a limit is that of a type
 _WORDS: Final = {
     SUCCESS: "succeeds",

@@ -7,10 +7,11 @@ from typing import Final
 
 from btq_lang.catalog.units import dimension_name, parse_unit
 from btq_lang.catalog.verbs import words
-from btq_lang.diagnostics.model import Fix, replace_fix, write_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix, write_fix
 from btq_lang.grammar.claim_words import HAPPENINGS, VERB_WORDS, bound_follows, followed_ahead, next_head
-from btq_lang.grammar.clause_slips import clause_slip
+from btq_lang.grammar.clause_slips import ROBOTS, clause_slip
 from btq_lang.grammar.conditions import (
+    BOUNDS,
     COMPARISONS,
     HEADS,
     METADATA_HEADS,
@@ -47,14 +48,26 @@ def written_instead(cursor: Cursor, span: Span, clauses: tuple[str, ...], note: 
         cursor.complain(span, note)
         return
     fixes = [write_fix(clause, span) for clause in clauses if not _OPEN.search(clause)]
-    message = " or ".join(f"`{shown(clause, most=120)}`" for clause in clauses)
-    cursor.complain(span, f"this clause is written {message}", *fixes, notes=(note,) if note else ())
+    written = " or ".join(f"`{shown(clause, most=120)}`" for clause in clauses)
+    notes = (note,) if note else ()
+    meant = Diagnostic("syntax-error", span, f"this clause is written {written}", (), notes, tuple(fixes))
+    signs = [found for found in cursor.lexer.problems[cursor.known :] if span.start <= found.span.start < span.end]
+    if signs:  # characters that are no token: `±`
+        cursor.complain_instead(signs, meant)
+    else:
+        cursor.report(meant)
 
 
 def no_verb(cursor: Cursor, subject: Subject) -> None:
     """Report a subject without a verb, or of a misspelt verb that was read as a subject."""
     first = subject.names[0] if isinstance(subject, Path) and len(subject.names) == 1 else None
-    if in_other_words(cursor, subject) or situation(cursor, first):
+    is_article = first is not None and first.raw in ARTICLES
+    may_be_other = is_article or (first is not None and first.raw in ROBOTS) or not _IN_SLIPS.isdisjoint(cursor.raws)
+    if may_be_other and report_slip(cursor):
+        cursor.recover()
+    elif is_article or is_prose(cursor, first):
+        cursor.expected(_A_VERB if is_article else f"a verb after `{first.raw if first else ''}`", (PROSE,))
+    elif in_other_words(cursor, subject) or situation(cursor, first):
         cursor.recover()
     elif isinstance(subject, Path) and cursor.raw in HAPPENINGS and followed_ahead(cursor):
         before = Span(subject.span.start + cursor.base, subject.span.start + cursor.base)
@@ -117,6 +130,16 @@ def compared(cursor: Cursor, first: Word | None) -> Word | None:
     return Word(NAME, cursor.start(), cursor.raw) if not is_misspelt_verb else None
 
 
+def is_prose(cursor: Cursor, first: Word | None) -> bool:
+    """Whether the word that was read as the subject begins a sentence: `user stops robot within 2 s`."""
+    words = [first.raw if first is not None else "", *cursor.raws[cursor.index : cursor.index + 2]]
+    are_names = cursor.kinds[cursor.index : cursor.index + 2] == [NAME, NAME] and first is not None
+    if not are_names or not words[0][0].islower() or not COMPARISONS.isdisjoint(cursor.raws):
+        return False
+    is_of_clause = not (_NO_NAMES | VERB_WORDS | MEANT.keys() | NO_VERBS.keys()).isdisjoint(words)
+    return not is_of_clause and not near(words[1], VERB_WORDS, limit=1) and words[2] not in _OF_BOUNDS
+
+
 def in_other_words(cursor: Cursor, subject: Subject) -> bool:
     """Report `must take at most 30 s`, `Go should be reached within 30 s` and `speed must stay below 1 m/s`."""
     is_word = isinstance(subject, Path) and len(subject.names) == 1 and subject.names[0].kind == NAME
@@ -153,6 +176,13 @@ def verb_in_other_words(cursor: Cursor, begin: int, subject: str) -> bool:
     return meant is not None
 
 
+def condition_in_other_words(cursor: Cursor, verb: str, subject: Subject | None) -> bool:
+    """Report `needs to take` and `never starts more than 2 times`, after the verb."""
+    if verb == "never" and cursor.raw in _COUNTED and "than" in cursor.raws:
+        return report_slip(cursor)
+    return cursor.at_word("to") and verb_in_other_words(cursor, cursor.index - 1, before_verb(cursor, subject))
+
+
 def written_as(cursor: Cursor, begin: int, end: int, subject: str, words: str) -> None:
     """Report that other words are written in place of those between two tokens, after a subject."""
     span = Span(cursor.starts[begin], cursor.starts[end - 1] + len(cursor.raws[end - 1]))
@@ -165,7 +195,7 @@ def situation(cursor: Cursor, first: Word | None) -> bool:
     """Report `unless humans_near`, with the condition that is written there."""
     if first is None or first.kind != NAME or first.raw not in ("unless", "if") or cursor.kind == NEWLINE:
         return False
-    if "then" in cursor.raws and report_slip(cursor):
+    if not {"then", "else", "otherwise"}.isdisjoint(cursor.raws) and report_slip(cursor):
         return True
     end = next_head(cursor)
     if end == cursor.index:
@@ -188,6 +218,11 @@ def every_meant(cursor: Cursor) -> bool:
         return False
     if cursor.kinds[cursor.index + 1] != NAME or cursor.raws[cursor.index + 1] in VERB_WORDS:
         return False
+    if cursor.raw == "each" and cursor.raws[cursor.index + 1] == "when":
+        if not report_slip(cursor):
+            cursor.complain(cursor.here(), "expected `is followed by` after `each` and its event", notes=(_REACTION,))
+        cursor.recover()
+        return True
     bound = cursor.index + 2
     is_bound = cursor.raws[bound] != "/" and cursor.raws[bound] not in VERB_WORDS and bound_follows(cursor, bound)
     if is_bound and "per" in cursor.raws:
@@ -239,6 +274,17 @@ def condition_as_event(cursor: Cursor, path: Subject | None, start: int) -> bool
     return True
 
 
+def every_in_event(cursor: Cursor) -> None:
+    """Report and skip the first word of `every Spread fails`, where an event is about one node."""
+    following = cursor.index + 1
+    if not cursor.at_word("every") or cursor.kinds[following] != NAME or cursor.raws[following] in HAPPENINGS:
+        return
+    fix = replace_fix("Remove `every`", Span(cursor.here().start, cursor.starts[following]), "")
+    note = "for any of several nodes write `X fails or Y fails`"
+    cursor.complain(cursor.here(), "an event is about one node, without `every`", fix, notes=(note,))
+    cursor.advance()
+
+
 def blank_in_path(cursor: Cursor, path: Subject | None, follow: frozenset[str]) -> bool:
     """Report `Inspect Dock succeeds`, where a path is written `Inspect/Dock`, and skip the rest."""
     index = cursor.index
@@ -254,8 +300,9 @@ def blank_in_path(cursor: Cursor, path: Subject | None, follow: frozenset[str]) 
     end = cursor.starts[index - 1] + len(cursor.raws[index - 1])
     written = "/".join((cursor.text[start : cursor.last_end() + cursor.base], *names))
     message = f"a path is written with `/`: `{shown(written)}`"
-    note = f"a name of several words goes in quotes: {quote(cursor.text[start:end])}"
-    cursor.complain(Span(start, end), message, write_fix(written, Span(start, end)), notes=(note,))
+    notes: tuple[str, ...] = (f"a name of several words goes in quotes: {quote(cursor.text[start:end])}",)
+    notes += (PROSE,) if cursor.text[start].islower() else ()
+    cursor.complain(Span(start, end), message, write_fix(written, Span(start, end)), notes=notes)
     cursor.go_to(index)
     return True
 
@@ -363,6 +410,15 @@ def is_unit_of_time(text: str) -> bool:
     return unit is not None and dimension_name(unit) == "time"
 
 
+ARTICLES: Final = frozenset(("the", "The", "an", "An"))
+_COUNTED: Final = HAPPENINGS | {"runs"}
+_IN_SLIPS: Final = frozenset(("after", "than"))
+PROSE: Final = (
+    "a clause begins with a node, with `mission` or with its verb; what people do is prose: the requirement's title, "
+    'with `verified by test "…"`'
+)
+_REACTION: Final = "write `each when near is followed by speed <= 0.01 m/s within 1 s`"
+_OF_BOUNDS: Final = frozenset(word for phrase in BOUNDS for word in phrase)
 QUALITY_IN_HEAD: Final = "a requirement's quality goes after its name: `QualityReq fast : reliability`"
 NO_VERBS: Final = {  # what else people write before or as a verb
     **dict.fromkeys(MODALS, "a clause begins with its verb, without such a word: `takes at most 30 s`"),
@@ -386,6 +442,7 @@ MEANT: Final = {  # by the word that is read as a node before a verb
     "between": "a range is written `keeps 0 N <= force <= 3 N`",
     "always": "write `keeps battery >= 15 %`",
     "not": "write `never lamp_on`, or `keeps not lamp_on`",
+    "else": "a choice of values goes in brackets: `keeps speed <= (0.3 m/s if near else 0.8 m/s)`",
     "quality": QUALITY_IN_HEAD,
     "severity": "a hazard has a `severity`, a requirement a `priority`",
     **dict.fromkeys(

@@ -10,11 +10,12 @@ from typing import Final
 from btq_lang.catalog.verbs import COUNTING, VERBS
 from btq_lang.diagnostics.model import replace_fix, write_fix
 from btq_lang.grammar.claim_mistakes import (
-    before_verb,
     blank_in_path,
     choice_in_other_words,
     condition_as_event,
+    condition_in_other_words,
     event_after_condition,
+    every_in_event,
     every_meant,
     is_time,
     is_unit_of_time,
@@ -120,7 +121,7 @@ def parse_verb(cursor: Cursor, start: int, subject: Subject | None) -> Claim:
     elif operand == "condition":
         if verb.raw == "never" and cursor.raw in HAPPENINGS and cursor.kinds[cursor.index + 1] == NEWLINE:
             cursor.expected("a condition", (_NEVER_FAILS,))
-        elif cursor.at_word("to") and verb_in_other_words(cursor, cursor.index - 1, before_verb(cursor, subject)):
+        elif condition_in_other_words(cursor, verb.raw, subject):
             cursor.recover()
         elif not signal_last(cursor, verb.raw):
             if verb.raw == "never":
@@ -270,6 +271,7 @@ def parse_event_atom(cursor: Cursor, is_further: bool = False) -> Event | None:
     if cursor.accept_word("when"):
         condition = parse_cond(cursor)
         return Event(start, cursor.last_end(), None, "when", condition)
+    every_in_event(cursor)
     path = None if cursor.accept_word("mission") else parse_path(cursor, "an event: a node and what happens to it")
     if not (cursor.kind == NAME and cursor.raw in HAPPENINGS) and not blank_in_path(cursor, path, HAPPENINGS):
         note = "an event is a node and what happens to it: `Pick starts`, `Place succeeds`"

@@ -36,11 +36,26 @@ def clause_slip(text: str) -> ClauseMeant | None:
             parts = {name: value or "" for name, value in match.groupdict().items()}
             bound = BOUNDS.get(tuple(parts.get("bound", "").split()), ("at", "most"))
             parts |= {"bound": " ".join(bound), "sign": RELATIONS[bound]}
+            if "number" in parts:
+                parts["number"] = _IN_DIGITS.get(parts["number"], parts["number"])
+            if "tolerance" in parts:
+                parts["limits"] = _limits(parts["other"], parts["value"], parts["tolerance"])
             subject = parts.get("subject", "")
             node = subject if not subject.startswith("every ") else ""
             parts |= {"subject": f"{subject} " if subject else "", "node": node or "<node>"}
             return ClauseMeant(match.end(), tuple([clause.format_map(parts) for clause in clauses]), note)
     return None
+
+
+def _limits(signal: str, value: str, tolerance: str) -> str:
+    """The condition that a signal is a value, more or less."""
+    (number, unit), (by, other) = _NUMBER_AND_UNIT.findall(value)[0], _NUMBER_AND_UNIT.findall(tolerance)[0]
+    if other == "%" and unit != "%":
+        by = str(float(number) * float(by) / 100)
+    elif unit != other:
+        return f"-{tolerance} <= {signal} - {value} <= {tolerance}"
+    low, high = (f"{limit:.10g} {unit}".rstrip() for limit in (float(number) - float(by), float(number) + float(by)))
+    return f"{low} <= {signal} <= {high}"
 
 
 @lru_cache(1)
@@ -119,8 +134,68 @@ _SIGNAL: Final = "a name alone is a signal or context: `signal latency : s from 
 _USED: Final = "a signal whose use is limited is a `counter` or a `level`: `signal energy : Wh from {energy} counter`"
 _BEFORE: Final = "what happens before an event is the time from one event to another"
 _EACH_TIME: Final = "`Place follows Pick succeeds` asks for another success of Pick before each start of Place"
+_NUMBER_AND_UNIT: Final = re.compile(r"([\d.]+)\s*(.*)")
+_IN_DIGITS: Final = {"once": "1", "twice": "2"}
+ROBOTS: Final = frozenset(("robot", "system", "vehicle", "machine"))
+_ROBOT: Final = f"(?:[Tt]he )?{_any(*sorted(ROBOTS))}"
+_STOPS: Final = "(?:(?:be |is |comes? to |come to )?(?:halt(?:s|ed)?|stop(?:s|ped)?|brakes?|a stop|a halt))"
+_ANSWERS: Final = (
+    "the answer is an event, as `Stop succeeds`, or a condition, as `speed <= 0.01 m/s`, which one moment meets; "
+    "what must stay so is written `never near and speed > 0.01 m/s for more than 1 s`"
+)
+_SPEED: Final = r"(?P<value>[\d.]+ *(?:m/s|km/h|mm/s|cm/s|mph))"
+_EXCEEDS: Final = "(?:exceed|(?:be|drive|go|move|travel)(?: any)? (?:faster|more|higher|larger|greater) than|be above)"
+_A_SIGNAL: Final = "what is measured is a signal: `signal speed : m/s from {speed}`"
 # Patterns, in which a word in capitals is a piece of above; what is written instead; a note.
 _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
+    # what the robot does
+    (
+        rf"{_ROBOT}(?:'s)?(?: speed)? (?:{_MODAL} )?(?:never|not) {_EXCEEDS} {_SPEED}",
+        ("mission keeps speed <= {value}",),
+        _A_SIGNAL,
+    ),
+    (
+        rf"{_ROBOT} (?:{_MODAL} )?(?:never|not) {_EXCEEDS} VALUE",
+        ("mission keeps <signal> <= {value}",),
+        _A_SIGNAL,
+    ),
+    *(
+        (
+            rf"{_ROBOT} (?:{_MODAL} )?{_STOPS} (?:within|in) TIME (?:after|when|if) (?:when )?{event}",
+            (f"each {written} is followed by <answer> within {{time}}",),
+            _ANSWERS,
+        )
+        for event, written in (("OTHER EVENT", "{other} {event}"), ("CONDITION", "when {condition}"))
+    ),
+    (
+        rf"(?:each )?[Ww]hen(?:ever)? (?P<condition>[^,]+?),? (?:then )?(?:{_ROBOT}|it) (?:{_MODAL} )?{_STOPS} "
+        "(?:within|in) TIME",
+        ("each when {condition} is followed by <answer> within {time}",),
+        _ANSWERS,
+    ),
+    (rf"[Tt]he {_any(*sorted(ROBOTS))} (?P<claim>{_any(*VERBS)}\b.+)", ("mission {claim}",), ""),
+    *(
+        (
+            rf"(?!mission\b)SUBJECT(?:{_MODAL} )?(?:halts?|(?:be |is )?(?:halted|stopped)|stops?|finish(?:es)?|"
+            rf"completes?) (?:within|in) TIME (?:after|when) (?:when )?{event}",
+            (f"{{subject}}ends within {{time}} after {written}",),
+            "it counts where the node runs at that moment",
+        )
+        for event, written in (("OTHER EVENT", "{other} {event}"), ("CONDITION", "when {condition}"))
+    ),
+    # a value with two sides, or two values
+    (
+        rf"SUBJECT(?P<verb>(?:{_any('keeps', 'leaves', 'needs', 'ends with')} )?)OTHER *(?:(?:==?|of|is|at|:) *)?VALUE"
+        r" *(?:\+ */? *-|±) *(?P<tolerance>[\d.]+ *(?:[^\W\d][\w/^*]*|%)?)",
+        ("{subject}{verb}{limits}",),
+        "",
+    ),
+    (
+        r"(?P<claim>.+?(?:[<>]=?|==) *)VALUE (?:if|when|while) (?P<condition>.+?),? (?:else|otherwise) "
+        r"(?P<second>[\d.]+ *(?:[^\W\d][\w/^*]*|%)?)",
+        ("{claim}({value} if {condition} else {second})",),
+        "",
+    ),
     # how long
     (
         rf"SUBJECT(?:succeeds?|is done|done|is ready) (?:in|by|before|within){_LIMIT} TIME",
@@ -171,6 +246,18 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
         "",
     ),
     (r"(?:the )?(?:number of )?successes *BOUND(?P<number>\d+)", ("succeeds {bound} {number} per run",), ""),
+    *(
+        (
+            rf"SUBJECT(?:never|{_MODAL} (?:not|never)|does not) {word} more (?:often )?than (?P<number>\d+|once|twice)"
+            "(?: times?)?(?: (?:per|in a|in one|in each) run)?",
+            (f"{{subject}}{verb} at most {{number}} per run",),
+            "",
+        )
+        for word, verb in (
+            *(("(?:starts?|runs?)", "starts"), ("fails?", "fails")),
+            *(("succeeds?", "succeeds"), ("finish(?:es)?", "finishes")),
+        )
+    ),
     # how probably
     ("(?:for |during )?(?:at least )?SHARE of (?:the |its |that )?time", ("in at least {share} of time",), ""),
     (
@@ -313,7 +400,7 @@ _SLIPS: Final[tuple[tuple[str, tuple[str, ...], str], ...]] = (
         ("{subject}uses {bound} {value} of {other} on average",),
         "what is used is the change of a counter or a level; a signal has no mean over runs",
     ),
-    (r"SUBJECT(?:keeps )?OTHER *\+/?- *VALUE", ("{subject}keeps -{value} <= {other} <= {value}",), ""),
+    (r"SUBJECT(?:keeps )?OTHER *(?:\+/?-|±) *VALUE", ("{subject}keeps -{value} <= {other} <= {value}",), ""),
     (f"{_USES} BOUNDVALUE (?:(?:of|from) )?OTHER", ("{subject}uses {bound} {value} of {other}",), ""),
     (f"{_USES} BOUNDVALUE(?: of)?", ("{subject}uses {bound} {value} of <signal>",), _USED),
     (f"{_USES} BOUNDNUMBER(?: of)?", ("{subject}uses {bound} {number} of <signal>",), _USED),

@@ -256,7 +256,8 @@ def parse_how(cursor: Cursor) -> How:
 def parse_way(cursor: Cursor) -> Way | None:
     """( "monitor" | "analysis" | "test" | "review" ) [ STRING ]"""
     start = cursor.start()
-    method = parse_one_of(cursor, METHODS)
+    notes = (_WAYS,) if cursor.kind == NAME and cursor.raw in _DEMONSTRATED else ()
+    method = parse_one_of(cursor, METHODS, notes)
     if is_bare_id(cursor):
         cursor.complain(cursor.here(), "the ID of a test or a report goes in quotes", cursor.put_in_quotes())
         cursor.advance()
@@ -299,7 +300,8 @@ def parse_percentage(cursor: Cursor, example: str, before: str = "") -> Word | N
     return None
 
 
-def parse_one_of(cursor: Cursor, words: tuple[str, ...]) -> Word | None:
+def parse_one_of(cursor: Cursor, words: tuple[str, ...], notes: tuple[str, ...] = ()) -> Word | None:
+    """One of some words; `notes`: on another one in its place"""
     cursor.skip_sign(":")
     if cursor.kind == NAME and cursor.raw in words:
         return cursor.take()
@@ -309,7 +311,7 @@ def parse_one_of(cursor: Cursor, words: tuple[str, ...]) -> Word | None:
     if cursor.kind != NAME or not meant:
         return cursor.missing_word(what)
     fixes = tuple(replace_fix(f"Replace `{cursor.raw}` with `{word}`", cursor.here(), word) for word in meant)
-    cursor.complain(cursor.here(), f"expected {what}, found {cursor.found()}", *fixes)
+    cursor.complain(cursor.here(), f"expected {what}, found {cursor.found()}", *fixes, notes=notes)
     cursor.advance()
     return None
 
@@ -438,10 +440,13 @@ _BEFORE_OPERANDS: Final = ("when", "and", "or", "not", "node", "(")
 _ON_VIOLATION: Final = (
     "`on violation` is followed by fail, halt, warn or log; to try again, put a Retry around the node"
 )
+_DEMONSTRATED: Final = frozenset(("demonstration", "inspection", "trial", "demo"))
+_WAYS: Final = 'a demonstration or a trial is a `test "D-1"`, an inspection a `review "I-1"`'
 _OTHER_WORDS: Final = {  # for actions and methods
     **dict.fromkeys(("stop", "abort"), ("halt", "fail")),
     **dict.fromkeys(("alert", "notify", "report"), ("warn", "log")),
-    **dict.fromkeys(("inspection", "demonstration"), ("review", "test")),
+    "inspection": ("review",),
+    **dict.fromkeys(_DEMONSTRATED - {"inspection"}, ("test",)),
     **dict.fromkeys(("simulation", "proof", "calculation"), ("analysis", "test")),
 }
 _A_CLAUSE: Final = "a clause: takes, keeps, in at least, on violation, …"
@@ -464,6 +469,7 @@ _NOT_IN_BTQ: Final = {
     ),
     **dict.fromkeys(("risk", "risks", "hazards", "prevents", "avoids"), "`mitigates` with the ID of a hazard"),
     **dict.fromkeys(("parent", "parents", "derives", "derived"), "`refines` with the ID of a requirement"),
+    **dict.fromkeys(("refined", "decomposed"), "a line `refines` in the other requirement, with the ID of this one"),
     **dict.fromkeys(("approval", "approver", "signed"), "`approved by`, which `btq approve` writes"),
     **dict.fromkeys(("wish", "desire", "target", "ideal", "optional"), "`goal`, a better bound than the required one"),
     **dict.fromkeys(("verification", "verify", "validation"), "`verified by` with a method"),

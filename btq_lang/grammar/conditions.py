@@ -326,6 +326,8 @@ def tolerance(cursor: Cursor) -> None:
     """Report `x +- 10 mm`, at its value."""
     sign, value, raws = cursor.index - 2, cursor.raw, cursor.raws
     is_of_two = sign > 3 and raws[sign - 2] == "==" and cursor.kinds[sign - 3] == NAME
+    if is_of_two and cursor.kinds[sign - 1] in (QUANTITY, NUMBER) and cursor.report_slip(cursor):
+        return
     if not cursor.adjacent(sign + 1) or sign < 1 or not (is_of_two or cursor.kinds[sign - 1] == NAME):
         return
     span = Span(cursor.starts[sign - 3 if is_of_two else sign - 1], cursor.here().end)
@@ -338,6 +340,9 @@ def single_equals(cursor: Cursor) -> None:
     """Report `=` in a comparison, where `==` is meant, and `=<` and `=>`."""
     span = cursor.here()
     following = cursor.index + 1
+    rest = cursor.text[span.end : cursor.starts[-1]]
+    if ("+" in rest or "±" in rest) and cursor.report_slip(cursor):
+        return
     if cursor.raws[following] in ("<", ">") and cursor.adjacent(following):
         meant = f"{cursor.raws[following]}="
         span = Span(span.start, span.end + 1)

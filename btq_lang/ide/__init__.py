@@ -16,6 +16,7 @@ all features and the checks that they use takes a third of that time.
     rename.py, moves.py    edits in every file that names a thing
     actions.py             with refactor, block, short_form and unused
     on_type.py, structure.py, outline.py, hints.py   edits while typing, folding, outline, inlay hints and lenses
+    outlook.py             how likely trees succeed, with the skills that btq.toml declares, for lenses and hover
     verdicts.py            what logs show of requirements, for lenses, hover and diagnostics
     scenarios.py           which scenarios there are
     violations.py          which requirements can be asked whether they can be violated

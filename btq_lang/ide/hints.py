@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.side_elements import element_descriptions
@@ -83,13 +83,20 @@ def inlay_hints(workspace: Workspace, path: str, within: Span) -> tuple[Hint, ..
 
 
 def code_lenses(
-    workspace: Workspace, path: str, side: str | None = None, evidence: ProjectVerdicts | None = None
+    workspace: Workspace,
+    path: str,
+    side: str | None = None,
+    evidence: ProjectVerdicts | None = None,
+    outlooks: Mapping[str, str] | None = None,
 ) -> tuple[Lens, ...]:
     """How many places use a requirement, how many nodes it names itself, how many nodes call a tree; the main tree; and
     what logs show of a requirement, and to explore how it can be violated; and for each scenario, to run it.
 
     As a reader counts: a requirement that is defined at a node is used there, and has a lens only if there are more
     uses; neither the `Root` that names the main tree nor a scenario calls it.
+
+    Args:
+        outlooks: how likely trees succeed, by their names.
     """
     lenses: list[Lens] = []
     asked: frozenset[str] | None = None
@@ -114,6 +121,8 @@ def code_lenses(
             if others or not is_main_tree:
                 titles.append(counted(len(others), "call"))
             lenses.append(Lens(place.span, ", ".join(titles), others))
+            if outlooks and place.symbol.name in outlooks:
+                lenses.append(Lens(place.span, outlooks[place.symbol.name], ()))
             continue
         is_in_place = not isinstance(place.entry.item, Requirement)
         uses = (own, *others) if is_in_place and others else others

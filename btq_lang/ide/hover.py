@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.side_elements import element_descriptions
@@ -16,6 +18,7 @@ from btq_lang.syntax.tokens import NAME
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace.file import File
+from btq_lang.workspace.queries import Cancelled
 from btq_lang.workspace.references import What
 from btq_lang.workspace.workspace import Workspace
 
@@ -31,11 +34,20 @@ class Hover(Record):
 
 
 def hover(
-    workspace: Workspace, path: str, offset: int, side: str | None = None, evidence: ProjectVerdicts | None = None
+    workspace: Workspace,
+    path: str,
+    offset: int,
+    side: str | None = None,
+    evidence: ProjectVerdicts | None = None,
+    is_cancelled: Callable[[], bool] = bool,
 ) -> Hover | None:
     """The hover at a place: a node with its ports and semantics, a requirement with its text and its nodes, a quality
     with its definition, an entry with its readers and writers, a quantity in SI units, a rule's page, a word of the
-    language."""
+    language.
+
+    Args:
+        is_cancelled: whether to leave out what takes long and has not been computed yet.
+    """
     reference = at(workspace, path, offset)
     if reference is None:
         return _word_of_the_language(workspace.files[path], offset)
@@ -47,7 +59,13 @@ def hover(
 
         verdicts = verdict_table(workspace, path, referent, evidence)
     built = _written_by_build(workspace, reference, side) if reference.mention.what in (What.NODE, What.TREE) else ""
-    text = "\n\n".join(filter(None, (markdown, verdicts, built)))
+    others = ""
+    if referent.what is What.NODE and workspace.project.simulation is not None:
+        from btq_lang.ide.outlook import what_if  # few projects declare skills
+
+        with suppress(Cancelled):
+            others = what_if(workspace, reference, is_cancelled)
+    text = "\n\n".join(filter(None, (markdown, verdicts, built, others)))
     return Hover(reference.span, text) if text else None
 
 

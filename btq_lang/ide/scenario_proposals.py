@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.nav2.nodes import ASKING
 from btq_lang.grammar.scenario_words import ANSWERS
 from btq_lang.ide import node_proposals as of_nodes
 from btq_lang.ide import proposals as offer
@@ -50,11 +51,12 @@ def _called(workspace: Workspace, path: str, name: str) -> tuple[ResolvedNode, .
 
 
 def _behaviors(workspace: Workspace, path: str, name: str) -> Iterator[Proposal]:
-    """What a condition answers; what any other node does."""
-    categories = {node.category for node in _called(workspace, path, name)}
+    """What a condition answers, and a decorator of Nav2 that is asked likewise; what any other node does."""
+    called = _called(workspace, path, name)
+    categories = {node.category for node in called}
     if categories != {"Condition"}:
         yield from offer.words(("succeeds", "fails", "does not end", "takes", "after", "skips"), "keyword")
-    if categories <= {"Condition", None}:
+    if categories <= {"Condition", None} or any(node.id is not None and node.id.text in ASKING for node in called):
         yield offer.keyword("answers", "answers ${0:false, true}")
 
 

@@ -13,6 +13,7 @@ offsets and paths, call `ide`, and convert the result back.  Features are implem
     scenarios.py     the process that runs scenarios, and its results
     exploring.py     the process that explores what can violate a requirement
     tested.py        what the last runs show, as long as it holds
+    outlooks.py      what is exact of the trees of open files, computed while the editor is idle
     progress.py      progress of work on many files
     lifecycle.py, documents.py, navigation.py, hints.py, colours.py, acting.py, commands.py
                      the handlers, most of a few lines

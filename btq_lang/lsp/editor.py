@@ -28,6 +28,7 @@ from pygls.lsp.server import LanguageServer
 
 from btq_lang import ide as features
 from btq_lang.lsp.convert import Converter
+from btq_lang.lsp.outlooks import Outlooks
 from btq_lang.lsp.protocol import Json, Messages, OutgoingMessages, Protocol
 from btq_lang.lsp.schedule import CheckSchedule
 from btq_lang.lsp.tested import TestedScenarios
@@ -136,6 +137,7 @@ class Server(LanguageServer):
         self.tokens: dict[str, tuple[str, Colours]] = {}
         self.count = 0
         self.tested = TestedScenarios()
+        self.outlooks = Outlooks()
         self.schedule = CheckSchedule(self)
         self.explorations: set[asyncio.Task[Any]] = set()  # searches that the next edit ends
         self._ready: set[str] = set()  # the files prepared for first requests
@@ -381,6 +383,16 @@ class Server(LanguageServer):
                 tokens = features.colours.making(*place, self.convert.encoding) if has_tokens else ()
                 yield from chain(self.protocol.getting_ready(), tokens, features.readiness.getting_ready(*place))
             self._ready.add(path)
+        if self.session.is_on("codeLens"):
+            for path in [*self.session.open]:
+                with suppress(UnknownDocument):
+                    place = self.at(types.TextDocumentIdentifier(self.convert.uri(path)), reads=True)
+                    yield from self.outlooks.renewed(*place, self.has_message, self.refresh_lenses)
+
+    def refresh_lenses(self) -> None:
+        """Make the editor ask for code lenses again."""
+        if self.can_refresh("code_lens"):
+            self.workspace_code_lens_refresh(None)
 
     def publish(self, path: str) -> None:
         """Publish the diagnostics of a file, unless they are already published."""

@@ -68,7 +68,11 @@ def lenses(server: Server, params: types.CodeLensParams) -> list[types.CodeLens]
         return []
     code_lenses = []
     for lens in features.hints.code_lenses(
-        workspace, path, server.session.side_file(path), server.session.evidence(workspace)
+        workspace,
+        path,
+        server.session.side_file(path),
+        server.session.evidence(workspace),
+        server.outlooks.of(path),
     ):
         range_ = server.convert.range(workspace, path, lens.span)
         uses = [server.convert.location(workspace, *use) for use in lens.places]
@@ -96,7 +100,7 @@ def show(server: Server, params: types.HoverParams) -> Json | None:
     workspace, path, hover = server.ask(
         params,
         lambda workspace, path, offset: features.hover.hover(
-            workspace, path, offset, side, server.session.evidence(workspace)
+            workspace, path, offset, side, server.session.evidence(workspace), server.has_message
         ),
         reads=True,
     )

@@ -63,8 +63,8 @@ def did_change_watched_files(server: Server, params: types.DidChangeWatchedFiles
     changed = {server.convert.path(change.uri) for change in params.changes}
     if server.session.concerns(changed):
         server.reload()
-    elif any(map(server.session.is_side_file, changed)) and server.can_refresh("code_lens"):
-        server.workspace_code_lens_refresh(None)  # nothing else is asked for again, or depends on it
+    elif any(map(server.session.is_side_file, changed)):
+        server.refresh_lenses()  # nothing else is asked for again, or depends on it
 
 
 async def _register_watchers(server: Server) -> None:

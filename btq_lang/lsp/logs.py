@@ -22,6 +22,7 @@ from lsprotocol import types
 from btq_lang.lsp.editor import Handlers, RequestRefused, Server, UnknownDocument
 from btq_lang.lsp.processes import start_python
 from btq_lang.lsp.progress import progress
+from btq_lang.util.caches import cache_folder
 from btq_lang.util.version import __version__
 
 if TYPE_CHECKING:
@@ -167,7 +168,7 @@ class Logs:
         if self._shown.get(root) == there or not is_at_rest:
             return
         texts = await asyncio.to_thread(_digest_of_files, [*self._missions(root)])
-        summary = os.path.join(_cache(), f"{_digest(root)}-{_digest(there, texts)}.json")
+        summary = os.path.join(cache_folder(), f"{_digest(root)}-{_digest(there, texts)}.json")
         if not os.path.exists(summary) and there != _digest(repr(project.evidence)):
             await self._judge(root, summary)
         if os.path.exists(summary):
@@ -244,12 +245,6 @@ def _digest_of_files(paths: Sequence[str]) -> str:
 
 def _digest(*parts: str) -> str:
     return hashlib.sha256("\n".join([__version__, *parts]).encode(errors="surrogateescape")).hexdigest()[:_DIGITS]
-
-
-def _cache() -> str:
-    """The folder of summaries, as the system has one for caches."""
-    home = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA") or os.path.expanduser("~/.cache")
-    return os.path.join(home, "btq")
 
 
 def _forget_others(summary: str, root: str) -> None:

@@ -134,6 +134,12 @@ class Parameters(Record):
         codes = self.texts("error_code_names" if distribution[0] in "ij" else "error_code_name_prefixes")
         return outside_entries(distribution, None if codes is None else tuple(code.text for code in codes), renamed)
 
+    @property
+    def period(self) -> int:
+        """The time from one tick to the next, in milliseconds."""
+        text = self.text("bt_loop_duration")
+        return int(text.text) if text is not None and text.text.isdecimal() and int(text.text) > 0 else 10
+
     def row(self, name: str) -> str | None:
         """The row of a parameter in the table; None if it is not one of Nav2."""
         navigator, _, rest = name.partition(".")

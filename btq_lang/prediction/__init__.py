@@ -15,6 +15,7 @@ One invariant: what a skill does is declared, measured or shown as assumed, and 
     states.py      the state of a tree as a value
     remembering.py   steps of a tree that are made once
     runs.py        a run: time jumps from one change to the next
+    exact/         how likely and how long without a run, where that is exact
     prepared.py    a mission with all its skills
     judging.py     runs judged as a log is
     predicting.py  blocks of runs, in several processes, added up

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
 from math import exp, log
 from statistics import NormalDist
 from typing import Final
 
-from btq_lang.prediction.skill import DrawnActivation, Skill
+from btq_lang.prediction.skill import AT_ONCE, DrawnActivation, Probability, Skill, SkillOutcome
 from btq_lang.prediction.streams import Stream
 from btq_lang.requirements.model import Condition
 from btq_lang.requirements.simulation import (
@@ -77,6 +78,18 @@ class DeclaredSkill(Skill):
             return mean(self._takes) * 1000
         return self._base.average() if self._base is not None else 0.0
 
+    def outcomes(self) -> Sequence[SkillOutcome]:
+        """As `draw`: the declared duration and result, each independent of all else."""
+        base = self._base.outcomes() if self._base is not None else (SkillOutcome(SUCCESS, Fraction(1), AT_ONCE),)
+        if self._takes is not None:
+            base = [SkillOutcome(each.result, each.probability, self._takes) for each in _ended(base)]
+        if self._succeeds is None:
+            return base
+        chance = Fraction(self._succeeds).limit_denominator(_FINEST)
+        succeeds = [SkillOutcome(SUCCESS, each.probability * chance, each.takes) for each in base if each.takes]
+        fails = [SkillOutcome(FAILURE, each.probability * (1 - chance), each.takes) for each in base if each.takes]
+        return [*succeeds, *fails, *(each for each in base if each.takes is None)]
+
     def writes(self, node: SimulatedNode, drawn: DrawnActivation, has_real_truth: bool) -> tuple[Write, ...] | None:
         """The values of its scripts, where it succeeds."""
         if drawn.result != SUCCESS or not self._scripts:
@@ -84,6 +97,26 @@ class DeclaredSkill(Skill):
         values = [(key, evaluate(script, node.board, has_real_truth)) for key, script in self._scripts]
         own = tuple(Write(key, value, type_of(value)) for key, value in values if value is not None)
         return (*(drawn.writes or ()), *own)
+
+
+def _ended(outcomes: Sequence[SkillOutcome]) -> Sequence[SkillOutcome]:
+    """Those that end, with the probability of the others."""
+    ending = [each for each in outcomes if each.takes is not None]
+    total: Probability = sum((each.probability for each in ending), Fraction(0))
+    return [SkillOutcome(each.result, each.probability / total, each.takes) for each in ending]
+
+
+def share_within(spread: Spread, seconds: float) -> float:
+    """The probability that a duration is at most so long."""
+    if seconds < spread.low and spread.kind != "lognormal":
+        return 0.0
+    if spread.kind == "lognormal":
+        if seconds <= 0:
+            return 0.0
+        if spread.high == spread.low:
+            return float(seconds >= spread.low)
+        return _NORMAL.cdf(log(seconds / spread.low) * _P95 / log(spread.high / spread.low))
+    return 1.0 if seconds >= spread.high else (seconds - spread.low) / (spread.high - spread.low)
 
 
 def quantile(spread: Spread, probability: float) -> float:
@@ -218,5 +251,6 @@ def _condition(resolved: list[ResolvedSkill]) -> DeclaredCondition:
 
 _AT_ONCE: Final = DrawnActivation(SUCCESS, 0, ())
 _MOST_DRAWS: Final = 100
+_FINEST: Final = 10**9  # no one writes a share with more digits
 _NORMAL: Final = NormalDist()
 _P95: Final = _NORMAL.inv_cdf(0.95)

@@ -17,10 +17,10 @@ from itertools import accumulate, groupby
 from typing import Final, Literal, TypeAlias
 
 from btq_lang.evidence.model import SampleValue
-from btq_lang.prediction.skill import DrawnActivation, Skill
+from btq_lang.prediction.skill import DrawnActivation, Skill, SkillOutcome
 from btq_lang.prediction.streams import Stream
 from btq_lang.simulator.blackboard import BOOL, type_of
-from btq_lang.simulator.nodes import RUNNING, SUCCESS
+from btq_lang.simulator.nodes import FAILURE, RUNNING, SUCCESS
 from btq_lang.simulator.skills import Write
 from btq_lang.util.record import Record
 
@@ -98,6 +98,24 @@ class MeasuredSkill(Skill):
         ends = 1 - self.beyond
         return sum(mass * each.takes for mass, each in zip(masses, self._drawn, strict=False)) / ends if ends > 0 else 0
 
+    def outcomes(self) -> Sequence[SkillOutcome]:
+        """The results, each with the durations that it had."""
+        outcomes: list[SkillOutcome] = []
+        for result in (SUCCESS, FAILURE):
+            total = self.probability(result)
+            takes: dict[int, float] = {}
+            for mass, each in self._masses():
+                if each.result == result and mass > 0:
+                    takes[each.takes] = takes.get(each.takes, 0.0) + mass / total
+            outcomes += [SkillOutcome(result, total, takes)] if takes else []
+        running = 1 - sum(float(each.probability) for each in outcomes)
+        return [*outcomes, SkillOutcome(RUNNING, running, None)] if self.beyond > 0 or not outcomes else outcomes
+
+    def _masses(self) -> Iterable[tuple[float, DrawnActivation]]:
+        """The activations that ended, with their probabilities."""
+        masses = (after - before for before, after in zip((0.0, *self._steps), self._steps, strict=False))
+        return zip(masses, self._drawn, strict=False)
+
     def probability(self, result: int, within: float = float("inf")) -> float:
         """The probability that an activation has a result if it is not halted.
 
@@ -107,9 +125,7 @@ class MeasuredSkill(Skill):
         """
         if result == RUNNING:
             return self.beyond
-        masses = (after - before for before, after in zip((0.0, *self._steps), self._steps, strict=False))
-        pairs = zip(masses, self._drawn, strict=False)
-        return sum(mass for mass, each in pairs if each.result == result and each.takes <= within * 1000)
+        return sum(mass for mass, each in self._masses() if each.result == result and each.takes <= within * 1000)
 
 
 class MeasuredSkills:

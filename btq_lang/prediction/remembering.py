@@ -16,9 +16,10 @@ from btq_lang.prediction.robot import Robot
 from btq_lang.prediction.states import StateKey, States
 from btq_lang.prediction.world import KeptValue, LiveValue
 from btq_lang.simulator.blackboard import Value
-from btq_lang.simulator.drivers import halt_tree, tick_once
+from btq_lang.simulator.drivers import halt_tree, tick_of
 from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SUCCESS, Machine, SimulatedNode
 from btq_lang.simulator.timers import NEVER, fire
+from btq_lang.workspace.project_driver import Driver
 
 Question: TypeAlias = Callable[[], object]
 Rows: TypeAlias = list[tuple[int, int]]  # a node, and its new status
@@ -55,9 +56,10 @@ class Effect:
         timers: of each that was started or stopped its number, and how long it runs; `NEVER`: it does not.
         kept: the entries that were given a number that belongs to the run, each with that number.
         is_quiet: nothing has changed, so that the same step does the same until something else happens.
+        is_woken: it wakes up the program, which ticks then.
     """
 
-    __slots__ = ("halted", "is_quiet", "kept", "result", "rows", "state", "timers")
+    __slots__ = ("halted", "is_quiet", "is_woken", "kept", "result", "rows", "state", "timers")
 
     def __init__(
         self,
@@ -68,6 +70,7 @@ class Effect:
         timers: Sequence[tuple[int, int]],
         kept: Sequence[tuple[KeptValue, LiveValue]],
         is_quiet: bool,
+        is_woken: bool,
     ) -> None:
         self.result: Final = result
         self.state: Final = state
@@ -76,6 +79,7 @@ class Effect:
         self.timers: Final = timers
         self.kept: Final = kept
         self.is_quiet: Final = is_quiet
+        self.is_woken: Final = is_woken
 
 
 class _Asked:
@@ -100,7 +104,9 @@ class RememberedTree:
         read: the entries that signals read.
     """
 
-    def __init__(self, machine: Machine, robot: Robot, wanted: Collection[int] | None, read: Sequence[str]) -> None:
+    def __init__(
+        self, machine: Machine, driver: Driver, robot: Robot, wanted: Collection[int] | None, read: Sequence[str]
+    ) -> None:
         """Remember nothing yet.
 
         Args:
@@ -110,6 +116,8 @@ class RememberedTree:
         self.machine: Final = machine
         self.read: Final = read
         self._robot: Final = robot
+        self._tick: Final = tick_of(driver)
+        self._wakes_up: Final = driver.is_woken
         self._states: Final = States(machine, robot.asker)
         self._timed: Final = self._states.timed
         self._known: Final[dict[StateKey, KnownState]] = {}
@@ -198,13 +206,15 @@ class RememberedTree:
         try:
             result = RUNNING
             if number == TICK:
-                result = tick_once(machine)
+                result = self._tick(machine)
             elif number == HALT:
                 halt_tree(machine)
             else:
                 fire(machine, self._timed[number])
             halted = [uid for uid in dict.fromkeys(robot.halted) if machine.nodes[uid - 1].status != RUNNING]
             kept = self._states.keep_values()
+            is_woken = self._wakes_up and machine.is_woken
+            machine.is_woken = machine.is_woken and not is_woken
         finally:
             robot.asker.ask, robot.halted = direct, None
         dues = [node.due for node in self._timed]
@@ -216,7 +226,7 @@ class RememberedTree:
         after = self._state()
         has_moved = timers or kept or halted or any(robot.moves(*each) for each in asked)
         is_quiet = not has_moved and (after is state or after.key == state.key)
-        effect = Effect(result, after, self.rows(), halted, timers, kept, is_quiet)
+        effect = Effect(result, after, self.rows(), halted, timers, kept, is_quiet, is_woken)
         if self._size < _MOST:
             self._remember(state, number, asked, effect)
         return effect

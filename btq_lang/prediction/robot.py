@@ -49,6 +49,7 @@ class Robot:
         machine: whose leaves it has; to be set before the first run.
         asker: who is asked what is not in the state of the tree.
         courses: the signals of the world.
+        period: between two ticks, in milliseconds.
         drawn: how many activations have been drawn in this run.
         guessed: the paths of skills that in this run did what was never measured.
         live: the values of those signals that change, by name.
@@ -61,6 +62,7 @@ class Robot:
         self.asker: Final = Asker()
         self.courses: Final = courses
         self.drawn = 0
+        self.period = 10
         self.guessed: Final[set[str]] = set()
         self.halted: list[int] | None = None
         self._names: Final = names
@@ -136,6 +138,25 @@ class Robot:
         writes = action.skill.writes(node, drawn, self.machine.dialect.has_real_truth) or ()
         write_outputs(node, outputs, writes, is_skipped=drawn.result == SKIPPED)
         return drawn.result
+
+    def has_answer(self, node: SimulatedNode) -> bool:
+        """Whether something says what a node of Nav2 answers that reads the time or the world."""
+        return node.uid in self._conditions
+
+    def answer(self, node: SimulatedNode) -> bool:
+        """What such a node answers.
+
+        Raises:
+            Unanswered: nothing says it.
+        """
+        condition = self._conditions.get(node.uid)
+        if condition is None:
+            raise Unanswered(node, self.machine.now)
+        return condition.holds(node)
+
+    def update(self, node: SimulatedNode) -> None:
+        """Write the goals that a GoalUpdater has received, which are unknown."""
+        write_outputs(node, self._outputs.get(node.uid))
 
     def halt(self, node: SimulatedNode) -> None:
         """Halt a leaf that runs."""
@@ -214,7 +235,7 @@ class _Action:
             robot.guessed.add(self.key[1])
         if drawn.result == RUNNING:
             self.end = NEVER
-        elif takes := _ticks(drawn.takes) if self.skill.has_waited else drawn.takes:
+        elif takes := _ticks(drawn.takes, robot.period) if self.skill.has_waited else drawn.takes:
             self.end = robot.machine.now + takes
             self.outcome = _outcome(drawn)
         else:
@@ -231,9 +252,9 @@ class _Action:
         return self.outcome
 
 
-def _ticks(takes: int) -> int:
+def _ticks(takes: int, period: int) -> int:
     """A duration to the nearest tick: one of a log already has the time that it waits for its tick."""
-    return (takes + PERIOD // 2) // PERIOD * PERIOD
+    return (takes + period // 2) // period * period
 
 
 def _outcome(drawn: DrawnActivation) -> Outcome:
@@ -241,5 +262,4 @@ def _outcome(drawn: DrawnActivation) -> Outcome:
     return DrawnActivation(drawn.result, 0, drawn.writes) if drawn.writes else drawn.result
 
 
-PERIOD: Final = 10  # ms between two ticks, as a robot program sleeps that ticks while the tree runs
 _ENDED: Final = {result: DrawnActivation(result, 0, ()) for result in (SUCCESS, FAILURE, SKIPPED)}

@@ -12,7 +12,7 @@ from typing import Final, Literal, TypeAlias
 from btq_lang.evidence.evaluate import NeededNodes
 from btq_lang.evidence.model import ROOT, SampleValue
 from btq_lang.prediction.remembering import HALT, TICK, Effect, KnownState, RememberedTree, Rows
-from btq_lang.prediction.robot import PERIOD, Robot
+from btq_lang.prediction.robot import Robot
 from btq_lang.prediction.thresholds import look_at_scripts
 from btq_lang.prediction.world import Course, LiveValue, crossings
 from btq_lang.requirements.model import ResolvedSignal
@@ -21,6 +21,7 @@ from btq_lang.scenarios.running import why_unknown
 from btq_lang.simulator.blackboard import BOOL, DOUBLE, Board, Unknown, Value, type_of
 from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.loading import load
+from btq_lang.simulator.nav2_answered import set_answered
 from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Machine, SimulatedNode
 from btq_lang.simulator.ports import key_of
 from btq_lang.simulator.timers import ENDLESS, NEVER
@@ -88,13 +89,16 @@ class LoadedRuns:
             for course in robot.courses
             if course.settings.name == signal.name or (signal.entry and course.settings.entry == signal.entry)
         }
-        board = Board(is_old=mission.dialect.is_old)
+        board = mission.program.board()
         for course in robot.courses:
             self._define(board, course)
         arguments = mission.name, mission.dialect, robot, self._changed, board, mission.actions
         self._machine: Final[Machine] = load(mission.documents, *arguments)
         self.nodes: Final = self._machine.nodes
         robot.machine = self._machine
+        robot.period = mission.program.driver.period
+        for node in self.nodes:
+            set_answered(node, robot)
         look_at_scripts(self._machine, robot.courses)
         robot.write_into(_outputs(robot, self._machine, mission.outputs))
         self._is_loaded = False
@@ -102,7 +106,8 @@ class LoadedRuns:
         self._entries: Final = [*dict.fromkeys(entries)]
         wanted = needed.all if needed is not None else None
         self._guards: Final = needed.guards if needed is not None else frozenset[int]()
-        self._tree: Final = RememberedTree(self._machine, robot, wanted, self._entries)
+        self._driver: Final = mission.program.driver
+        self._tree: Final = RememberedTree(self._machine, self._driver, robot, wanted, self._entries)
         self._is_loaded = True
         self._rows: list[tuple[int, int, int]] = []
         self._values: dict[str, list[Sample]] = {}
@@ -147,7 +152,7 @@ class LoadedRuns:
             end, why = "throws", str(error)
             self._note_rows(self._tree.rows())
         except NotModelled as error:
-            end, why = "unknown", why_unknown(machine.nodes, error)
+            end, why = "unknown", why_unknown(machine.nodes, error, has_givens=False)
             self._note_rows(self._tree.rows())
         if end not in ("succeeds", "fails"):
             self._end_root()
@@ -160,7 +165,7 @@ class LoadedRuns:
     def _driven(self) -> int:
         """Tick the tree until it has ended; its result, or RUNNING if it does not end.
 
-        As `tick_while_running`, which does not remember.
+        As `drive`, which does not remember.
         """
         tree, machine = self._tree, self._machine
         tree.begin()
@@ -180,27 +185,37 @@ class LoadedRuns:
             if machine.now >= self.limit or self._is_cut:
                 break
             has_jumped = effect.is_quiet and not has_jumped
-            until = self._next_change(machine.now) if has_jumped else machine.now + PERIOD
-            if tree.wakes != NEVER and (until == NEVER or tree.wakes < until):
-                until = tree.wakes
-            if until == NEVER or until > self.limit:
-                machine.now = self.limit if until != NEVER else machine.now
+            until = self._next_change(machine.now) if has_jumped else machine.now + self._driver.period
+            if until == NEVER:
                 break
-            while NEVER != tree.wakes <= until:
-                machine.now = tree.wakes
-                for timer in tree.due():
-                    state = self._noted(tree.step(state, timer))
-            machine.now = until
+            state = self._asleep(state, until)
+            if machine.now > self.limit:
+                machine.now = self.limit
+                break
         self._noted(tree.step(state, HALT))
         return RUNNING
 
+    def _asleep(self, state: KnownState, until: int) -> KnownState:
+        """Let time pass until a time, or until a node wakes up the program; the state then."""
+        tree, machine = self._tree, self._machine
+        is_woken = False
+        while NEVER != tree.wakes <= min(until, self.limit) and not is_woken:
+            machine.now = tree.wakes
+            for timer in tree.due():
+                effect = tree.step(state, timer)
+                is_woken = is_woken or effect.is_woken
+                state = self._noted(effect)
+        if not is_woken:
+            machine.now = until
+        return state
+
     def _next_change(self, now: int) -> int:
-        """When the program ticks next, if nothing changes before by itself but timers; `NEVER`: nothing will."""
+        """When the program ticks next, if nothing wakes it up before; `NEVER`: nothing will change."""
         change = self.robot.next_change(now)
-        for due in self._tree.dues[self._tree.timers :]:
+        for due in (self._tree.wakes, *self._tree.dues[self._tree.timers :]):
             if now < due < ENDLESS and (change == NEVER or due < change):
                 change = due
-        return now - (now - change) // PERIOD * PERIOD if change != NEVER else NEVER
+        return self._driver.tick_after(now, change) if change != NEVER else NEVER
 
     def _noted(self, effect: Effect) -> KnownState:
         """Note what a step did; the state after it."""

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
 from typing import Final, Literal, TypeAlias
 
 from btq_lang.prediction.streams import Stream
 from btq_lang.simulator.nodes import SUCCESS, SimulatedNode
 from btq_lang.simulator.skills import Write
 from btq_lang.util.record import Record
+from btq_lang.workspace.project_simulation import Spread
 
+Probability: TypeAlias = "Fraction | float"  # a fraction is exact
 Source: TypeAlias = Literal["declared", "measured", "ASSUMED"]
 
 
@@ -26,6 +30,20 @@ class DrawnActivation(Record):
     takes: int
     writes: tuple[Write, ...] | None = None
     is_guess: bool = False
+
+
+class SkillOutcome(Record):
+    """How activations may end.
+
+    Attributes:
+        result: SUCCESS or FAILURE; RUNNING: they do not end.
+        takes: how they are distributed: the probabilities of times in milliseconds, which add up to 1; None: of those
+            that do not end.
+    """
+
+    result: int
+    probability: Probability
+    takes: Spread | Mapping[int, float] | None
 
 
 class Skill:
@@ -54,6 +72,10 @@ class Skill:
 
     def average(self) -> float:
         """How long an activation takes that ends, on average; in milliseconds."""
+        raise NotImplementedError
+
+    def outcomes(self) -> Sequence[SkillOutcome]:
+        """All that is drawn, with probabilities that add up to 1."""
         raise NotImplementedError
 
     def writes(self, node: SimulatedNode, drawn: DrawnActivation, has_real_truth: bool) -> tuple[Write, ...] | None:
@@ -89,5 +111,10 @@ class AssumedSkill(Skill):
         """It takes no time."""
         return 0.0
 
+    def outcomes(self) -> Sequence[SkillOutcome]:
+        """What it always does."""
+        return (SkillOutcome(SUCCESS, Fraction(1), AT_ONCE),)
 
+
+AT_ONCE: Final[Mapping[int, float]] = {0: 1.0}
 _ASSUMED: Final = DrawnActivation(SUCCESS, 0, ())

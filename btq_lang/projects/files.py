@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os.path
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from glob import glob
 from typing import TYPE_CHECKING
@@ -433,16 +433,28 @@ class _Projects:
 
 def _by_factory(group: FileGroup, factories: Iterable[Factory], in_each: bool) -> Iterator[FileGroup]:
     """The requested files of a project that its factories register, a group for each factory that has any; a file that
-    several register belongs to the first, or `in_each` to each."""
+    several register belongs to the first, or `in_each` to each.
+
+    A file of scenarios runs what it includes, so it belongs to the factory of that, except `in_each`.
+    """
     taken: set[str] = set()
     whole = group.workspace
     for factory in factories:
         workspace = whole.of_factory(factory)
         registered = workspace.registered
-        given = tuple(path for path in group.given if path in registered and path not in taken)
+        runs = [path for path in group.given if not in_each and _runs_any(whole, path, registered)]
+        given = tuple(path for path in group.given if (path in registered or path in runs) and path not in taken)
         if given:
+            if runs:
+                workspace = whole.of_factory(replace(factory, files=(*factory.files, *runs)))
             yield replace(group, workspace=workspace, given=given)
             taken.update(() if in_each else given)
+
+
+def _runs_any(workspace: Workspace, path: str, registered: Container[str]) -> bool:
+    """Whether a file has only scenarios and includes one of some files."""
+    is_outside = path not in registered and workspace.files[path].has_only_scenarios
+    return is_outside and any(each in registered for each in workspace.closure(path))
 
 
 def _with_cpp(group: FileGroup, folders: Iterable[str]) -> FileGroup:

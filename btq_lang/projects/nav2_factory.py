@@ -107,6 +107,7 @@ class ParameterFile(Record):
             nav2=self.path,
             has_gaps=distribution is None or not load.is_whole or bool(load.refused),
             entries=parameters.entries(distribution) if parameters is not None and distribution is not None else (),
+            period=parameters.period if parameters is not None else self.factory.period,
             libraries=tuple(each.text for each in (parameters.texts(NAMES) if parameters is not None else None) or ()),
         )
 

@@ -13,6 +13,7 @@ identified by its facts.  What they read is in workspace/inputs.py.
     clauses.py, visits.py   what each verb demands, and which nodes are visited
     metadata.py   the clauses that demand nothing
     verifying.py  the scenarios that verify requirements
+    one_run.py    what a scenario, which is one run, cannot decide
     fingerprint.py, approval.py, approving.py   whether a requirement is approved as it is, and writing that
     shares.py, pooled.py   claims of a share of time, and those that are judged of all runs together
     classic.py, constraints.py   the same in SuccessIf and FailureIf of descriptions

@@ -246,7 +246,10 @@ def _event_atom(reader: Reader, written: syntax.Event | None) -> model.ResolvedE
     if written.happening == "when":
         condition = reader.condition(written.condition)
         return model.ResolvedEvent("when", None, condition) if condition is not None else None
-    subject = reader.target(written.path) if written.path is not None else model.MissionRun(reader.mission)
+    subject: model.NodeTarget | model.MissionRun | None = model.MissionRun(reader.mission)
+    if written.path is not None:
+        asked = Span(written.start, written.end), f"{{}} {written.happening}"
+        subject = reader.target(written.path, asked=asked)
     return model.ResolvedEvent(written.happening, subject) if subject is not None else None  # type: ignore[arg-type]  # the parser's words
 
 

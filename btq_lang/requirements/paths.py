@@ -132,12 +132,14 @@ class PathReader:
 
     # ---- paths ----
 
-    def target(self, path: Path, notes: tuple[str, ...] = (), *, asked: Span | None = None) -> NodeTarget | None:
+    def target(
+        self, path: Path, notes: tuple[str, ...] = (), *, asked: tuple[Span, str] | None = None
+    ) -> NodeTarget | None:
         """The one node that a path names.
 
         Args:
             notes: for a path that names none.
-            asked: the condition that asks whether that node runs, if one does.
+            asked: the condition or event that is about that node, if one is, and its form: `node {}`, `{} fails`.
         """
         names = tuple(name.text for name in path.names)
         targets = self.find(names)
@@ -183,9 +185,9 @@ class PathReader:
         self.complain("unmatched-path", word.span, f"{message}{did_you_mean(likely)}", notes=notes, fixes=fixes)
 
     def report_ambiguous(
-        self, span: Span, shown: str, targets: tuple[NodeTarget, ...], asked: Span | None = None
+        self, span: Span, shown: str, targets: tuple[NodeTarget, ...], asked: tuple[Span, str] | None = None
     ) -> None:
-        """Report a path that names several nodes; `asked`: the condition that asks whether one of them runs."""
+        """Report a path that names several nodes; `asked`: as of `target`."""
         related = tuple(
             Related(target.node.place, f"in the tree `{target.node.tree}`") for target in targets[:_MAX_SHOWN]
         )
@@ -197,11 +199,16 @@ class PathReader:
         )
         fixes = tuple(write_fix(path, span) for path in paths[:_MAX_SHOWN])
         if asked is not None:
+            whole, form = asked
             is_each = len(paths) == len(targets) <= _MAX_JOINED
-            several = " or ".join(f"node {path}" for path in paths) if is_each else "node X or node Y"
-            notes = (f"for any of them, a condition names each: `{several}`",)
-            notes += ("nodes that no path tells apart need names",) if len(paths) < len(examined) else ()
-            fixes = (write_fix(f"({several})", asked), *fixes) if is_each else fixes
+            several = " or ".join(map(form.format, paths if is_each else ("X", "Y")))
+            is_event = form.startswith("{}")
+            notes = (f"for any of them, {'an event' if is_event else 'a condition'} names each: `{several}`",)
+            fixes = (write_fix(several if is_event else f"({several})", whole), *fixes) if is_each else fixes
+        if len(paths) < len(examined):
+            kinds = [node.id.text for target in examined if (node := target.node.node).name is None and node.id]
+            names = "" if not kinds else f": `{written(kinds[0])} X`, `{written(kinds[0])} Y`"
+            notes += (f"nodes that no path tells apart need names{names}",)
         self.complain("ambiguous-path", span, message, related=related, notes=notes, fixes=fixes)
 
     def _missing(self, names: tuple[str, ...], shown: str) -> str:

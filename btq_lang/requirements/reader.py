@@ -332,7 +332,7 @@ class Reader(PathReader):
         return None
 
     def _running(self, path: syntax.Path, asked: Span) -> model.Condition | None:
-        target = self.target(path, asked=asked)
+        target = self.target(path, asked=(asked, "node {}"))
         return model.Running(target) if target is not None else None
 
     def _joined(self, written: syntax.Binary) -> model.Condition | None:

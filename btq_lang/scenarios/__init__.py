@@ -27,6 +27,9 @@ scenario, and a value that is needed and not given makes it unknown; actions tha
     mutation_testing.py   which changes no scenario notices
     thoroughness.py   both for all scenarios
     thoroughness_text.py   its lines
+    tape.py        what happened in a run, so that it can be repeated
+    replay.py      a run repeated in an installed engine
+    installed_engine.py   finding it, and building the program in engine_program/
     rules.py       a scenario as substitution rules of the engine
     text.py, json_document.py, junit.py, page.py   the writers
 """

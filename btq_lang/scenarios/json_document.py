@@ -26,6 +26,8 @@ def render(report: ScenarioReport, colour: bool = False) -> str:
         "version": VERSION,
         "scenarios": [_scenario(each) for each in report.scenarios],
     }
+    if report.engine:
+        document["engine"] = report.engine
     if report.coverage is not None:
         document["coverage"] = coverage_as_data(report.coverage)
     if report.mutants is not None:

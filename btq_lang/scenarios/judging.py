@@ -22,6 +22,7 @@ from btq_lang.evidence.verdicts import (
 )
 from btq_lang.evidence.wording import quantity
 from btq_lang.requirements.model import ResolvedSignal, signals_in
+from btq_lang.requirements.one_run import needs_runs, shown_by_one
 from btq_lang.scenarios.mission import ScenarioMission
 from btq_lang.scenarios.plan import (
     Expectation,
@@ -53,15 +54,22 @@ def judged(mission: ScenarioMission, plan: Plan, run: ScenarioRun) -> tuple[Expe
 
 
 def _verdicts(mission: ScenarioMission, plan: Plan, run: ScenarioRun) -> dict[str, RequirementVerdict]:
-    """The verdicts of the requirements and claims that are expected, by name."""
+    """The verdicts of the requirements and claims that are expected, by name.
+
+    A scenario is a test, so it judges the clauses of a requirement whatever the ways to verify that.
+    """
     expected = [expectation.expected for expectation in plan.expectations]
     names = {each.name for each in expected if isinstance(each, WantedVerdict)}
     claims = [each for each in expected if isinstance(each, ExpectedClaims)]
     if not names and not claims:
         return {}
     requirements = mission.requirements
-    demanded = {name: requirement for name, requirement in requirements.all.items() if name in names}
-    applied = [each for each in requirements.applied if each.requirement.name in names]
+    demanded = {name: replace(each, ways=()) for name, each in requirements.all.items() if name in names}
+    applied = [
+        replace(each, requirement=replace(each.requirement, ways=()))
+        for each in requirements.applied
+        if each.requirement.name in names
+    ]
     candidate, joined = mission.judged_with(
         replace(
             requirements,
@@ -83,12 +91,13 @@ class _Judge:
     def result(self, expectation: Expectation) -> ExpectationResult:
         """The result of an expectation."""
         expected = expectation.expected
-        why = ""
+        why = note = ""
         step: Step | None
         if isinstance(expected, ExpectedClaims):
             step, why = self._claims(self._verdicts[expected.requirement.name], expectation.text)
         elif isinstance(expected, WantedVerdict):
             step, why = self._verdict(self._verdicts[expected.name], expected)
+            note = _not_exercised(self._verdicts[expected.name])
         elif isinstance(expected, ExpectedValues):
             step, why = self._values(expected)
         elif isinstance(expected, ExpectedEnd):
@@ -96,7 +105,7 @@ class _Judge:
         else:
             step = None if self._run.end == expected.end else self._at_end(_EXPECTED[expected.end])
         outcome: Outcome = "failed" if step is not None else "unknown" if why else "passed"
-        return ExpectationResult(expectation.text, expectation.line, outcome, why, step)
+        return ExpectationResult(expectation.text, expectation.line, outcome, why, step, note)
 
     def node(self, uid: int) -> tuple[str, str, int]:
         """The path, the file and the line of a node; of a guard, those of the node that it guards."""
@@ -149,7 +158,8 @@ class _Judge:
         actual = verdict_in_words(verdict)
         if actual == expected.verdict:
             return None, ""
-        why = next((_why(clause) for clause in verdict.clauses if clause.why), "")
+        why = self._undecided(expected.name) if actual in (UNDECIDED, UNKNOWN) else ""
+        why = "; ".join(filter(None, (next((_why(clause) for clause in verdict.clauses if clause.why), ""), why)))
         if actual == UNKNOWN and expected.verdict in (SATISFIED, VIOLATED):
             return None, why
         wanted = f"{expected.name} {expected.verdict}"
@@ -158,6 +168,13 @@ class _Judge:
             first = min(violations, key=lambda violation: violation.at)
             return self._violation(first, f"{wanted}{f', bound {first.bound}' if first.bound else ''}"), ""
         return replace(self._at_end(wanted), happened=f"{expected.name} is {actual}{f': {why}' if why else ''}"), ""
+
+    def _undecided(self, name: str) -> str:
+        """Why this run alone cannot decide a requirement about many; empty if it is not about many."""
+        requirement = self._mission.requirements.all[name]
+        what = needs_runs(requirement)
+        shown = " and ".join(f"`expect {text}`" for text in shown_by_one(requirement))
+        return f"one run cannot decide {what}{f'; {shown} is what it can show' if shown else ''}" if what else ""
 
     # ---- values of ports ----
 
@@ -199,13 +216,13 @@ class _Judge:
         value = self._value(start, port)
         if isinstance(value, Unsaid):
             name = port or self._mission.input_port(start.uid)
-            raise NotModelled(f"{self.node(start.uid)[0]} reads its port `{name}`, and {value.why}")
+            raise NotModelled(f"{self.node(start.uid)[0]} reads its port `{name}`, and {value.why()}")
         return is_value(value, wanted)
 
     def _other(self, start: Start, port: str | None, expected: str) -> Step:
         actual = self._value(start, port)
         if isinstance(actual, Unsaid):
-            happened = f"it runs, and {actual.why}"
+            happened = f"it runs, and {actual.why()}"
         else:
             happened = f'it runs with "{actual}"' if actual is not None else "it runs with no value"
         return Step(start.at / 1000, *self.node(start.uid), happened, expected)
@@ -230,6 +247,15 @@ def verdict_in_words(verdict: RequirementVerdict) -> str:
     """A verdict as a scenario expects it."""
     is_not_applicable = verdict.verdict == NEVER and any(clause.not_applicable for clause in verdict.clauses)
     return "not applicable" if is_not_applicable else verdict.verdict
+
+
+def _not_exercised(verdict: RequirementVerdict) -> str:
+    """The clauses that nothing exercised at any node, if others were; empty without any."""
+    exercised = {clause.text for clause in verdict.clauses if clause.verdict != NEVER}
+    others = {clause.text: clause for clause in verdict.clauses if clause.text not in exercised}
+    if not exercised:
+        return ""
+    return "; ".join(f"`{text}` is never exercised: {_why(clause)}" for text, clause in others.items())
 
 
 class _NothingRuns(Nearby):

@@ -12,16 +12,13 @@ from btq_lang.btcpp.document import Document
 from btq_lang.btcpp.opening import with_source
 from btq_lang.btcpp.reader import read
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nav2 import ENGINES, assumed_distribution, distribution_among
-from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks.lookups import ports_of_models
 from btq_lang.evidence.identity import Build, Candidate, Joined
 from btq_lang.evidence.model import LoggedTree
 from btq_lang.requirements import nodes
 from btq_lang.requirements.model import NodeTarget
 from btq_lang.requirements.resolve import Requirements
-from btq_lang.simulator.kinds import is_of_nav2
-from btq_lang.simulator.versions import Dialect
+from btq_lang.simulator.programs import program_of
 from btq_lang.syntax.tree import Model, Root, Tree
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span
@@ -47,6 +44,7 @@ class ScenarioMission:
         documents: the XML that the engine loads.
         build: its nodes, and which written nodes they are.
         tree: as a log of a run would hold it.
+        program: that runs it.
         dialect: the version of the engine.
     """
 
@@ -66,7 +64,9 @@ class ScenarioMission:
             raise NotRunnable(f"the tree `{tree}` cannot be built; run btq check")
         self.build: Final[Build] = replace(build, is_main=True)
         self.tree: Final[LoggedTree] = self.build.tree(shows_begins=True)
-        self.dialect: Final = _dialect(self.workspace, self.build)
+        nodes = (node for _, node in self.build.running.all if node is not None)
+        self.program: Final = program_of(workspace, path, nodes)
+        self.dialect: Final = self.program.dialect
 
     @cached_property
     def documents(self) -> list[Document]:
@@ -157,18 +157,6 @@ class ScenarioMission:
         if node is None:
             return "", 0
         return line_of(self.workspace, node.path, node.item, node.node.head.start)
-
-
-def _dialect(workspace: Workspace, build: Build) -> Dialect:
-    """The engine of a program: that of its distribution of Nav2, unless the project names its versions."""
-    project = workspace.project
-    node_files = (*project.node_files, *(workspace.factory.node_files if workspace.factory is not None else ()))
-    distribution = distribution_among(node_files) or ""
-    version = project.target if project.pinned else ENGINES.get(distribution, project.target)
-    nodes = (node for _, node in build.running.all if node is not None)
-    if not distribution and any(node.children and is_of_nav2(_id(node)) for node in nodes):
-        distribution = assumed_distribution(is_before_4(version))
-    return Dialect(version, distribution)
 
 
 def line_of(workspace: Workspace, path: str, item: object, offset: int) -> tuple[str, int]:

@@ -106,7 +106,11 @@ class _Maker:
         """Wrong values of a port: numbers that a built-in counts by, entries of the same tree, texts of its like."""
         if key_of(value, port) is not None:
             yield from _next(self._keys.get((node.path, node.tree), ()), value)
-        elif node.behavior is not None and (kind := node.behavior.port(port)) is not None and kind.role:
+        elif (
+            node.behavior is not None
+            and (kind := node.behavior.port(port)) is not None
+            and kind.role not in ("", "copied")
+        ):
             if _NUMBER.fullmatch(value):
                 yield from _other_number(value, is_positive=True)
         else:

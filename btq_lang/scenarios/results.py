@@ -38,6 +38,7 @@ class ExpectationResult(Record):
         line: in the file of the scenario.
         why: why it is unknown; empty if it is not.
         step: None if it holds or is unknown.
+        note: which clauses of a requirement nothing in the run exercised; empty: none.
     """
 
     text: str
@@ -45,6 +46,7 @@ class ExpectationResult(Record):
     outcome: Outcome
     why: str
     step: Step | None
+    note: str = ""
 
 
 class ScenarioResult(Record):
@@ -54,6 +56,7 @@ class ScenarioResult(Record):
         file, line: where it is written.
         tree: the one that it ran; empty if it is unknown which.
         verifies: the IDs of requirements.
+        fingerprint: of its text, by which a later text is known to differ.
         ended: how the run ended: `succeeds`, `fails`, `does not end` …; empty if there was none.
         seconds: how long it took there.
         why: why it failed as a whole, is unknown or wrong; empty otherwise.
@@ -67,6 +70,7 @@ class ScenarioResult(Record):
     line: int
     tree: str
     verifies: tuple[str, ...]
+    fingerprint: str
     outcome: Outcome
     ended: str
     seconds: float
@@ -140,11 +144,17 @@ class MutantReport(Record):
 
 
 class ScenarioReport(Record):
-    """All scenarios that ran; coverage, mutants: if they were wanted."""
+    """All scenarios that ran.
+
+    Attributes:
+        coverage, mutants: if they were wanted.
+        engine: the version of the engine in which they ran, too; empty: in none.
+    """
 
     scenarios: tuple[ScenarioResult, ...]
     coverage: CoverageReport | None = None
     mutants: MutantReport | None = None
+    engine: str = ""
 
     def count(self, outcome: Outcome) -> int:
         """How many have an outcome."""

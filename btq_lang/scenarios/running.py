@@ -19,14 +19,16 @@ from btq_lang.requirements.model import Condition, NodeTarget, signals_in
 from btq_lang.scenarios.mission import ScenarioMission
 from btq_lang.scenarios.mutating import Mutant, mutated
 from btq_lang.scenarios.plan import ExpectedValues, Plan, PlannedChange, Set, WatchedEvent
+from btq_lang.scenarios.tape import LeafTick, Tape
 from btq_lang.scenarios.unused_lines import unused_lines
-from btq_lang.simulator.blackboard import BOOL, Board, Unknown, Unsaid, Value, ValueNeeded, type_of
-from btq_lang.simulator.drivers import halt_tree, tick_while_running
+from btq_lang.simulator.blackboard import BOOL, Unknown, Unsaid, Value, ValueNeeded, type_of
+from btq_lang.simulator.drivers import drive, halt_tree
 from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.loading import load
+from btq_lang.simulator.nav2_answered import set_answered
 from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Machine, SimulatedNode
 from btq_lang.simulator.ports import key_of, read_whole
-from btq_lang.simulator.skills import GivenSkill, Skills, Unanswered, is_value, value_at
+from btq_lang.simulator.skills import GivenSkill, Skills, Unanswered, Write, is_value, value_at
 from btq_lang.syntax.script.tree import variables
 from btq_lang.util.record import Record
 
@@ -82,21 +84,27 @@ class ScenarioRun(Record):
         return LogSession(mission.tree, rows, dict(self.entries), signals=self.signals)
 
 
-def run(mission: ScenarioMission, plan: Plan, mutant: Mutant | None = None) -> ScenarioRun:
-    """Run a scenario; `mutant`: what is changed in the tree before."""
-    return _Running(mission, plan, mutant).run()
+def run(mission: ScenarioMission, plan: Plan, mutant: Mutant | None = None, tape: Tape | None = None) -> ScenarioRun:
+    """Run a scenario.
+
+    Args:
+        mutant: what is changed in the tree before.
+        tape: to be filled with what the program does.
+    """
+    return _Running(mission, plan, mutant, tape).run()
 
 
 class _Running:
     """A run while it goes on; it is the program that has the custom leaves."""
 
-    def __init__(self, mission: ScenarioMission, plan: Plan, mutant: Mutant | None) -> None:
+    def __init__(self, mission: ScenarioMission, plan: Plan, mutant: Mutant | None, tape: Tape | None) -> None:
+        self._tape: Final = tape
         self._mission: Final = mission
         self._plan: Final = plan
         self._mutant: Final = mutant
-        self._watched: Final = _watched(plan)
+        self._watched: Final = watched(plan)
         self._skills: Final = Skills(plan.givens, mission.conditions, mission.outputs)
-        self._board: Final = Board(is_old=mission.dialect.is_old)
+        self._board: Final = mission.program.board()
         self._machine: Machine | None = None
         self._nodes: _NodesNow
         self._rows: Final[list[Transition]] = []
@@ -117,7 +125,19 @@ class _Running:
         """Tick a custom leaf."""
         if node.status != RUNNING:
             self._begin(node)
-        return self._skills.tick(node)
+        return self._skills.tick(node) if self._tape is None else self._taped(node, self._tape)
+
+    def _taped(self, node: SimulatedNode, tape: Tape) -> int:
+        """Tick a custom leaf that has begun, and note what it does."""
+        sets = tape.taken()
+        writes: list[Write] = []
+        self._skills.writes = writes
+        result = RUNNING
+        try:
+            result = self._skills.tick(node)
+        finally:
+            tape.leaf(node.uid, LeafTick(self._skills.machine.now, result, sets, tuple(writes)))
+        return result
 
     def halt(self, node: SimulatedNode) -> None:
         """Halt a custom leaf that runs."""
@@ -141,8 +161,11 @@ class _Running:
         try:
             self._machine = machine = self._loaded()
             self._skills.machine = machine
+            if self._tape is not None:
+                self._tape.machine = machine
+                self._tape.taken()  # what is given before is in the plan
             self._sample()
-            result = tick_while_running(machine, _LONGEST, is_over=self._is_over)
+            result = drive(machine, self._mission.program.driver, _LONGEST, self._is_over)
             return self._ended(machine, result)
         except EngineError as error:
             return self._record("is refused" if self._machine is None else "throws", str(error))
@@ -154,6 +177,8 @@ class _Running:
     def _loaded(self) -> Machine:
         arguments = self._mission.name, self._mission.dialect, self, self._changed, self._board, self._mission.actions
         machine = load(self._mission.documents, *arguments)
+        for node in machine.nodes:
+            set_answered(node, self._skills)
         if self._mutant is not None:
             machine = mutated(machine, self._mutant)
         self._nodes = _NodesNow(machine, self._mission)
@@ -161,8 +186,12 @@ class _Running:
 
     def _ended(self, machine: Machine, result: int) -> ScenarioRun:
         if result != RUNNING:
+            if self._tape is not None:
+                self._tape.look(machine.now)
             self._sample()
             return self._record(_ENDS[result], "")
+        if self._tape is not None:
+            self._tape.halt(machine.now)
         halt_tree(machine)
         if self._is_halted:
             return self._record("is halted", "")
@@ -188,13 +217,19 @@ class _Running:
         """Let the world change as planned; whether the program ticks no more."""
         machine = self._machine
         assert machine is not None, "it is ticked"
+        is_after = self._tape.look(machine.now) if self._tape is not None else False
         self._sample()
         while due := [change for change in self._waiting if self._is_due(change)]:
             for change in due:
                 self._apply(change)
             self._sample()
+        if self._tape is not None:
+            self._tape.pause(machine.now)
         self._ticks += 1
-        return self._is_halted or self._ticks > _MOST_LOOKS or self._goes_round(machine)
+        is_over = self._is_halted or self._ticks > _MOST_LOOKS or self._goes_round(machine)
+        if self._tape is not None and not is_over and not is_after:
+            self._tape.tick(machine.now)
+        return is_over
 
     def _goes_round(self, machine: Machine) -> bool:
         """Whether all is as it was once before, but for the time, so that it will be so again and again.
@@ -223,6 +258,8 @@ class _Running:
         assert self._machine is not None, "it is ticked"
         now = self._machine.now
         self._rows.append((START + now * 1000, node.uid, after))
+        if self._tape is not None:
+            self._tape.change(now, node.uid, after)
         if before != RUNNING and after != IDLE and node.uid not in self._of_open:
             self._begin(node)
         if after != RUNNING:
@@ -230,11 +267,15 @@ class _Running:
             words = _WORDS.get(after, ("halts",) if before == RUNNING else ())
             if start is not None and words:
                 self._happen(node, words, start.values)
+        if self._tape is not None:
+            self._tape.changed()
 
     def _begin(self, node: SimulatedNode) -> None:
         assert self._machine is not None, "it is ticked"
         ports = node.ports if node.uid in self._watched else ()
         start = Start(node.uid, self._machine.now, {port: value_at(node, port) for port in ports})
+        if self._tape is not None and ports:
+            self._tape.event(start.at, (node.uid, start.values))
         self._of_open[node.uid] = start
         self._starts.append(start)
         self._happen(node, ("starts",), start.values)
@@ -281,7 +322,7 @@ class _Running:
             values = dict(self._values())
             for signal in signals_in(condition):
                 if isinstance(value := values.get(signal.entry), Unsaid):
-                    raise NotModelled(f"a condition after `when` reads `{signal.name}`, and {value.why}")
+                    raise NotModelled(f"a condition after `when` reads `{signal.name}`, and {value.why(signal.name)}")
         return holds is True
 
     def _set(self, value: Set) -> None:
@@ -290,6 +331,8 @@ class _Running:
             self._signals.setdefault(value.signal, SampleSeries()).add(START + now * 1000, value.value)
         if not value.key:
             return
+        if self._tape is not None:
+            self._tape.set(value)
         is_bool = isinstance(value.value, bool)
         written = int(value.value) if isinstance(value.value, bool) else value.value
         entry = self._board.entries.get(value.key)
@@ -297,7 +340,7 @@ class _Running:
             self._board.define(value.key, written, "")
             self._board.entries[value.key].number += entry.number if entry is not None else 0
         else:
-            self._board.write(value.key, written, BOOL if is_bool else type_of(written))
+            self._board.give(value.key, written, BOOL if is_bool else type_of(written))
 
     def _sample(self) -> None:
         """Note the values of entries that are read and have changed."""
@@ -310,8 +353,11 @@ class _Running:
                 continue
             series = self._entries.setdefault(key, SampleSeries())
             series.add(time, sample)
+            if self._tape is not None and key in self._board.entries:
+                self._tape.event(self._machine.now, (key, sample))
             if isinstance(value, Unsaid):
-                series.lacking = value.why
+                read = next((signal.name for signal in self._plan.read if signal.entry == key), "")
+                series.lacking = value.why(read)
 
     def _values(self) -> list[tuple[str, Value | None]]:
         """The entries that are read, on the root blackboard or, if only one other has them, there."""
@@ -339,13 +385,15 @@ class _Running:
                         series.add(time, value)
 
 
-def why_unknown(nodes: Sequence[SimulatedNode], error: NotModelled) -> str:
-    """What is not known: of the value of an entry, who of some nodes reads and who wrote it."""
+def why_unknown(nodes: Sequence[SimulatedNode], error: NotModelled, has_givens: bool = True) -> str:
+    """What is not known: of the value of an entry, who of some nodes reads and who wrote it; `has_givens`: and what a
+    scenario gives to say it.
+    """
     reader = next((node for node in nodes if node.uid == error.uid), None)
     if not isinstance(error, ValueNeeded) or not isinstance(error.value, Unsaid) or reader is None:
         return str(error)
     key = _key_read(reader, error.value) or error.value.key
-    return f"{reader.path} reads {{{key}}}, and {error.value.why}"
+    return f"{reader.path} reads {{{key}}}, and {error.value.why() if has_givens else error.value.fact}"
 
 
 class _NodesNow(Nearby):
@@ -396,7 +444,7 @@ def _key_read(node: SimulatedNode, value: Unknown) -> str:
     return next((key for key, entry in entries if entry is not None and entry.value == value), "")
 
 
-def _watched(plan: Plan) -> frozenset[int]:
+def watched(plan: Plan) -> frozenset[int]:
     """The nodes whose ports are expected to have certain values."""
     uids = [change.trigger.uids for change in plan.changes if isinstance(change.trigger, WatchedEvent)]
     uids += [each.expected.uids for each in plan.expectations if isinstance(each.expected, ExpectedValues)]

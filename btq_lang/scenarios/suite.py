@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Final, TypeAlias
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import check
 from btq_lang.diagnostics.rules import Severity
+from btq_lang.requirements.verifying import scenario_fingerprint
 from btq_lang.scenarios.drawing import drawing
 from btq_lang.scenarios.judging import judged
 from btq_lang.scenarios.mission import NotRunnable, ScenarioMission, as_program, line_of, main_tree, with_named_tree
@@ -16,11 +17,15 @@ from btq_lang.scenarios.plan import Plan
 from btq_lang.scenarios.reading import ScenarioMistake, ScenarioMistakes, plan_of
 from btq_lang.scenarios.results import ExpectationResult, Outcome, ScenarioResult
 from btq_lang.scenarios.running import ScenarioRun, run
+from btq_lang.scenarios.tape import Tape
 from btq_lang.syntax.tree import Entry, Given, Scenario
 from btq_lang.util.record import Record
 from btq_lang.workspace.workspace import Workspace
 
-_Head: TypeAlias = tuple[str, str, int, str, tuple[str, ...]]  # of a result
+if TYPE_CHECKING:
+    from btq_lang.scenarios.installed_engine import InstalledEngine
+
+_Head: TypeAlias = tuple[str, str, int, str, tuple[str, ...], str]  # of a result
 # What a result begins with, the tree that a scenario runs, and what it says; its result if it cannot run.
 _Prepared: TypeAlias = "ScenarioResult | tuple[_Head, ScenarioMission, Plan]"
 
@@ -35,9 +40,15 @@ class ScenarioPlace(Record):
 class Suite:
     """The scenarios of a workspace; what several of them need is made once."""
 
-    def __init__(self, workspace: Workspace, is_enforced: bool = True) -> None:
-        """Run nothing yet; `is_enforced`: with the guards that enforce requirements."""
+    def __init__(self, workspace: Workspace, is_enforced: bool = True, engine: InstalledEngine | None = None) -> None:
+        """Run nothing yet.
+
+        Args:
+            is_enforced: with the guards that enforce requirements.
+            engine: in which scenarios run, too, and by whose runs they are judged; mutants run in the model alone.
+        """
         self.workspace: Final = workspace
+        self._engine: Final = engine
         self._is_enforced: Final = is_enforced
         self._named: Final[dict[str, Workspace]] = {}
         self._programs: Final[dict[tuple[str, str], _Program]] = {}
@@ -46,7 +57,7 @@ class Suite:
 
     def __reduce__(self) -> tuple[object, ...]:
         """How a process that does not share memory with this one makes it again: missions know nodes by identity."""
-        return Suite, (self.workspace, self._is_enforced)
+        return Suite, (self.workspace, self._is_enforced, self._engine)
 
     def places(self, path: str) -> Iterator[tuple[ScenarioPlace, str]]:
         """The scenarios of a file, each with its title."""
@@ -69,8 +80,7 @@ class Suite:
         if isinstance(planned, ScenarioResult):
             return Ran(planned, None, None)
         head, mission, plan = planned
-        ran = run(mission, plan, mutant)
-        outcome, why = _of_end(ran)
+        ran, outcome, why = self._run(mission, plan, mutant)
         expectations = judged(mission, plan, ran) if outcome == "passed" else ()
         outcome = _worst(expectations) if outcome == "passed" else outcome
         drawn = drawing(mission, ran) if (is_drawn or outcome != "passed") and mutant is None and ran.rows else ()
@@ -79,6 +89,24 @@ class Suite:
             *head, outcome, ended, ran.now / 1000, why, expectations, ran.assumed, drawn, ran.unused
         )
         return Ran(result, mission, ran)
+
+    def _run(self, mission: ScenarioMission, plan: Plan, mutant: Mutant | None) -> tuple[ScenarioRun, Outcome, str]:
+        """A run, and what its end alone says."""
+        if self._engine is None or mutant is not None:
+            ran = run(mission, plan, mutant)
+            return ran, *_of_end(ran)
+        from btq_lang.scenarios.replay import NotRun, difference  # it starts processes, which others do without
+
+        tape = Tape()
+        ran = run(mission, plan, tape=tape)
+        outcome, why = _of_end(ran)
+        if outcome in ("error", "unknown"):
+            return ran, outcome, why
+        try:
+            other = difference(self._engine, mission, plan, tape, ran)
+        except NotRun as reason:
+            return ran, "unknown", f"not run in the engine: {reason}"
+        return (ran, "failed", f"the engine does not do what the model does: {other}") if other else (ran, outcome, why)
 
     def planned(self, place: ScenarioPlace) -> _Prepared:
         """A scenario, ready to be run; its result if it cannot run."""
@@ -98,7 +126,7 @@ class Suite:
         file, line = line_of(self.workspace, place.path, scenario, scenario.start)
         tree = scenario.tree.text if scenario.tree is not None else self._main(place.path)
         verifies = tuple(word.text for word in scenario.verifies)
-        head = _title(scenario), file, line, tree, verifies
+        head = _title(scenario), file, line, tree, verifies, scenario_fingerprint(self.workspace, place.path, scenario)
         if not tree:
             return _wrong(head, [self._without_tree(place.path, line)])
         if scenario.tree is not None and self.workspace.scope(place.path).find(Kind.TREE, tree) is None:

@@ -26,7 +26,8 @@ def render(report: ScenarioReport, colour: bool = False) -> str:
 def counts(report: ScenarioReport) -> str:
     """How many scenarios there are, and of each outcome."""
     numbers = [f"{number} {word}" for outcome, word in _COUNTED.items() if (number := report.count(outcome))]
-    return f"{counted(len(report.scenarios), 'scenario')}: {', '.join(numbers)}"
+    where = f" in BehaviorTree.CPP {report.engine}" if report.engine else ""
+    return f"{counted(len(report.scenarios), 'scenario')}{where}: {', '.join(numbers)}"
 
 
 def scenario_lines(scenario: ScenarioResult, paint: Paint) -> Iterator[str]:
@@ -39,6 +40,8 @@ def scenario_lines(scenario: ScenarioResult, paint: Paint) -> Iterator[str]:
     for expectation in scenario.expectations:
         if expectation.outcome != "passed":
             yield from (printable(f"{blank}{line}") for line in _expectation(expectation))
+        if expectation.note:
+            yield printable(f"{blank}line {expectation.line} expects {expectation.text}; {expectation.note}")
     yield from (printable(f"{blank}{note}") for note in scenario.notes)
     yield from (printable(f"{blank}  {line}") for line in scenario.drawing)
     if scenario.assumed and (scenario.drawing or scenario.outcome != "passed"):

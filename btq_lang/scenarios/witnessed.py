@@ -201,7 +201,7 @@ class _Writer:
     def _halt(self) -> Iterator[str]:
         last = self._witness.ticks[-1]
         if last.result in ("", "runs") and not self._witness.is_endless:
-            yield f"when {_time(last.at + _PERIOD)} have passed: mission halts"
+            yield f"when {_time(last.at + self._explored.program.driver.period)} have passed: mission halts"
 
     # ---- entries ----
 
@@ -296,5 +296,4 @@ def _time(milliseconds: int) -> str:
 
 
 _STATUSES: Final = {"succeeds": SUCCESS, "fails": FAILURE}
-_PERIOD: Final = 10  # ms
 _JUDGED: Final = ("succeeds", "fails", "is skipped", "is halted", "does not end")

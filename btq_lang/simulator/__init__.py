@@ -18,10 +18,12 @@ guessed.
     world.py        what nodes of Nav2 read beside entries and the time
     nav2.py         what Nav2's control nodes and decorators do
     nav2_conditions.py  what its conditions answer
+    nav2_answered.py    what these do where their answers are given
     nav2_inputs.py  the goals and paths that both read
     nav2_models.py  the ports of its nodes, by distribution
     skills.py       what the leaves of a program do, as given
     kinds.py        which function is which node's
     loading.py      XML to nodes
     drivers.py      how a program ticks its tree
+    programs.py     the program that runs a tree
 """

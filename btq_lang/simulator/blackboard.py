@@ -63,13 +63,15 @@ class Unsaid(Unknown):
     Attributes:
         writer: the path of the skill.
         key: of the entry, as the skill names it.
+        given: what a scenario gives to say it: `Dock succeeds and writes place = …`; empty: the value of the entry.
     """
 
-    __slots__ = ("key", "writer")
+    __slots__ = ("given", "key", "writer")
 
-    def __init__(self, writer: str, key: str) -> None:
+    def __init__(self, writer: str, key: str, given: str = "") -> None:
         self.writer: Final = writer
         self.key: Final = key
+        self.given: Final = given
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Unsaid) and (other.writer, other.key) == (self.writer, self.key)
@@ -78,9 +80,14 @@ class Unsaid(Unknown):
         return hash((self.writer, self.key))
 
     @property
-    def why(self) -> str:
+    def fact(self) -> str:
         """Why it is unknown."""
         return f"nothing says what {self.writer} writes into {{{self.key}}}"
+
+    def why(self, name: str = "") -> str:
+        """Why it is unknown, and what a scenario gives to say it; `name`: of the signal that reads it."""
+        given = self.given or f"{name or f'{{{self.key}}}'} = …"
+        return f"{self.fact}; write `given {given}`"
 
 
 Value: TypeAlias = float | int | str | Unknown
@@ -184,6 +191,16 @@ class Board:
         else:
             entry.value = _into(entry, key, value, type_)
         entry.number += 1
+
+    def give(self, key: str, value: Value, type_: str) -> None:
+        """Write a value that is given: for an entry of any type but numbers and texts it is one of that type.
+
+        Raises:
+            EngineError: `write` does.
+        """
+        entry = self.entry(key)
+        is_opaque = entry is not None and entry.type not in (UNTYPED, STRING, *_FLOATING, *LIMITS)
+        self.write(key, value, entry.type if entry is not None and is_opaque else type_)
 
     def replace(self, key: str, value: Value, type_: str) -> None:
         """Write a value of any type, which it keeps, as SetBlackboard does.

@@ -69,7 +69,7 @@ def _in_order(machine: Machine, node: SimulatedNode, ends: int, goes_on: int, ke
         if result == SKIPPED:
             node.skipped += 1
         elif node.rules.yields and before == IDLE and node.index < len(node.children):
-            machine.is_woken = True
+            machine.wake(node)
             return RUNNING
     all_skipped = node.skipped == len(node.children) if machine.dialect.counts_skips else node.is_on
     reset_children(machine, node)

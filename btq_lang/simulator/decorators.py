@@ -88,7 +88,7 @@ def _again(machine: Machine, node: SimulatedNode, port: str, class_name: str, co
         if result in (ends, SKIPPED):
             return result
         if node.rules.yields and before == IDLE and (node.count < most or most == -1):
-            machine.is_woken = True
+            machine.wake(node)
             return RUNNING
     node.count = 0
     return SKIPPED if node.is_on and not machine.dialect.counts_skips else counted

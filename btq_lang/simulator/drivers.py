@@ -11,6 +11,7 @@ from collections.abc import Callable
 from btq_lang.simulator.nodes import FAILURE, RUNNING, SUCCESS, Machine
 from btq_lang.simulator.ticking import check_rounds, execute_tick, halt_node, reset_status
 from btq_lang.simulator.timers import NEVER, advance, next_due, next_passing
+from btq_lang.workspace.project_driver import Driver
 
 
 def tick_exactly_once(machine: Machine) -> int:
@@ -35,12 +36,17 @@ def tick_once(machine: Machine) -> int:
     result = execute_tick(machine, machine.root)
     rounds = 0
     while result == RUNNING and machine.is_woken:
-        check_rounds(machine.root, rounds := rounds + 1)
+        check_rounds(machine.waker, rounds := rounds + 1)
         machine.is_woken = False
         result = execute_tick(machine, machine.root)
     if result in (SUCCESS, FAILURE):
         reset_status(machine, machine.root)
     return result
+
+
+def tick_of(driver: Driver) -> Callable[[Machine], int]:
+    """The function with which a program ticks its tree."""
+    return tick_exactly_once if driver.function == "tick_exactly_once" else tick_once
 
 
 def halt_tree(machine: Machine) -> None:
@@ -52,40 +58,49 @@ def halt_tree(machine: Machine) -> None:
     reset_status(machine, machine.root)
 
 
-def tick_while_running(
-    machine: Machine, limit: int, period: int = 10, is_over: Callable[[], bool] = lambda: False
-) -> int:
+def drive(machine: Machine, driver: Driver, limit: int, is_over: Callable[[], bool] = lambda: False) -> int:
     """Tick the tree until it has ended; its result, or RUNNING if it never ends, or not within a limit.
 
     Args:
         limit: in milliseconds.
-        period: the most that the program sleeps between two ticks, in milliseconds; a timer of the tree wakes it up.
         is_over: called before and after each tick, when time has passed; whether the program ticks no more.
 
     Raises:
         EngineError: as in the engine.
     """
+    tick = tick_of(driver)
     before: object = None
     while not is_over():
-        result = tick_once(machine)
+        result = tick(machine)
         if result != RUNNING:
             return result
         if is_over() or machine.now >= limit:
             break
         after = machine.state()
-        wakes = next_due(machine)
-        changes = min(
-            [time for time in (machine.program.next_change(machine.now), next_passing(machine)) if time != NEVER],
-            default=NEVER,
-        )
         if after != before:
             before = after
-            step = machine.now + period
-            advance(machine, min(step, wakes) if wakes != NEVER else step)
-            continue
-        if wakes == changes == NEVER:
-            break
-        due = machine.now - (machine.now - changes) // period * period if changes != NEVER else NEVER
-        advance(machine, min(time for time in (wakes, due) if time != NEVER))
-        before = None
+            until = machine.now + driver.period
+        else:
+            before = None
+            changes = machine.program.next_change(machine.now), next_passing(machine), next_due(machine)
+            later = [time for time in changes if time != NEVER]
+            if not later:
+                break
+            until = driver.tick_after(machine.now, min(later))
+        _sleep(machine, until, driver.is_woken)
     return RUNNING
+
+
+def _sleep(machine: Machine, until: int, is_woken: bool) -> None:
+    """Let time pass until a time.
+
+    Args:
+        is_woken: a timer ends the sleep that has a node ask to be ticked, which the next tick answers.
+    """
+    if not is_woken:
+        advance(machine, until)
+        return
+    while machine.now < until and not machine.is_woken:
+        due = next_due(machine)
+        advance(machine, min(due, until) if due != NEVER else until)
+    machine.is_woken = False

@@ -146,6 +146,7 @@ _NAV2: Final = {
         for id_, flow in (
             ("DistanceController", nav2.tick_distance_controller),
             ("GoalUpdatedController", nav2.tick_goal_updated_controller),
+            ("GoalUpdater", nav2.tick_goal_updater),
             ("PathLongerOnApproach", nav2.tick_path_longer),
             ("SingleTrigger", nav2.tick_single_trigger),
         )

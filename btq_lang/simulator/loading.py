@@ -91,7 +91,7 @@ class _Loader:
         """A node and all below it."""
         self._last += 1
         values = {attribute.name: attribute.value for attribute in element.attributes}
-        id_ = element.tag if element.tag not in _CATEGORIES else values.get("ID", "")
+        id_ = element.tag if element.tag not in CATEGORIES else values.get("ID", "")
         is_subtree = element.tag in SUBTREES if self._dialect.is_old else element.tag == SUBTREE
         plain = values.get("ID", "") if is_subtree else id_
         name = values.get("name", plain)
@@ -198,7 +198,7 @@ def _constant(text: str) -> int | float | None:
     return float(text) if _REAL.fullmatch(text) else None
 
 
-_CATEGORIES: Final = ("Action", "Condition", "Control", "Decorator")
+CATEGORIES: Final = ("Action", "Condition", "Control", "Decorator")
 _NO_PORTS: Final = ("ID", "name")
 _TYPES: Final = {"BT::Any": "", "BT::AnyTypeAllowed": "", "": "", "std::__cxx11::basic_string": STRING}
 _WHOLE: Final = re.compile(r"-?\d+")

@@ -12,7 +12,7 @@ from typing import Final
 from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.nav2_inputs import ORIGIN, Path, goals_of, has_new_goal, path_of
 from btq_lang.simulator.nodes import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Machine, SimulatedNode
-from btq_lang.simulator.ports import read_real, read_text, read_truth, read_unsigned, read_whole, write
+from btq_lang.simulator.ports import key_of, read, read_real, read_text, read_truth, read_unsigned, read_whole, write
 from btq_lang.simulator.ticking import (
     check_rounds,
     execute_tick,
@@ -258,17 +258,36 @@ def _period(rate: float) -> float:
 # ---- other decorators ----
 
 
+def tick_goal_updater(machine: Machine, node: SimulatedNode) -> int:
+    """The child, with goals that a topic may have; here it has none."""
+    pass_goals(node)
+    return execute_tick(machine, node.child)
+
+
+def pass_goals(node: SimulatedNode) -> None:
+    """Write the goals that a GoalUpdater reads to its outputs; where it reads none, a pose that nothing has set."""
+    for port in UPDATED:
+        key = key_of(node.ports.get(port, ""), port)
+        if key is None:
+            continue
+        value = read(node, port.replace("output", "input"))
+        node.board.write(key, 0.0 if value is None else value, node.board.create(key).type)
+
+
 def tick_path_longer(machine: Machine, node: SimulatedNode) -> int:
     """The child if the path has become much longer close to the goal."""
     before: Path
     last: Path
     last, before = node.kept or ((), ())
     path = path_of(node, last)
+    is_iron = machine.dialect.nav2 == "iron"
     nearness, factor = read_real(node, "prox_len"), read_real(node, "length_factor")
-    if not (path and before and path[2:] == before[2:]):
+    has_same_end = bool(path and before) and path[2:] == before[2:]
+    if node.status == IDLE if is_iron else not has_same_end:
         node.is_on = False
     set_status(machine, node, RUNNING)
-    is_longer = node.is_on and path[0] != before[0] and before[1] < nearness and path[1] > factor * before[1]
+    is_other = has_same_end and (path != before if is_iron else path[0] != before[0])
+    is_longer = node.is_on and is_other and before[1] < nearness and path[1] > factor * before[1]
     if not is_longer:
         node.kept = (path, path)
         node.is_on = True  # it has seen a path to this goal
@@ -277,7 +296,8 @@ def tick_path_longer(machine: Machine, node: SimulatedNode) -> int:
     result = execute_tick(machine, node.child)
     if result in (SUCCESS, FAILURE):
         node.kept = (path, path)
-        reset_child(machine, node.child)
+        if not is_iron:  # there the engine does, once the node has ended
+            reset_child(machine, node.child)
     return result
 
 
@@ -293,6 +313,7 @@ def tick_single_trigger(machine: Machine, node: SimulatedNode) -> int:
     return result
 
 
+UPDATED: Final = ("output_goal", "output_goals")  # by a GoalUpdater
 # The states of a PauseResumeController are the positions of their children.
 _RESUMED: Final = 0
 _PAUSED: Final = 1

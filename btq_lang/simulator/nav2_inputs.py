@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any, Final, TypeAlias
 
-from btq_lang.simulator.blackboard import Value
+from btq_lang.simulator.blackboard import Unknown, Value
 from btq_lang.simulator.errors import NotModelled
 from btq_lang.simulator.nodes import SimulatedNode
 from btq_lang.simulator.ports import key_of, read
@@ -39,14 +39,31 @@ def _read_entry(node: SimulatedNode, port: str) -> Value | None:
 
 def goals_of(node: SimulatedNode, before: tuple[Any, ...] = ()) -> tuple[Any, ...]:
     """The goals and the goal that a node sees; `before`: those that it keeps where there is no entry."""
-    seen = [read_or_entry(node, port) for port in ("goals", "goal")]
+    seen = [_goal_at(node, port) for port in ("goals", "goal")]
     return tuple([old if new is None else new for new, old in zip(seen, before or _NO_GOALS, strict=True)])
 
 
+def _goal_at(node: SimulatedNode, port: str) -> object:
+    """The goals or the goal at a port; if they are unknown, with the number of times that the entry was written."""
+    value = read_or_entry(node, port)
+    if not isinstance(value, Unknown):
+        return value
+    entry = node.board.entry(key_of(node.ports.get(port, ""), port) or port)
+    return value, entry.number if entry is not None else 0
+
+
 def has_new_goal(node: SimulatedNode) -> bool:
-    """Whether a node sees other goals than those that it keeps; from now on it keeps these."""
+    """Whether a node sees other goals than those that it keeps; from now on it keeps these.
+
+    Raises:
+        NotModelled: they were written again, and are unknown.
+    """
     goals = goals_of(node)
     before, node.kept = node.kept or _NO_GOALS, goals
+    for pair in zip(before, goals, strict=True):
+        unknown = [goal[0] for goal in pair if isinstance(goal, tuple)]
+        if unknown and pair[0] != pair[1]:
+            raise unknown[-1].needed("compared with another one")
     return before != goals
 
 

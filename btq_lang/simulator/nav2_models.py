@@ -4,29 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
-from typing import Final
 
 from btq_lang.catalog.kinds import PortKind
 from btq_lang.catalog.nav2 import FILES
 from btq_lang.parser import parse
-from btq_lang.simulator.errors import NotModelled
 from btq_lang.syntax.tree import Model, Models
 from btq_lang.util.record import replace
 from btq_lang.workspace.loader import read
 from btq_lang.workspace.port_types import as_kind
 
-MODELLED: Final = ("humble", "jazzy", "kilted", "lyrical")
-
 
 @cache
 def ports_in(distribution: str) -> Mapping[str, tuple[PortKind, ...]]:
-    """The ports of each node of Nav2 in a distribution, by its name; an empty default is left out.
-
-    Raises:
-        NotModelled: the simulator does not know what they do.
-    """
-    if distribution not in MODELLED:
-        raise NotModelled(f"what the nodes of Nav2 do in {distribution} is unknown")
+    """The ports of each node of Nav2 in a distribution, by its name; an empty default is left out."""
     text, problem = read(FILES[distribution])
     assert text is not None, problem
     return {

@@ -161,6 +161,7 @@ class Machine:
         changes: called with each change of a status, and the status before.
         world: what nodes read beside entries and the time.
         is_woken: a node has asked to be ticked again at once.
+        waker: the last decorator that has; else the last node that has, or the root.
         recall: what ticks a node instead, where what it may do is remembered.
         passed: says instead whether the time has passed for which a node waits, where times are not kept in nodes.
         skipped: the numbers of the nodes that were skipped at some time.
@@ -184,10 +185,17 @@ class Machine:
         self.changes: Final = changes
         self.world: Final = world
         self.is_woken = False
+        self.waker = root
         self.recall: Callable[[SimulatedNode], int] | None = None
         self.passed: Callable[[SimulatedNode], bool] | None = None
         self.skipped: Final[set[int]] = set()
         self._counts_writes: Final = any(node.rules.counts_writes for node in self.nodes)
+
+    def wake(self, node: SimulatedNode) -> None:
+        """Ask for another tick at once; a node that goes on without an end is a decorator, or has one above it."""
+        self.is_woken = True
+        if node.rules.is_decorator or not self.waker.rules.is_decorator:
+            self.waker = node
 
     def state(self) -> tuple[object, ...]:
         """Everything on which the next tick depends but the time, as a value."""

@@ -5,7 +5,7 @@ One invariant: a condition is never assumed; an action of which nothing is given
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Final
 
 from btq_lang.simulator.blackboard import UNTYPED, Unknown, Unsaid, Value
@@ -113,6 +113,7 @@ class Skills:
     Attributes:
         assumed: the actions of which nothing was given that have run, by path.
         applied: the identities of what is given and was about some activation.
+        writes: a list to which all that leaves write is added, with the keys of entries; None: it is not noted.
         machine: whose leaves they are; to be set before the first tick.
     """
 
@@ -132,6 +133,7 @@ class Skills:
         self.machine: Machine
         self.assumed: Final[set[str]] = set()
         self.applied: Final[set[int]] = set()
+        self.writes: list[Write] | None = None
         self._givens: Final = sorted(givens, key=lambda given: -given.rank)
         self._conditions: Final = frozenset(conditions)
         self._outputs: Final = outputs
@@ -154,18 +156,45 @@ class Skills:
             result = self._answer(node)
             given = self._given(node)
             writes = given.writes or () if given is not None else ()
-            write_outputs(node, self._outputs, writes, only_empty=True)
+            self._write(node, writes, only_empty=True)
             return result
         activation = self._open.get(node.uid) if node.status == RUNNING else None
         if activation is None:
             activation = self._open[node.uid] = self._begun(node)
         if activation.end == NEVER or self.machine.now < activation.end:
             if not activation.writes:
-                write_outputs(node, self._outputs, only_empty=True)
+                self._write(node, only_empty=True)
             return RUNNING
         del self._open[node.uid]
-        write_outputs(node, self._outputs, activation.writes, is_skipped=activation.result == SKIPPED)
+        self._write(node, activation.writes, is_skipped=activation.result == SKIPPED)
         return activation.result
+
+    def has_answer(self, node: SimulatedNode) -> bool:
+        """Whether it is given what a node of Nav2 answers that reads the time or the world."""
+        return any(given.answers and given.concerns(node) for given in self._givens)
+
+    def answer(self, node: SimulatedNode) -> bool:
+        """What such a node answers.
+
+        Raises:
+            Unanswered: nothing is given.
+        """
+        return self._answer(node) == SUCCESS
+
+    def update(self, node: SimulatedNode) -> None:
+        """Write the goals that a GoalUpdater has received, which are unknown if they are not given."""
+        given = self._given(node)
+        if not self.has_answer(node) or self.answer(node):
+            self._write(node, given.writes or () if given is not None else ())
+
+    def _write(
+        self, node: SimulatedNode, writes: Sequence[Write] = (), only_empty: bool = False, is_skipped: bool = False
+    ) -> None:
+        result = "answers true" if node.children else "succeeds"
+        given = "" if node.id in self._conditions else f"{node.id} {result} and writes"
+        written = write_outputs(node, self._outputs, writes, only_empty, is_skipped, given)
+        if self.writes is not None:
+            self.writes += written
 
     def halt(self, node: SimulatedNode) -> None:
         """Halt a skill that runs."""
@@ -226,8 +255,10 @@ def write_outputs(
     writes: Sequence[Write] = (),
     only_empty: bool = False,
     is_skipped: bool = False,
-) -> None:
-    """Write what a skill writes, and unknown values into the entries of its other outputs.
+    given: str = "",
+) -> Sequence[Write]:
+    """Write what a skill writes, and unknown values into the entries of its other outputs; all of it, with the keys of
+    entries.
 
     Args:
         outputs: the ports through which skills write, by their registered names; None: nothing is known of any, and
@@ -237,26 +268,34 @@ def write_outputs(
         only_empty: entries with a value keep it: the readings that a condition copies are given, and a skill that runs
             may write later.  What is given is written where it is another value.
         is_skipped: only what is given is written.
+        given: what a scenario gives before `PORT = …` to say an unknown value; as of `Unsaid`.
     """
     keys = [key_of(node.ports.get(write.key, ""), write.key) or write.key for write in writes]
+    written: list[Write] = []
     if not is_skipped and outputs is not None:
-        _write_unsaid(node, outputs.get(node.id), keys, only_empty)
+        written += _unsaid(node, outputs.get(node.id), keys, only_empty, given)
     for key, write in zip(keys, writes, strict=True):
         entry = node.board.entry(key)
         if only_empty and entry is not None and entry.value == write.value:
             continue  # a tick that changes nothing can be passed over
-        node.board.write(key, write.value, write.type)
+        written.append(Write(key, write.value, write.type))
+    for write in written:
+        node.board.give(write.key, write.value, write.type)
+    return written
 
 
-def _write_unsaid(node: SimulatedNode, outputs: tuple[str, ...] | None, given: Sequence[str], only_empty: bool) -> None:
+def _unsaid(
+    node: SimulatedNode, outputs: tuple[str, ...] | None, written: Sequence[str], only_empty: bool, given: str
+) -> Iterator[Write]:
     for port in node.ports if outputs is None else outputs:
         key = key_of(node.ports.get(port, ""), port)
-        if key is None or key in given:
+        if key is None or key in written:
             continue
         entry = node.board.entry(key)
         is_empty = entry is None or entry.value is None
         if is_empty or not (only_empty or outputs is None):
-            node.board.write(key, Unsaid(node.path, key), entry.type if entry is not None else UNTYPED)
+            value = Unsaid(node.path, key, given and f"{given} {port} = …")
+            yield Write(key, value, entry.type if entry is not None else UNTYPED)
 
 
 class _Activation(Record):

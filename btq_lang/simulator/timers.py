@@ -129,7 +129,7 @@ def fire(machine: Machine, node: SimulatedNode) -> None:
         reset_child(machine, node.child)
     else:
         return
-    machine.is_woken = True
+    machine.wake(node)
 
 
 ENDLESS: Final = 1e15  # milliseconds

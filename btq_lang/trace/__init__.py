@@ -5,6 +5,7 @@ One invariant: every fact is in exactly one row with a key, and the same mission
     overview.py    the rows
     collect.py     a workspace as an overview
     chain.py       which requirements refine and mitigate what, also of other tools
+    scenario_results.py   what came of scenarios, by results that were given
     metadata.py    hazards, and what requirements say beside their demands
     selection.py   some of the requirements, and what these concern
     ways.py        how clauses are covered

@@ -103,7 +103,9 @@ def _scenarios(
     for workspace, requested in parts:
         place = _places(workspace, shown)
         for key, scenarios in verifying_scenarios(workspace, requested).items():
-            pairs.update(((key, VerificationRow("test", one.title, place(one.place))), None) for one in scenarios)
+            for one in scenarios:
+                row = VerificationRow("test", one.title, place(one.place), one.expects, one.fingerprint)
+                pairs[key, row] = None
     return grouped(pairs)
 
 

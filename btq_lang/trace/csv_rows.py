@@ -6,7 +6,8 @@ The columns, which later versions add to but do not change:
                     clause without node | hard requirement not enforced | evidence | build |
                     node without quality | tree without quality |
                     hazard | hazard without requirement | external |
-                    requirement without verdict | requirement without source | scenario
+                    requirement without verdict | requirement without source | scenario |
+                    scenario not passed
     requirement, title, quality, characteristic
     holds_for       the subject, or the node that has the concern, or the node or tree of a gap
     tree the tree of its first node
@@ -21,7 +22,9 @@ The columns, which later versions add to but do not change:
     external        the ID in another tool of what the requirement refines or mitigates, likewise
     refines, mitigates, origin, priority, verified_by, approval     of the requirement; origin: its sources,
                     approval: open | approved | approved without fingerprint | suspect
-    scenario        the title of one that verifies the requirement, or what is in external; its place is in source, line
+    scenario        the title of one that verifies the requirement, or what is in external; its place is in source and
+                    line, in result what came of it, in suspect yes if its text has changed since, and in verdict the
+                    one that it expects instead of satisfied
     approved_by     who has approved the requirement, each with the date: `Kim 2026-11-29; Lee 2026-12-01`
 
 A text that a spreadsheet would take for a formula (`-> Work`, `=1+1`) gets an apostrophe prefix, as OWASP advises ("CSV
@@ -102,6 +105,10 @@ def _chain(overview: Overview, characteristics: Mapping[str, str]) -> Iterator[d
         if is_hazard and not mitigating:
             yield {"kind": "hazard without requirement", "title": end.title, **own, **_source(end.at)}
     gaps = {"requirement without verdict": overview.unjudged, "requirement without source": overview.sourceless}
+    for lacking, scenario in overview.not_passed:
+        column = "requirement" if isinstance(lacking, RequirementRow) else "external"
+        named: dict[str, str | int] = {column: lacking.name, "title": lacking.title}
+        yield {"kind": "scenario not passed", **named, **_scenario(scenario)}
     for kind, requirements in gaps.items():
         for requirement in requirements:
             yield {"kind": kind, **_requirement(requirement, characteristics.get(requirement.quality_key or "", ""))}
@@ -132,7 +139,9 @@ def _clause(requirement: RequirementRow, clause: Clause | None) -> dict[str, str
 
 
 def _scenario(scenario: VerificationRow) -> dict[str, str | int]:
-    return {"scenario": scenario.id, **(_source(scenario.at) if scenario.at is not None else {})}
+    came = {"result": scenario.outcome, "suspect": "yes" if scenario.is_stale else ""} if scenario.outcome else {}
+    expects = {"verdict": scenario.expects} if scenario.expects else {}
+    return {"scenario": scenario.id, **(_source(scenario.at) if scenario.at is not None else {}), **came, **expects}
 
 
 def _source(place: At) -> dict[str, str | int]:

@@ -9,7 +9,7 @@ The document, format 1; a later btq adds keys but changes none without a new num
                        "sources": [TEXT], "refines": [NAME], "refined_by": [KEY], "mitigates": [NAME],
                        "priority": NAME | null,
                        "verified_by": [{"method": "monitor" | "analysis" | "test" | "review", "id": TEXT | null,
-                                        "at": PLACE | null}],
+                                        "at": PLACE | null} | SCENARIO],
                        "approvals": [{"by": TEXT, "on": TEXT, "of": FINGERPRINT | null}],
                        "state": "open" | "approved" | "approved without fingerprint" | "suspect",
                        "fingerprint": FINGERPRINT,
@@ -25,7 +25,7 @@ The document, format 1; a later btq adds keys but changes none without a new num
      "hazards": [{"key": KEY, "id": NAME, "title": TEXT, "severity": NAME | null, "sources": [TEXT], "reasons": [TEXT],
                   "at": PLACE, "requirements": [KEY]}],
      "external": [{"key": KEY, "id": NAME, "title": TEXT, "status": TEXT, "url": TEXT, "at": PLACE,
-                   "requirements": [KEY], "scenarios": [{"id": TEXT, "at": PLACE}]}],
+                   "requirements": [KEY], "scenarios": [SCENARIO]}],
      "qualities": [{"key": KEY, "name": NAME, "id": NAME | null, "characteristic": NAME | null, "definition": TEXT,
                     "at": PLACE, "concerns": [KEY], "requirements": [KEY]}],
      "nodes": [{"key": KEY, "name": TEXT, "tree": NAME, "category": NAME | null, "skill": BOOL,
@@ -37,15 +37,20 @@ The document, format 1; a later btq adds keys but changes none without a new num
               "requirements_without_nodes": [KEY], "clauses_without_nodes": [{"requirement": KEY, "clause": TEXT}],
               "nodes_without_qualities": [KEY], "trees_without_qualities": [NAME],
               "hazards_without_requirements": [KEY], "requirements_without_verdicts": [KEY],
-              "requirements_without_sources": [KEY]},
+              "requirements_without_sources": [KEY],
+              "scenarios_not_passed": [{"requirement": KEY, "scenario": TEXT, "outcome": OUTCOME}]},
      "skills": {"own": N, "above": N, "none": N},
      "builds": [{"label": TEXT, "verdicts": [{"requirement": KEY, "verdict": VERDICT, "suspect": BOOL}]}]}
 
     PLACE = {"path": PATH, "line": N, "column": N}, counted from 1, columns in Unicode code points
+    SCENARIO = {"id": TEXT, "at": PLACE, "expects": TEXT | null, "outcome": OUTCOME | null, "changed": BOOL}
+    OUTCOME = "passed" | "failed" | "unknown" | "error" | "not run"
 
 A `skill` is an action or a condition that is not built in; it `carries` a quality or a requirement itself, through a
 node above it, or not at all.  Keys are valid in this document only.  A test in `verified_by` that has a place is a
-scenario, and its id the title; `btq test` runs it, `btq trace` does not.  `mission` is empty in the overview of
+scenario, and its id the title; `btq test` runs it, `btq trace` does not.  `outcome` is what came of it by the results
+that were given, `changed`, whether its text differs from that which ran, `expects`, which verdict on the requirement it
+expects instead of satisfied.  `mission` is empty in the overview of
 one mission; `evidence` is null where neither logs nor verdicts are given.  A verdict is `suspect` if the requirement
 meant something else when it was judged; `state` is that of its approval.  A build is the runs in a store that have its
 label.  The text is ASCII.
@@ -63,6 +68,7 @@ from btq_lang.trace.overview import (
     HazardRow,
     Overview,
     RequirementRow,
+    VerificationRow,
 )
 from btq_lang.util.record import as_dict
 from btq_lang.util.version import __version__
@@ -109,6 +115,10 @@ def render(overview: Overview) -> str:
             "hazards_without_requirements": [each.key for each in overview.unmitigated],
             "requirements_without_verdicts": [each.key for each in overview.unjudged],
             "requirements_without_sources": [each.key for each in overview.sourceless],
+            "scenarios_not_passed": [
+                {"requirement": each.key, "scenario": way.id, "outcome": way.outcome}
+                for each, way in overview.not_passed
+            ],
         },
         "skills": dict(overview.coverage()),
         "builds": [
@@ -145,7 +155,12 @@ def _requirement(requirement: RequirementRow, has_evidence: bool) -> Json:
         "mitigates": list(requirement.mitigates),
         "priority": requirement.priority or None,
         "verified_by": [
-            {"method": way.method, "id": way.id or None, "at": as_dict(way.at) if way.at is not None else None}
+            {
+                "method": way.method,
+                "id": way.id or None,
+                "at": as_dict(way.at) if way.at is not None else None,
+                **(_results(way) if way.at is not None else {}),
+            }
             for way in requirement.verification
         ],
         "approvals": [{"by": each.by, "on": each.on, "of": each.of or None} for each in requirement.approvals],
@@ -165,6 +180,10 @@ def _requirement(requirement: RequirementRow, has_evidence: bool) -> Json:
             for use in requirement.uses
         ],
     }
+
+
+def _results(way: VerificationRow) -> dict[str, Json]:
+    return {"expects": way.expects or None, "outcome": way.outcome or None, "changed": way.is_stale}
 
 
 def _hazard(hazard: HazardRow) -> Json:
@@ -187,7 +206,7 @@ def _external(external: ExternalRow) -> Json:
         **fields,
         "at": as_dict(external.at),
         "requirements": list(external.requirements),
-        "scenarios": [{"id": way.id, "at": as_dict(way.at)} for way in external.scenarios],
+        "scenarios": [{"id": way.id, "at": as_dict(way.at), **_results(way)} for way in external.scenarios],
     }
 
 

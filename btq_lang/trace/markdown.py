@@ -102,6 +102,10 @@ def _gaps(overview: Overview) -> Iterator[str]:
         "unmeasured": [f"{escaped(shown_quality(each))} ({each.at})" for each in overview.unmeasured],
         "unattached": [f"{escaped(each.name)} ({each.at})" for each in overview.unattached],
         "unjudged": [f"{escaped(each.name)} ({each.at})" for each in overview.unjudged],
+        "not_passed": [
+            f"{escaped(each.name)} ({each.at}): {escaped(shown_scenario(scenario))}"
+            for each, scenario in overview.not_passed
+        ],
         "sourceless": [f"{escaped(each.name)} ({each.at})" for each in overview.sourceless],
         "loose": [f"{escaped(each.name)} ({each.at}): {code(clause)}" for each, clause in overview.loose],
         "bare_trees": [_node(each.name, each.at) for each in overview.bare_trees],

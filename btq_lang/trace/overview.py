@@ -120,11 +120,24 @@ class VerificationRow(Record):
     Attributes:
         id: of the test case or the report, empty if none is named; of a scenario, its title.
         at: the place of the scenario; None for any other way.
+        expects: which verdict on the requirement the scenario expects, other than satisfied; empty: none.
+        fingerprint: of the text of the scenario.
+        outcome: of the scenario, if its results were given: `passed`, `failed`, `unknown`, `error` or `not run`.
+        is_stale: whether its text has changed since it ran.
     """
 
     method: str
     id: str
     at: At | None = None
+    expects: str = ""
+    fingerprint: str = ""
+    outcome: str = ""
+    is_stale: bool = False
+
+    @property
+    def shows_it_holds(self) -> bool:
+        """Whether it is a test or a report that shows that the requirement is kept, as far as that is known."""
+        return bool(self.id or self.at) and not self.expects and self.outcome in ("", "passed")
 
 
 class RequirementRow(Record):
@@ -182,13 +195,19 @@ class RequirementRow(Record):
 
     @property
     def is_judged(self) -> bool:
-        """Whether logs show how it is kept, or it names the test or the report that does, or a scenario verifies it."""
-        return self.verdict not in (None, NEVER, OPEN) or any(way.id or way.at for way in self.verification)
+        """Whether logs show how it is kept, or it names the test or the report that does, or a scenario does."""
+        return self.verdict not in (None, NEVER, OPEN) or any(way.shows_it_holds for way in self.verification)
 
     @property
     def scenarios(self) -> tuple[VerificationRow, ...]:
         """The scenarios that verify it."""
         return tuple(way for way in self.verification if way.at is not None)
+
+    @property
+    def untitled(self) -> tuple[str, ...]:
+        """Of the tests beside its scenarios that it names, that no scenario is called so: a title may be mistyped."""
+        ways = [way for way in self.verification if way.method == "test" and way.id and way.at is None]
+        return tuple(f'no scenario has the title "{way.id}"' for way in (ways if self.scenarios else ()))
 
     @property
     def ways(self) -> tuple[str, ...]:
@@ -217,11 +236,12 @@ class RequirementRow(Record):
 
     @property
     def whys(self) -> tuple[str, ...]:
-        """Why its clauses are not covered better, each reason once."""
+        """Why its clauses are not covered better, each reason once, and which tests are not among its scenarios."""
         reasons = [
             clause.why for use in self.uses for clause in use.clauses if clause.way == "monitored" and clause.why
         ]
-        return tuple(dict.fromkeys((*reasons, *(f"`{clause}` applies to no node" for clause in self.loose))))
+        loose = (f"`{clause}` applies to no node" for clause in self.loose)
+        return tuple(dict.fromkeys((*reasons, *loose, *self.untitled)))
 
 
 class HazardRow(Record):
@@ -410,6 +430,12 @@ class Overview(Record):
     def unjudged(self) -> tuple[RequirementRow, ...]:
         """Requirements that are not judged and that no judged requirement refines, although there is evidence."""
         return self._lacking(lambda row: row.is_judged) if self.has_evidence else ()
+
+    @property
+    def not_passed(self) -> tuple[tuple[RequirementRow | ExternalRow, VerificationRow], ...]:
+        """Requirements, each with a scenario that verifies it and has not passed, by the results that were given."""
+        rows: tuple[RequirementRow | ExternalRow, ...] = (*self.requirements, *self.external)
+        return tuple((row, way) for row in rows for way in row.scenarios if way.outcome not in ("", "passed"))
 
     @property
     def sourceless(self) -> tuple[RequirementRow, ...]:

@@ -153,6 +153,7 @@ def _gaps(overview: Overview) -> list[tuple[str, list[tuple[str, str, At, str]]]
         "unmeasured": lines(overview.unmeasured),
         "unattached": lines(overview.unattached),
         "unjudged": lines(overview.unjudged),
+        "not_passed": [(row.key, row.name, row.at, shown_scenario(way)) for row, way in overview.not_passed],
         "sourceless": lines(overview.sourceless),
         "loose": [(row.key, row.name, row.at, clause) for row, clause in overview.loose],
         "bare_trees": [(tree.nodes[0], tree.name, tree.at, "") for tree in overview.bare_trees],

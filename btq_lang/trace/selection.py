@@ -63,6 +63,13 @@ def selected(overview: Overview, selection: Selection) -> Overview:
     return replace(part, totals=totals_of(part))
 
 
+def none_selected(selection: Selection, number: int) -> str:
+    """Says that a selection asks for none of some requirements; `number`: of them."""
+    asked = {"has priority": selection.priorities, "has quality": selection.qualities, "is": selection.states}
+    what = " and ".join(f"{verb} {' or '.join(words)}" for verb, words in asked.items() if words)
+    return f"no requirement {what} (of {number})\n"
+
+
 def _is_asked_for(row: RequirementRow, selection: Selection, names: dict[str, Set[str]]) -> bool:
     if selection.priorities and row.priority not in selection.priorities:
         return False

@@ -74,6 +74,10 @@ def _lines(overview: Overview, paint: Paint, width: int) -> Iterator[str]:
         "unmeasured": [f"{shown_quality(each)}, {_place(each.at, folder)}" for each in overview.unmeasured],
         "unattached": [f"{each.name}, {_place(each.at, folder)}" for each in overview.unattached],
         "unjudged": [f"{each.name}, {_place(each.at, folder)}" for each in overview.unjudged],
+        "not_passed": [
+            f"{each.name}, {_place(each.at, folder)}: {shown_scenario(scenario)}"
+            for each, scenario in overview.not_passed
+        ],
         "sourceless": [f"{each.name}, {_place(each.at, folder)}" for each in overview.sourceless],
         "loose": [f"{each.name}, {_place(each.at, folder)}: {clause}" for each, clause in overview.loose],
         "bare_trees": [f"{each.name}, {_place(each.at, folder)}" for each in overview.bare_trees],

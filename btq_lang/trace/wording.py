@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
@@ -31,11 +32,14 @@ def incomplete(overview: Overview) -> str:
 def summary(overview: Overview) -> str:
     """All counts, in a sentence, and how many scenarios there are, in another."""
     rows = [row.scenarios for row in overview.requirements]
-    scenarios = {scenario for of_row in (*rows, *(row.scenarios for row in overview.external)) for scenario in of_row}
+    of_all = (*rows, *(row.scenarios for row in overview.external))
+    scenarios = {scenario.at: scenario for of_row in of_all for scenario in of_row}
     if not scenarios:
         return f"{_counts(overview)}."
     verify = f"{counted(len(scenarios), 'scenario')} {'verifies' if len(scenarios) == 1 else 'verify'}"
-    return f"{_counts(overview)}. {verify} {counted(len([*filter(None, rows)]), 'requirement')}; {NOT_RUN}."
+    outcomes = Counter(scenario.outcome for scenario in scenarios.values())
+    came = ", ".join(f"{number} {outcome}" for outcome, number in sorted(outcomes.items()) if outcome)
+    return f"{_counts(overview)}. {verify} {counted(len([*filter(None, rows)]), 'requirement')}; {came or NOT_RUN}."
 
 
 def _counts(overview: Overview) -> str:
@@ -117,8 +121,14 @@ def approval_lines(requirement: RequirementRow) -> Iterator[str]:
 
 
 def shown_scenario(scenario: VerificationRow) -> str:
-    """A scenario as it begins in the file."""
-    return f'scenario "{scenario.id}"'
+    """A scenario as it begins in the file, what came of it, and whether it expects that the requirement is not kept."""
+    remarks = (
+        scenario.outcome,
+        "changed since" if scenario.is_stale else "",
+        f"expects it {scenario.expects}" if scenario.expects else "",
+    )
+    shown = ", ".join(filter(None, remarks))
+    return f'scenario "{scenario.id}" ({shown})' if shown else f'scenario "{scenario.id}"'
 
 
 def state_of(requirement: RequirementRow) -> str:
@@ -141,6 +151,7 @@ GAPS: Final = {
     "unmeasured": "Qualities without a requirement",
     "unattached": "Requirements without a node",
     "unjudged": "Requirements without a verdict",
+    "not_passed": "Scenarios that have not passed",
     "sourceless": "Requirements without a source",
     "loose": "Clauses without a node",
     "bare_trees": "Trees without any quality",

@@ -13,6 +13,7 @@ One invariant: nothing here concerns behavior trees or imports another room.
     globs.py        patterns of paths
     processes.py    processes that share the work of a command
     toml_places.py  positions of keys in a TOML text
+    caches.py       where what can be made again is kept
     garbage.py      pauses of the garbage collector
     version.py      the version of btq
 """

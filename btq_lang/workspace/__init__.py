@@ -4,8 +4,8 @@ One invariant: a workspace reached by edits equals one made from the same texts.
 disk.  Not known here: what is wrong with a mission, and how it is written as XML.
 
     external_requirements.py   the requirements of other tools
-    config.py, project_evidence.py, project_simulation.py, factories.py, overrides.py, project_schema.py   the project
-                     file, and its schema
+    config.py, project_evidence.py, project_simulation.py, project_driver.py, factories.py, overrides.py,
+    project_schema.py   the project file, and its schema
     engine_version.py   for which versions of the engine a file is
     file.py          one file: its text, its tree, and what survives an edit
     workspace.py     files, what they include, and edits

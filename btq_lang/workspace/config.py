@@ -420,7 +420,12 @@ KEYS = {
     "rules": ("severities", _severities, "severities", "the severities of rules"),
     "overrides": ("overrides", _overrides, "overrides", "severities of rules in some files"),
     "evidence": ("evidence", _evidence, "evidence", "logs of what robots did, which btq verify reads"),
-    "simulate": ("simulation", _simulation, "simulate", "what skills and the world do in simulated runs"),
+    "simulate": (
+        "simulation",
+        _simulation,
+        "simulate",
+        "what skills, the world and the program do in simulated runs",
+    ),
     "requirements": ("requirements", _requirements, "requirements", "requirements that other tools keep"),
     "factory": ("factories", _factories, "factories", "what one program registers before it creates a tree"),
 }

@@ -47,6 +47,7 @@ class Factory(Record):
         lost: the patterns that match no file: what the program registers is then unknown in part.
         has_gaps: whether bt_navigator registers files that are not here; its parameter file has the diagnostics.
         entries: of the root blackboard, which the program sets or reads, if it is known to be bt_navigator.
+        period: from one tick to the next, in milliseconds, if it is bt_navigator.
         goals: what is wrong with trees that nodes name for goals, by this name.
         libraries: those that the parameters name for bt_navigator to load.
         unloaded: the C++ sources of libraries that it does not load.
@@ -63,6 +64,7 @@ class Factory(Record):
     lost: tuple[str, ...] = ()
     has_gaps: bool = False
     entries: tuple[OutsideEntry, ...] = ()
+    period: int = 10
     goals: tuple[tuple[str, Diagnostic], ...] = ()
     libraries: tuple[str, ...] = ()
     unloaded: frozenset[str] = frozenset()

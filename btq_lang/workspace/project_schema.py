@@ -19,6 +19,7 @@ from btq_lang.workspace.external_requirements import KEYS as REQUIREMENT_KEYS
 from btq_lang.workspace.factories import KEYS as FACTORY_KEYS
 from btq_lang.workspace.file import CPP_SUFFIXES
 from btq_lang.workspace.overrides import KEYS as OVERRIDE_KEYS
+from btq_lang.workspace.project_driver import FUNCTIONS
 from btq_lang.workspace.project_evidence import KEYS as EVIDENCE_KEYS
 from btq_lang.workspace.project_evidence import NUMBERS, OF_A_FILE, OF_A_TOPIC, SOURCE_KEYS, TEXTS
 from btq_lang.workspace.project_simulation import KEYS as SIMULATION_KEYS
@@ -109,8 +110,13 @@ def _simulation() -> Json:
         "between": {"anyOf": [_list(_form("quantity"), minItems=2, maxItems=2), {"enum": [[]]}]},
     }
     signal = {**_described(WORLD_KEYS, world), "required": ["start"]}
+    driver = {
+        **_described(FUNCTIONS, dict.fromkeys(FUNCTIONS, _form("duration"))),
+        "oneOf": [{"required": [function]} for function in FUNCTIONS],
+    }
     tables = {"skills": _skill(), "world": signal}
-    return _described(SIMULATION_KEYS, {key: {"type": "object", "additionalProperties": tables[key]} for key in tables})
+    forms = {key: {"type": "object", "additionalProperties": table} for key, table in tables.items()}
+    return _described(SIMULATION_KEYS, {**forms, "driver": driver})
 
 
 def _skill() -> Json:

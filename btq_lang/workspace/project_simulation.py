@@ -1,4 +1,7 @@
-"""The table `[simulate]` of a project file: what skills and the world do in simulated runs.
+"""The table `[simulate]` of a project file: what skills and the world do in simulated runs, and how the program ticks.
+
+    [simulate]
+    driver = { tick_once = "100 ms" }
 
     [simulate.skills]
     MoveBase      = { takes = { median = "18 s", p95 = "27 s" }, succeeds = "99 %" }
@@ -26,6 +29,7 @@ from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.script.parser import parse_script
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import did_you_mean, near
+from btq_lang.workspace.project_driver import Driver, read_driver
 
 Complaint: TypeAlias = tuple[str, tuple[str, ...]]  # the message, and the keys below `simulate` to its place
 
@@ -90,10 +94,11 @@ class WorldSetting(Record):
 
 
 class SimulationSettings(Record):
-    """The settings of a project for simulated runs."""
+    """The settings of a project for simulated runs; driver: None: nothing is said."""
 
     skills: tuple[SkillSetting, ...] = ()
     world: tuple[WorldSetting, ...] = ()
+    driver: Driver | None = None
 
 
 def read_simulation(table: object) -> tuple[SimulationSettings, list[Complaint]]:
@@ -114,7 +119,9 @@ def read_simulation(table: object) -> tuple[SimulationSettings, list[Complaint]]
             complaints += [(message, (key, name, *below)) for message, below in mistakes]
             read_ones += [setting] if setting is not None and not mistakes else []
         settings[key] = tuple(read_ones)
-    return SimulationSettings(**settings), complaints
+    driver, wrong = read_driver(table["driver"]) if "driver" in table else (None, [])
+    complaints += [(f"`simulate.driver` {message}", ("driver", *below)) for message, below in wrong]
+    return SimulationSettings(**settings, driver=driver), complaints
 
 
 def _unknown_keys(above: str, table: dict[str, object], keys: dict[str, str]) -> list[Complaint]:
@@ -306,6 +313,7 @@ def _said(value: object) -> tuple[SaidValue | None, str]:
 KEYS: Final = {
     "skills": "what skills do, by the names of nodes or paths to them; the most specific name counts",
     "world": "how signals change while a mission runs, by their names",
+    "driver": "how the program ticks its tree: a function of the engine, and how long it sleeps between two ticks",
 }
 OF_ACTIONS: Final = {
     "takes": "a duration, two that it lies between, or its median and 95 % quantile",

@@ -77,3 +77,15 @@ def test_a_bound_without_effect_leads_to_two_requirements() -> None:
     (found,) = problems(mission(clauses), "dead-bound")
     note = "`while near` holds for all its claims; to have it for one claim alone, split the requirement"
     assert found.notes == (note,)
+
+
+def test_a_span_beside_a_verb_that_has_none_leads_to_two_requirements() -> None:
+    span = "from mission starts until when near"
+    clauses = f"    mission keeps speed <= 1 m/s {span}\n    each when near is followed by speed <= 0 m/s within 1 s\n"
+    split = "to have it for one claim alone, split the requirement"
+    (found,) = problems(mission(clauses), "qualifier-of-all")
+    assert (found.notes, found.fixes) == ((f"{split}: `from … until` is for `keeps` and `never` only",), ())
+    (other,) = problems(mission(clauses), "requirement-without-subject")
+    assert other.notes[0].startswith(f"{split}; `from … until` is for `keeps` and `never`")
+    own, answer = clauses.splitlines(keepends=True)
+    assert_clean(mission(f"{own}QualityReq s : safety\n{answer}").replace("satisfies r", "satisfies r, s"))

@@ -266,6 +266,31 @@ def test_an_action_without_a_claim() -> None:
     assert_clean(text.replace("{}", "takes at most 30 s on violation fail"))
 
 
+WEATHER = """\
+signal snow : cm from {{@snow}} initially 0 cm
+QualityReq rq1 "Weather"
+    assuming snow  <  3 cm
+{}BehaviorTree Main
+    Action X satisfies rq1
+"""
+
+
+def test_an_assumption_without_a_claim() -> None:
+    text = WEATHER.format('    source "client"\n')
+    (found,) = problems(text, "requirement-without-text")
+    assert found.message == (
+        "the requirement `rq1` demands nothing that can be violated, so `assuming snow < 3 cm` has no effect"
+    )
+    assert found.notes == (
+        "an assumption counts for the clauses of its own requirement only: write it in each that relies on it",
+    )
+
+
+@pytest.mark.parametrize("line", ["takes at most 3 s", "verified by review", 'verified by test "T-1"'])
+def test_an_assumption_that_counts(line: str) -> None:
+    assert_clean(WEATHER.format(f"    {line}\n"))
+
+
 # ---- what can be said once only ----
 
 USER = "BehaviorTree X\n    Action A\n"

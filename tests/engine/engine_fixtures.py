@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 from engine_loader import Engine, NoEngine, build_engine
 
+from btq_lang.scenarios.installed_engine import InstalledEngine, installed_engine
+
 PREFIXES = [prefix for prefix in os.environ.get("BTQ_ENGINE", "").split(os.pathsep) if prefix]
 
 
@@ -16,9 +18,8 @@ PREFIXES = [prefix for prefix in os.environ.get("BTQ_ENGINE", "").split(os.paths
 )
 def any_engine(request: pytest.FixtureRequest) -> Engine:
     """An installed BehaviorTree.CPP, of any version; every test that asks for it runs once for each of them."""
-    worker = os.environ.get("PYTEST_XDIST_WORKER", "")  # two at once would build in one folder
     try:
-        return build_engine(request.param, Path(request.config.cache.mkdir(f"btq-engine{worker}")))
+        return build_engine(request.param, _cache(request.config))
     except NoEngine as missing:
         if request.param:
             raise  # somebody asked for this one
@@ -31,3 +32,15 @@ def engine(any_engine: Engine) -> Engine:
     if any_engine.is_old:
         pytest.skip("no file is written for an engine before 4.6")
     return any_engine
+
+
+@pytest.fixture
+def installed(engine: Engine, pytestconfig: pytest.Config, monkeypatch: pytest.MonkeyPatch) -> InstalledEngine:
+    """The same engine as `btq test --engine` finds it, with its program in pytest's cache."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(_cache(pytestconfig)))
+    return installed_engine(engine.prefix or "")
+
+
+def _cache(config: pytest.Config) -> Path:
+    worker = os.environ.get("PYTEST_XDIST_WORKER", "")  # two at once would build in one folder
+    return Path(config.cache.mkdir(f"btq-engine{worker}"))

@@ -115,6 +115,7 @@ class Engine:
     program: Path
     version: str
     publishes: bool  # whether it was built with its Groot2Publisher
+    prefix: str | None = None  # where it is installed; None: where CMake looks by itself
 
     @contextmanager
     def publishing(self, source: str | Path, port: int, **what: Any) -> Iterator[Published]:
@@ -267,7 +268,7 @@ def build_engine(prefix: str | None, folder: Path) -> Engine:
         return Engine(program, old, publishes=False)
     hello = subprocess.run([program], stdin=subprocess.DEVNULL, capture_output=True, text=True, check=True)
     about = _told(hello.stdout)[0]
-    return Engine(program, about["engine"], about["publishes"])
+    return Engine(program, about["engine"], about["publishes"], prefix)
 
 
 def _why_not(complaint: str) -> str:

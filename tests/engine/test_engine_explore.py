@@ -19,6 +19,7 @@ from btq_lang.exploration.opened import Opened
 from btq_lang.exploration.search import Search, SearchBudget
 from btq_lang.exploration.witness import Tick, replay
 from btq_lang.simulator.errors import EngineError, NotModelled
+from btq_lang.simulator.programs import KnownProgram
 from btq_lang.simulator.versions import Dialect
 
 KINDS = {
@@ -74,7 +75,7 @@ def test_runs_of_drawn_trees_happen_in_the_engine(engine: Engine) -> None:
         document = read(xml).document
         assert document is not None
         try:
-            opened = Opened([document], "Main", Dialect(engine.version), KINDS)
+            opened = Opened([document], "Main", KnownProgram(Dialect(engine.version)), KINDS)
         except (EngineError, NotModelled):
             continue
         if TIMED.search(xml):

@@ -125,6 +125,8 @@ def test_missions_that_need_not_end(explore: Exploring) -> None:
     )
     explore.tree('<Sequence><A/><Repeat num_cycles="3"><B/></Repeat></Sequence>')
     assert explore.can("mission does not end")[0] == 1
+    explore.tree('<Sequence><A/><Repeat num_cycles="-1"><B/></Repeat></Sequence>')
+    assert explore.can("mission does not end")[0] == 0
 
 
 def test_two_actions_that_interrupt_each_other_for_ever(explore: Exploring) -> None:
@@ -207,6 +209,7 @@ BehaviorTree Main
     assert [(each["text"], each["line"], each.get("rule")) for each in survey["findings"] if "uid" in each] == [
         ("Follow::2 can read {path} before it has a value", 10, "unset-entry"),
         ("Follow::5 can read {next_speed} before it has a value", 13, None),
+        ("the mission cannot succeed: AlwaysFailure::7 never succeeds", 15, None),
         ("Plan::8 never runs", 16, "unreachable-child"),
     ]
 
@@ -257,6 +260,107 @@ def test_questions_that_are_none(explore: Exploring) -> None:
         code, out, err = explore("--can", question)
         assert (code, out) == (2, "")
         assert err.startswith(message)
+
+
+@pytest.mark.parametrize(
+    ("question", "message"),
+    [
+        ("node Grasp and Ready fails", "(`Ready fails`) {}; {}: `Grasp starts after Ready fails`"),
+        ("Ready fails and node Grasp", "(`Ready fails`) {}; {}: `Grasp starts after Ready fails`"),
+        ("node Grasp starts", "(`Grasp starts`) {}; {}: `Pick starts after Grasp starts`"),
+    ],
+)
+def test_an_event_in_a_condition(explore: Exploring, question: str, message: str) -> None:
+    explore.mission(MISSION)
+    expected = message.format("cannot be part of a condition", "ask for it alone, or for what happens after it")
+    assert explore("--can", question) == (2, "", f"btq explore: `{question}`: an event {expected}\n")
+
+
+def test_brackets_around_events(explore: Exploring) -> None:
+    explore.mission(MISSION)
+    plain = explore.json("--can", "Grasp starts before DetectCup succeeds or Wait succeeds")
+    bracketed = explore.json("--can", "(Grasp starts) before (DetectCup succeeds or Wait succeeds)")
+    bracketed["missions"][0]["questions"][0]["text"] = plain["missions"][0]["questions"][0]["text"]
+    assert bracketed == plain
+    for question, problem in (
+        ("Grasp starts before (Wait succeeds", "missing `)` for this `(`"),
+        ("(Grasp starts before Wait succeeds)", "expected `)`, found `before`"),
+        ("Grasp starts before (Wait)", "expected starts, succeeds, fails, finishes or halts, found `)`"),
+        ("Grasp starts before (", "missing `)` for this `(`"),
+    ):
+        assert explore("--can", question)[2].startswith(f"btq explore: `{question}`: {problem}")
+
+
+def test_a_question_is_asked_of_the_missions_that_have_its_nodes(explore: Exploring) -> None:
+    explore.mission(MISSION, "fetch.btq")
+    explore.mission("Action Spray\n\nRoot Clean\n\nBehaviorTree Clean\n    Spray\n", "clean.btq")
+    both = ("fetch.btq", "clean.btq")
+    assert explore.json(*both, "--can", "Spray fails", "--can", "Wait fails", "--can", "mission fails") == {
+        **explore.json("fetch.btq", "--can", "Wait fails", "--can", "mission fails"),
+        "missions": [
+            *explore.json("fetch.btq", "--can", "Wait fails", "--can", "mission fails")["missions"],
+            *explore.json("clean.btq", "--can", "Spray fails", "--can", "mission fails")["missions"],
+        ],
+    }
+    code, out, err = explore(*both, "--can", "Spray fails")
+    assert (code, out.splitlines()[0], err) == (0, "clean.btq: tree Clean, BehaviorTree.CPP 4.10", "")
+    assert explore(*both, "--can", "Spray fails", "--can", "Sing fails")[::2] == (
+        2,
+        "btq explore: fetch.btq: no node of the tree Fetch is called `Sing`\n"
+        "btq explore: clean.btq: no node of the tree Clean is called `Sing`\n",
+    )
+    assert explore(*both, "--can", "Spray fails before Wait fails")[::2] == (
+        2,
+        "btq explore: fetch.btq: no node of the tree Fetch is called `Spray`\n"
+        "btq explore: clean.btq: no node of the tree Clean is called `Wait`\n",
+    )
+
+
+def test_entries_of_guards_are_shown_where_a_guard_refuses(explore: Exploring) -> None:
+    explore.mission(
+        """
+signal speed : m/s from {base_speed}
+
+Action Drive
+Action Look
+    input lamp : bool
+Condition Read
+    output speed : double
+    output lamp : bool
+
+QualityReq slow : safety "Slow"
+    keeps speed <= 0.8 m/s
+    on violation halt
+
+Root Main
+
+BehaviorTree Main
+    R->
+        Read (speed = {base_speed}, lamp = {lamp})
+        ->
+            Drive satisfies slow
+            ScriptCondition (code = "lamp == false")
+            Look (lamp = {lamp})
+"""
+    )
+
+    def entries(question: str) -> list[str]:
+        return [line.strip() for line in explore.can(question)[1].splitlines() if line.startswith("      {")]
+
+    assert entries("Drive fails") == ["{lamp} has a value"]
+    assert entries("Look fails") == ["{lamp} = 0"]
+    assert entries("{base_speed} < 0.5 and node Drive") == ["{base_speed} < 0.5", "{lamp} has a value"]
+    assert entries("Drive halts before Read fails") == [
+        "{base_speed} <= 0.8",
+        "{lamp} has a value",
+        "{slow_stop} = 0.0",
+        "{base_speed} > 0.8",
+        "{slow_stop} = 1.0",
+    ]
+    assert explore("--can", "{base_speed} > 0.8 and node Drive")[0] == 0  # before the guard halts it, in the same tick
+    assert explore("--can", "Drive succeeds after when {base_speed} > 0.8 and node Drive")[0] == 1
+    (question,) = explore.json("--can", "Drive fails")["missions"][0]["questions"]
+    assert sorted(question["witness"][0]["entries"]) == ["base_speed", "lamp", "slow_stop"]
 
 
 def test_the_same_bytes_again(explore: Exploring) -> None:

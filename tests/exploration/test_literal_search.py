@@ -19,6 +19,7 @@ from btq_lang.exploration.search import Search, SearchBudget
 from btq_lang.exploration.witness import replay
 from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.nodes import SimulatedNode
+from btq_lang.simulator.programs import KnownProgram
 from btq_lang.simulator.versions import Dialect
 
 KINDS = {
@@ -31,7 +32,7 @@ MOST = 60
 def opened(xml: str, version: str) -> Opened:
     document = read(xml).document
     assert document is not None
-    return Opened([document], "Main", Dialect(version), KINDS)
+    return Opened([document], "Main", KnownProgram(Dialect(version)), KINDS)
 
 
 class Seen:

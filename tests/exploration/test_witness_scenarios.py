@@ -224,3 +224,17 @@ def test_a_log_has_one_run(explore: Exploring) -> None:
     assert (code, err) == (2, "btq explore: -o run.btlog takes one run, and there are 2; ask one question\n")
     code, _, err = explore("--show", "--format", "json")
     assert (code, err) == (2, "btq explore: --show draws runs as text, and --format json has none\n")
+
+
+@pytest.mark.parametrize(
+    ("driver", "fails_after"),
+    [("tick_while_running", 205), ("tick_once", 300), ("tick_exactly_once", 300)],
+)
+def test_the_program_ticks_as_the_project_says(explore: Exploring, driver: str, fails_after: int) -> None:
+    (explore.folder / "btq.toml").write_text(f'[simulate]\ndriver = {{ {driver} = "100 ms" }}\n', encoding="utf-8")
+    late = '<Timeout msec="205"><ForceSuccess><Wait/></ForceSuccess></Timeout>'
+    explore.tree(f'<Parallel success_count="1" failure_count="2">{late}<Other/></Parallel>')
+    explore("--can", "Other succeeds after Timeout fails", "-o", "case.btq")
+    assert f"    given Other succeeds after {fails_after} ms\n" in (explore.folder / "case.btq").read_text("utf-8")
+    _, out, _ = run_btq("test", "case.btq", cwd=explore.folder)
+    assert f": succeeds after {fails_after} ms\n" in out

@@ -181,6 +181,63 @@ def test_nodes_that_no_path_tells_apart() -> None:
     (found,) = problems(text, "ambiguous-path")
     assert found.notes == (
         "for any of them, a condition names each: `node X or node Y`",
-        "nodes that no path tells apart need names",
+        "nodes that no path tells apart need names: `Go X`, `Go Y`",
     )
     assert found.fixes == ()
+    named = TWO.replace("CONDITION", "node X or node Y").replace("Go A", "Go X").replace("Go B", "Go Y")
+    assert problems(named, "syntax-error", "ambiguous-path", "unmatched-path") == []
+
+
+EACH = TWO.replace("mission never CONDITION for more than 3 s", "CLAIM")
+
+
+@pytest.mark.parametrize(
+    ("claim", "mended"),
+    [
+        (
+            "each Go fails is followed by A starts",
+            ["Go fails", "A fails or B fails", "A fails", "B fails"],
+        ),
+        ("A follows B fails or Go halts", ["Go halts", "A halts or B halts", "A halts", "B halts"]),
+        (
+            "from mission starts until Go succeeds\n    mission keeps not node A",
+            ["Go succeeds", "A succeeds or B succeeds", "A succeeds", "B succeeds"],
+        ),
+    ],
+)
+def test_an_event_of_any_of_several_nodes(claim: str, mended: list[str]) -> None:
+    text = EACH.replace("CLAIM", claim)
+    (found,) = problems(text, "ambiguous-path")
+    event, *others = mended
+    assert found.notes == (f"for any of them, an event names each: `{others[0]}`",)
+    texts = [after(text, fix) for fix in found.fixes]
+    assert texts == [text.replace(event, other) for other in others]
+    assert [problems(each, "syntax-error", "ambiguous-path") for each in texts] == [[], [], []]
+
+
+def test_events_of_nodes_that_no_path_tells_apart() -> None:
+    """Each message leads on: the path of `every Go` to one node, then to names, and with them to a clause."""
+    unnamed = EACH.replace("Go A", "Go").replace("Go B", "Go")
+    text = unnamed.replace("CLAIM", "each every Go fails is followed by Go starts")
+    (first,) = problems(text, "syntax-error")
+    assert (first.message, first.notes) == (
+        "an event is about one node, without `every`",
+        ("for any of several nodes write `X fails or Y fails`",),
+    )
+    (plain,) = [after(text, fix) for fix in first.fixes]
+    assert plain == text.replace("every ", "")
+    assert [each.notes for each in problems(plain, "ambiguous-path")] == [
+        (
+            f"for any of them, an event names each: `X {what} or Y {what}`",
+            "nodes that no path tells apart need names: `Go X`, `Go Y`",
+        )
+        for what in ("fails", "starts")
+    ]
+    claim = "each X fails or Y fails is followed by X starts or Y starts"
+    named = EACH.replace("Go A", "Go X").replace("Go B", "Go Y").replace("CLAIM", claim)
+    assert problems(named, "syntax-error", "ambiguous-path") == []
+
+
+def test_a_node_that_is_called_every() -> None:
+    text = EACH.replace("Go A", "Go every").replace("CLAIM", "each every fails is followed by B starts")
+    assert problems(text, "syntax-error", "ambiguous-path", "unmatched-path") == []

@@ -635,7 +635,7 @@ def test_a_slip_outside_of_trees(text: str, problem: str, note: str | None, mend
 
 
 def test_what_may_be_meant_in_several_ways_has_several_fixes() -> None:
-    for clause, words, fixed in (("verified by", "inspection", "review test"), ("on violation", "stop", "halt fail")):
+    for clause, words, fixed in (("verified by", "simulation", "analysis test"), ("on violation", "stop", "halt fail")):
         text = f"QualityReq r\n    {clause} {words}\n"
         (only,) = parse(text).diagnostics
         assert [apply_fix(text, fix) for fix in only.fixes] == [text.replace(words, each) for each in fixed.split()]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from check_asserts import findings, problems
+from check_asserts import after, findings, problems
 
 MISSION = """\
 signal near : bool from {{@near}} initially false
@@ -81,3 +81,35 @@ def test_what_is_about_the_mission_goes_to_its_root(line: str, rule: str) -> Non
     (found,) = problems(f'QualityReq r "Calm"\n{line}\nBehaviorTree Main\n    Action Go\n', rule)
     of_root = "what is about the whole mission is satisfied by the root node of its main tree: `-> satisfies calm`"
     assert found.notes[-1] == of_root
+
+
+REFINED = """\
+QualityReq whole : safety "Stops"
+    keeps speed <= 1 m/s{whole}
+QualityReq part : safety "Stops soon"
+    keeps speed <= 1 m/s{part}
+signal speed : m/s from {{@speed}} initially 0 m/s
+BehaviorTree Main
+    Action Go satisfies whole, part
+"""
+
+
+@pytest.mark.parametrize("line", ["refined by part", "refined: part", "decomposed into part"])
+def test_a_requirement_does_not_say_what_refines_it(line: str) -> None:
+    (found,) = problems(REFINED.format(whole=f"\n    {line}", part=""), "syntax-error")
+    word = line.partition(" ")[0].rstrip(":")
+    nearest = "a line `refines` in the other requirement, with the ID of this one"
+    assert (found.message, found.fixes) == (f"`{word}` is not in btq; nearest is {nearest}", ())
+    assert findings(REFINED.format(whole="", part="\n    refines whole"), "syntax-error", "unknown-requirement") == []
+
+
+@pytest.mark.parametrize(
+    ("way", "method"), [("demonstration", "test"), ("trial", "test"), ("inspection", "review"), ('demo "D-1"', "test")]
+)
+def test_ways_of_verifying_in_other_words(way: str, method: str) -> None:
+    text = REFINED.format(whole=f"\n    verified by {way}", part="")
+    (found,) = problems(text, "syntax-error")
+    assert found.notes == ('a demonstration or a trial is a `test "D-1"`, an inspection a `review "I-1"`',)
+    mended = [after(text, fix) for fix in found.fixes]
+    assert mended == [text.replace(way.split()[0], method)]
+    assert problems(mended[0], "syntax-error") == []

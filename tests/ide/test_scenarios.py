@@ -202,6 +202,12 @@ def test_completion_of_first_lines() -> None:
     check_offers(f"{MODELS}given MoveTo $0\n", "succeeds", "takes", absent=("answers",))
 
 
+def test_a_decorator_of_nav2_that_is_asked() -> None:
+    text = "Decorator {0}\nBehaviorTree Main\n    {0}\n        MoveTo\ngiven {0} $0\n"
+    check_offers(text.format("DistanceController"), "answers")
+    check_offers(text.format("RateController"), absent=("answers",))
+
+
 def test_accepted_proposals() -> None:
     check_accept(
         f'{MODELS}scenario "S"\n    given MoveTo (station = $0) fails\n',

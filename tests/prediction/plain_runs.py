@@ -5,10 +5,11 @@ from __future__ import annotations
 from btq_lang.prediction.prepared import PreparedMission
 from btq_lang.prediction.states import States
 from btq_lang.scenarios.running import why_unknown
-from btq_lang.simulator.blackboard import DOUBLE, Board, type_of
-from btq_lang.simulator.drivers import halt_tree, tick_while_running
+from btq_lang.simulator.blackboard import DOUBLE, type_of
+from btq_lang.simulator.drivers import drive, halt_tree
 from btq_lang.simulator.errors import EngineError, NotModelled
 from btq_lang.simulator.loading import load
+from btq_lang.simulator.nav2_answered import set_answered
 from btq_lang.simulator.nodes import RUNNING, STATUS_NAMES, Machine, SimulatedNode
 
 Row = tuple[int, int, int]
@@ -18,7 +19,7 @@ def plain_run(prepared: PreparedMission, seed: int, number: int) -> tuple[str, i
     """How a run ends, when, and each change of a status."""
     mission, robot = prepared.mission, prepared.loaded.robot
     loaded = robot.machine
-    board = Board(is_old=mission.dialect.is_old)
+    board = mission.program.board()
     for course in robot.courses:
         settings = course.settings
         if settings.entry and settings.is_constant:
@@ -32,6 +33,8 @@ def plain_run(prepared: PreparedMission, seed: int, number: int) -> tuple[str, i
 
     machine: Machine = load(mission.documents, mission.name, mission.dialect, robot, changed, board, mission.actions)
     robot.machine = machine
+    for node in machine.nodes:
+        set_answered(node, robot)
     states = States(machine, robot.asker)
 
     def look() -> bool:
@@ -46,7 +49,7 @@ def plain_run(prepared: PreparedMission, seed: int, number: int) -> tuple[str, i
 
     robot.begin_run(seed, number)
     try:
-        result = tick_while_running(machine, prepared.loaded.limit, is_over=look)
+        result = drive(machine, mission.program.driver, prepared.loaded.limit, look)
         look()
         end = STATUS_NAMES[result]
         if result == RUNNING:
@@ -54,6 +57,6 @@ def plain_run(prepared: PreparedMission, seed: int, number: int) -> tuple[str, i
     except EngineError as error:
         end = str(error)
     except NotModelled as error:
-        end = why_unknown(machine.nodes, error)
+        end = why_unknown(machine.nodes, error, has_givens=False)
     robot.machine = loaded
     return end, machine.now, rows

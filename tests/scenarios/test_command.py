@@ -39,6 +39,10 @@ scenario "nobody says where"
 QualityReq swift : time-behaviour "Soon there"
     mission takes at most 1 min
 """
+WHY = (
+    "ScriptCondition::5 reads {place}, and nothing says what Dock::3 writes into {place}; "
+    "write `given Dock succeeds and writes place = …`"
+)
 ALL = """\
 passed  one way (cases.btq:3): succeeds after 0 ms
 failed  the other way (cases.btq:7): succeeds after 0 ms
@@ -53,7 +57,7 @@ failed  the other way (cases.btq:7): succeeds after 0 ms
               MoveTo          |S                                       | succeeded
         ASSUMED to succeed at once: MoveTo::2, MoveTo::6
 unknown nobody says where (cases.btq:11)
-        ScriptCondition::5 reads {place}, and nothing says what Dock::3 writes into {place}
+        WHY
                       0                                   0 ms
           Sequence   |>                                       | running
             MoveTo   |S                                       | succeeded
@@ -61,7 +65,7 @@ unknown nobody says where (cases.btq:11)
             Fallback |>                                       | running
         ASSUMED to succeed at once: Dock::3, MoveTo::2
 3 scenarios: 1 passed, 1 failed, 1 unknown
-"""
+""".replace("WHY", WHY)
 
 JUNIT = """\
 <?xml version="1.0" encoding="UTF-8"?>
@@ -125,11 +129,10 @@ def test_a_file_for_programs(folder: Path) -> None:
     assert run_btq("test", "-o", "out.json", cwd=folder) == (1, "", "")
     document = json.loads((folder / "out.json").read_text(encoding="utf-8"))
     outcomes = [(each["title"], each["outcome"], each["why"]) for each in document["scenarios"]]
-    unknown = "ScriptCondition::5 reads {place}, and nothing says what Dock::3 writes into {place}"
     assert outcomes == [
         ("one way", "passed", ""),
         ("the other way", "failed", ""),
-        ("nobody says where", "unknown", unknown),
+        ("nobody says where", "unknown", WHY),
     ]
 
 
@@ -207,8 +210,22 @@ def test_the_engine_would_never_return(folder: Path) -> None:
     assert (code, err) == (1, "")
     assert out.splitlines()[:2] == [
         "unknown it (cases.btq:3)",
-        "        Sequence::1 goes on without an end in one tick",
+        "        RetryUntilSuccessful::3 goes on without an end in one tick",
     ]
+
+
+def test_a_mission_that_never_returns_names_its_own_node(folder: Path) -> None:
+    """Not the root, which a build may have put around the tree."""
+    (folder / "own.btq").write_text(
+        "signal speed : m/s from {@s} initially 0 m/s\n"
+        "QualityReq r : safety\n    mission keeps speed <= 1 m/s\n    on violation halt\n"
+        "Action Drive\nAction Dock\nRoot Main\nBehaviorTree Main\n    -> satisfies r\n        Dock\n"
+        "        Repeat Patience (num_cycles = -1)\n            ->\n                Dock\n                Drive\n"
+        'scenario "it"\n    given every Dock succeeds\n    given Drive succeeds\n    expect mission succeeds\n',
+        encoding="utf-8",
+    )
+    _, out, err = run_btq("test", "own.btq", cwd=folder)
+    assert (out.splitlines()[1], err) == ("        Patience goes on without an end in one tick", "")
 
 
 @pytest.mark.parametrize(

@@ -210,9 +210,93 @@ def test_a_requirement_whose_signal_nobody_gives_is_unknown(tmp_path: Path) -> N
     assert (scenario["outcome"], reasons(scenario)) == ("unknown", ["no samples of `person`"])
 
 
+@pytest.mark.parametrize("ways", ["test", 'test "S"', 'analysis, review "R-3"', "monitor, test"])
+def test_a_scenario_judges_what_is_verified_by_people(tmp_path: Path, ways: str) -> None:
+    (tmp_path / "main.btq").write_text(
+        'QualityReq soon : time-behaviour "Soon"\n    Move takes at most 3 s\n'
+        f"    verified by {ways}\nBehaviorTree Main\n    ->\n        Move\nAction Move\n"
+        + "".join(
+            f'scenario "{expect}" verifies soon\n    given Move takes {seconds} s\n    expect {expect}\n'
+            for seconds, expect in ((2, "soon"), (4, "soon violated"))
+        ),
+        encoding="utf-8",
+    )
+    code, out, err = run_btq("test", "main.btq", cwd=tmp_path)
+    assert (code, err, out.splitlines()[-1]) == (0, "", "2 scenarios: 2 passed")
+
+
+@pytest.mark.parametrize(
+    ("clauses", "why"),
+    [
+        (
+            ["mission succeeds within 40 min", "in at least 95 % of runs", "confidence 95 %"],
+            "often is undecided: one run cannot decide `in at least 95 % of runs` with confidence 95 %; "
+            "`expect mission succeeds within 40 min` is what it can show",
+        ),
+        (
+            ["mission takes at most 6 s on average", "confidence 95 %"],
+            "often is undecided: one run cannot decide `mission takes at most 6 s on average` with confidence 95 %; "
+            "`expect mission takes at most 6 s` is what it can show",
+        ),
+        (
+            ["Move takes at most 6 s", "in at least 95 % of activations", "confidence 95 %", "while not low"],
+            "often is undecided: one run cannot decide `in at least 95 % of activations` with confidence 95 %",
+        ),
+    ],
+)
+def test_one_run_cannot_decide_what_is_about_many(tmp_path: Path, clauses: list[str], why: str) -> None:
+    demanded = "".join(f"    {clause}\n" for clause in clauses)
+    (tmp_path / "main.btq").write_text(
+        f'signal low : bool from {{low}} initially false\nQualityReq often : reliability "Often"\n{demanded}'
+        "BehaviorTree Main\n    ->\n        Move\nAction Move\n"
+        'scenario "S"\n    given low = false\n    given Move takes 4 s\n    expect often\n',
+        encoding="utf-8",
+    )
+    _, out, _ = run_btq("test", "main.btq", "--format", "json", cwd=tmp_path)
+    (scenario,) = json.loads(out)["scenarios"]
+    assert (scenario["outcome"], scenario["expectations"][0]["step"]["happened"]) == ("failed", why)
+
+
+def test_what_hours_decide_is_unknown_after_one_run(tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text(
+        'QualityReq seldom : reliability "Seldom"\n    Move fails at most 1 per 1000 h\n'
+        'BehaviorTree Main\n    Move\nAction Move\nscenario "S"\n    given Move takes 4 s\n    expect seldom\n',
+        encoding="utf-8",
+    )
+    _, out, _ = run_btq("test", "main.btq", "--format", "json", cwd=tmp_path)
+    (scenario,) = json.loads(out)["scenarios"]
+    why = "0 in 4 s, 1000 h more are needed; one run cannot decide `Move fails at most 1 per 1000 h`"
+    assert (scenario["outcome"], scenario["expectations"][0]["why"]) == ("unknown", why)
+
+
 def test_a_requirement_whose_node_did_not_run_names_it(tmp_path: Path) -> None:
     scenario = result(tmp_path, "given Low answers true", "given First fails", "expect quick")
     assert reasons(scenario) == ["0 s Sequence::1:19 quick is never exercised: Dock::7 did not start in any run"]
+
+
+def test_a_clause_that_nothing_exercised_is_noted(tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text(
+        'QualityReq both : safety "Both"\n    Report starts within 60 s after Move fails\n    mission succeeds\n'
+        "BehaviorTree Main\n    ?\n        Move\n        Report\nAction Move\nAction Report\n"
+        'scenario "S"\n    given Move succeeds\n    expect both\n'
+        'scenario "T"\n    given Move fails\n    expect both\n'
+        'scenario "U"\n    given Move fails\n    given Report fails\n    expect both violated\n',
+        encoding="utf-8",
+    )
+    note = "`Report starts within 60 s after Move fails` is never exercised: Report::3 did not start in any run"
+    assert run_btq("test", "main.btq", cwd=tmp_path) == (
+        0,
+        "passed  S (main.btq:10): succeeds after 0 ms\n"
+        f"        line 12 expects both; {note}\n"
+        "passed  T (main.btq:13): succeeds after 0 ms\n"
+        "passed  U (main.btq:16): fails after 0 ms\n"
+        "3 scenarios: 3 passed\n",
+        "",
+    )
+    _, out, _ = run_btq("test", "main.btq", "--format", "json", cwd=tmp_path)
+    document = json.loads(out)
+    assert [*violations(document, SCHEMA)] == []
+    assert [each["expectations"][0]["note"] for each in document["scenarios"]] == [note, "", ""]
 
 
 def test_a_halted_mission_neither_succeeds_nor_fails(tmp_path: Path) -> None:

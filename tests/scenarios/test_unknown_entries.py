@@ -23,7 +23,8 @@ BehaviorTree Main
     ->
         Dock (place = {place} speed = {speed})
 """
-UNKNOWN = "nothing says what Dock::2 writes into {place}"
+CURE = "write `given Dock succeeds and writes place = …`"
+UNKNOWN = f"nothing says what Dock::2 writes into {{place}}; {CURE}"
 
 
 def ran(folder: Path, nodes: str, *steps: str) -> tuple[str, str, str]:
@@ -63,7 +64,7 @@ def test_what_needs_the_value(tmp_path: Path, nodes: str, reader: str, given: li
 def test_a_failed_skill_may_have_written(tmp_path: Path) -> None:
     nodes = 'Fallback\n    Dock Again (place = {place})\n    ScriptCondition (code = "(place == 3)")'
     steps = "given Again fails", "expect mission succeeds"
-    why = "ScriptCondition::5 reads {place}, and nothing says what Again writes into {place}"
+    why = "ScriptCondition::5 reads {place}, and nothing says what Again writes into {place}; " + CURE
     assert ran(tmp_path, nodes, *steps) == ("unknown", "", why)
 
 
@@ -115,7 +116,7 @@ def test_a_value_that_is_given(tmp_path: Path, given: str) -> None:
 def test_a_skill_that_runs_may_write(tmp_path: Path) -> None:
     nodes = '|| (success_count = 1)\n    Dock Other (place = {other})\n    ScriptCondition (code = "(other == 3)")'
     steps = "given Other takes 1 s", "expect mission succeeds"
-    why = "ScriptCondition::5 reads {other}, and nothing says what Other writes into {other}"
+    why = "ScriptCondition::5 reads {other}, and nothing says what Other writes into {other}; " + CURE
     assert ran(tmp_path, nodes, *steps) == ("unknown", "", why)
 
 
@@ -125,7 +126,11 @@ def test_a_skill_that_runs_may_write(tmp_path: Path) -> None:
         ('given {seen} = "A"', ("passed", "succeeds", "")),
         (
             "given Seen answers true",
-            ("unknown", "", "Reads reads {seen}, and nothing says what Seen::3 writes into {seen}"),
+            (
+                "unknown",
+                "",
+                "Reads reads {seen}, and nothing says what Seen::3 writes into {seen}; write `given {seen} = …`",
+            ),
         ),
     ],
 )
@@ -134,6 +139,42 @@ def test_a_condition_keeps_the_reading_that_is_given(tmp_path: Path, given: str,
     assert ran(tmp_path, nodes, "given Seen answers true", given, "expect mission succeeds") == result
 
 
+@pytest.mark.parametrize(
+    ("action", "result"),
+    [
+        ("\n    on violation halt", ("passed", "")),
+        ("", ("unknown", "nothing says what Sense::2 writes into {@edge}; write `given edge = …`")),
+    ],
+)
+def test_a_value_initially_is_that_of_an_entry_only_where_a_guard_reads_it(
+    tmp_path: Path, action: str, result: tuple[str, str]
+) -> None:
+    (tmp_path / "main.btq").write_text(
+        "signal edge : m from {@edge} initially 3 m\n"
+        f'QualityReq far : safety "Far"\n    mission keeps edge >= 1 m{action}\n'
+        "Condition Sense\n    output edge : double\nBehaviorTree Main\n    ->\n        Sense (edge = {@edge})\n"
+        'scenario "S"\n    given Sense answers true\n    expect far\n',
+        encoding="utf-8",
+    )
+    _, out, _ = run_btq("test", "main.btq", "--format", "json", cwd=tmp_path)
+    (scenario,) = json.loads(out)["scenarios"]
+    assert (scenario["outcome"], scenario["expectations"][0]["why"]) == result
+
+
 def test_an_endless_run_is_noticed(tmp_path: Path) -> None:
     nodes = "KeepRunningUntilFailure\n    Dock (place = {place})"
     assert ran(tmp_path, nodes, "expect mission does not end")[:2] == ("passed", "does not end")
+
+
+@pytest.mark.parametrize("read", ["seen_at", "{seen}"])
+def test_the_cure_of_a_reading_is_the_name_that_reads_it(tmp_path: Path, read: str) -> None:
+    tree = f"signal seen_at : text from {{seen}}\n{TREE}        Seen (where = {{seen}})\n"
+    scenario = f'scenario "S"\n    given Seen answers true\n    expect finally {read} == "A"\n'
+    (tmp_path / "main.btq").write_text(tree + scenario, encoding="utf-8")
+    _, out, _ = run_btq("test", "main.btq", cwd=tmp_path)
+    cure = f"given {read} = …"
+    assert f"nothing says what Seen::3 writes into {{seen}}; write `{cure}`" in out
+    given = cure.replace("…", '"A"')
+    (tmp_path / "main.btq").write_text(tree + scenario.replace("expect", f"{given}\n    expect"), encoding="utf-8")
+    code, _, _ = run_btq("test", "main.btq", cwd=tmp_path)
+    assert code == 0

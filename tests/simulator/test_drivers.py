@@ -6,10 +6,13 @@ import pytest
 from against_truth import ScriptedLeaves
 
 from btq_lang.btcpp.reader import read
-from btq_lang.simulator.drivers import tick_while_running
+from btq_lang.simulator.drivers import drive
 from btq_lang.simulator.loading import load
 from btq_lang.simulator.nodes import FAILURE, RUNNING, SKIPPED, SUCCESS, Machine, SimulatedNode
 from btq_lang.simulator.versions import Dialect
+from btq_lang.workspace.project_driver import Driver
+
+WHILE_RUNNING = Driver()
 
 
 class Timed(ScriptedLeaves):
@@ -37,14 +40,14 @@ class Timed(ScriptedLeaves):
         return tuple(self.ends.items())
 
 
-def run(tree: str) -> tuple[int, int, int]:
+def run(tree: str, driver: Driver = WHILE_RUNNING) -> tuple[int, int, int]:
     """The result of a tree, how many milliseconds it took, and how often its leaves were ticked."""
     document = read(f'<root BTCPP_format="4"><BehaviorTree ID="Main">{tree}</BehaviorTree></root>').document
     assert document is not None
     program = Timed()
     machine = load([document], "Main", Dialect("4.10", "jazzy"), program, lambda *_: None, stateful=("Act",))
     program.machine = machine
-    return tick_while_running(machine, 10_000), machine.now, program.ticks
+    return drive(machine, driver, 10_000), machine.now, program.ticks
 
 
 @pytest.mark.parametrize(
@@ -54,7 +57,7 @@ def run(tree: str) -> tuple[int, int, int]:
         ('<AlwaysSuccess _skipIf="true"/>', SKIPPED, 0, 0),
         ('<Sequence><Act name="a"/><Act name="b"/></Sequence>', SUCCESS, 2_000, 6),
         ('<Timeout msec="205"><Act name="a"/></Timeout>', FAILURE, 205, 2),
-        ('<Sequence><Sleep msec="33"/><Act name="a"/></Sequence>', SUCCESS, 1_033, 4),
+        ('<Sequence><Sleep msec="33"/><Act name="a"/></Sequence>', SUCCESS, 1_033, 3),
         ("<KeepRunningUntilFailure><AlwaysSuccess/></KeepRunningUntilFailure>", RUNNING, 10, 0),
         ('<LoopInt queue="1;2;3" value="{i}"><AlwaysSuccess/></LoopInt>', SUCCESS, 30, 0),
         ('<ReactiveSequence><Act name="a"/><Act name="b"/></ReactiveSequence>', RUNNING, 10_090, 40),
@@ -82,3 +85,20 @@ def run(tree: str) -> tuple[int, int, int]:
 )
 def test_runs(tree: str, result: int, took: int, ticks: int) -> None:
     assert run(tree) == (result, took, ticks)
+
+
+@pytest.mark.parametrize(
+    ("tree", "function", "took", "ticks"),
+    [
+        # The sleep of these ends when it ends, whatever happens in between.
+        ('<Timeout msec="205"><Act name="a"/></Timeout>', "tick_while_running", 205, 2),
+        ('<Timeout msec="205"><Act name="a"/></Timeout>', "tick_once", 300, 2),
+        ('<Sequence><Act name="a"/><Act name="b"/></Sequence>', "tick_once", 2_000, 6),
+        ('<Sequence><Sleep msec="33"/><Act name="a"/></Sequence>', "tick_once", 1_100, 4),
+        # A node that asks to be ticked again is, or waits for the next tick.
+        ('<Repeat num_cycles="3"><AlwaysSuccess/></Repeat>', "tick_once", 0, 0),
+        ('<Repeat num_cycles="3"><AlwaysSuccess/></Repeat>', "tick_exactly_once", 200, 0),
+    ],
+)
+def test_other_drivers(tree: str, function: str, took: int, ticks: int) -> None:
+    assert run(tree, Driver(function, 100))[1:] == (took, ticks)

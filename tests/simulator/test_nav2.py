@@ -275,12 +275,34 @@ def test_what_is_not_modelled(tree: str, message: str) -> None:
         ticked(tree, JAZZY, {}, {"path": "home"})
 
 
-def test_other_distributions() -> None:
-    with pytest.raises(NotModelled, match="what the nodes of Nav2 do in iron is unknown"):
-        ticked("<AlwaysSuccess/>", Dialect("3.8.7", "iron"), {})
-
-
 def test_one_that_does_not_end_within_a_tick() -> None:
     tree = '<RecoveryNode number_of_retries="-1"><AlwaysFailure/><AlwaysSuccess/></RecoveryNode>'
     with pytest.raises(NotModelled, match="RecoveryNode::1 goes on without an end in one tick"):
         ticked(tree, HUMBLE, {})
+
+
+@pytest.mark.parametrize(
+    ("tree", "skills", "entries", "humble", "iron"),
+    [
+        # Iron begins anew whenever the node does, and takes a path with as many poses for another one.
+        (f'<Sequence><Sync name="w"/>{LONGER}</Sequence>', NEW_PATHS, {"path": "5;2;2;0"}, "SSFSSS", "SSSSSS"),
+        (
+            f'<PipelineSequence><Sync name="w"/>{LONGER}<Act name="a"/></PipelineSequence>',
+            {**leaves(a="9"), **writes({}, {"path": "5;9;2;0"})},
+            {"path": "5;2;2;0"},
+            "RRRRRR",
+            "RFRRRR",
+        ),
+        # It cannot read a list of error codes.
+        (
+            '<AreErrorCodesPresent error_code="{error_code}" error_codes_to_check="101;107"/>',
+            {},
+            {"error_code": 107.0},
+            None,
+            "FFFFFF",
+        ),
+    ],
+)
+def test_iron(tree: str, skills: Skills, entries: Entries, humble: str | None, iron: str) -> None:
+    assert ticked(tree, Dialect("3.8.7", "iron"), skills, entries) == iron
+    assert humble is None or ticked(tree, HUMBLE, skills, entries) == humble

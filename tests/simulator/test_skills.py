@@ -6,11 +6,12 @@ import pytest
 
 from btq_lang.btcpp.reader import read
 from btq_lang.simulator.blackboard import STRING
-from btq_lang.simulator.drivers import tick_while_running
+from btq_lang.simulator.drivers import drive
 from btq_lang.simulator.loading import load
 from btq_lang.simulator.nodes import FAILURE, RUNNING, SUCCESS, Machine
 from btq_lang.simulator.skills import GivenActivation, GivenSkill, Skills, Unanswered, Write
 from btq_lang.simulator.versions import Dialect
+from btq_lang.workspace.project_driver import Driver
 
 DELIVER = (
     '<Sequence><Cond name="ready"/><RetryUntilSuccessful num_attempts="3"><Act name="go"/></RetryUntilSuccessful>'
@@ -25,7 +26,7 @@ def run(*givens: GivenSkill) -> tuple[int, Machine, Skills]:
     skills = Skills(givens, ("Cond",))
     machine = load([document], "Main", Dialect("4.10"), skills, lambda *_: None, stateful=("Act",))
     skills.machine = machine
-    return tick_while_running(machine, 60_000), machine, skills
+    return drive(machine, Driver(), 60_000), machine, skills
 
 
 def test_a_failure_and_then_a_success_that_writes() -> None:

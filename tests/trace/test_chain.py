@@ -217,6 +217,20 @@ def test_a_part_of_them(folder: Path, arguments: tuple[str, ...], names: list[st
         ]
 
 
+@pytest.mark.parametrize(
+    ("asked", "sentence"),
+    [
+        (("--state", "suspect"), "no requirement is suspect (of 5)\n"),
+        (("--state", "suspect", "--priority", "could"), "no requirement has priority could and is suspect (of 5)\n"),
+        (("--quality", "usability", "--format", "markdown"), "no requirement has quality usability (of 5)\n"),
+    ],
+)
+def test_a_selection_of_nothing_is_a_sentence(asked: tuple[str, ...], sentence: str, folder: Path) -> None:
+    assert run_btq("trace", *asked, cwd=folder) == (0, sentence, "")
+    code, out, _ = run_btq("trace", *asked[:2], "--format", "json", cwd=folder)
+    assert (code, json.loads(out)["requirements"]) == (0, [])
+
+
 def test_an_unknown_state(folder: Path) -> None:
     code, _, err = run_btq("trace", "--state", "broken", cwd=folder)
     assert code == 2

@@ -302,6 +302,7 @@ def test_json() -> None:
         "hazards_without_requirements": [],
         "requirements_without_verdicts": [],
         "requirements_without_sources": [],
+        "scenarios_not_passed": [],
     }
     assert document["skills"] == {"own": 2, "above": 1, "none": 2}
     keys = {row["key"] for part in ("requirements", "qualities", "nodes") for row in document[part]}

@@ -56,6 +56,7 @@ BehaviorTree Main
 MOVE_XML = (
     '<root BTCPP_format="4"><BehaviorTree ID="Main" _fullpath=""><Move name="Move" _uid="1"/></BehaviorTree></root>'
 )
+UNKNOWN = {"expects": None, "outcome": None, "changed": False}  # what came of a scenario
 
 
 @pytest.fixture
@@ -134,13 +135,13 @@ def test_json(folder: Path) -> None:
     document = as_json(folder, "mission.btq")
     assert document["files"] == ["mission.btq"]
     arrives = {"path": "tests/arrival.btq", "line": 3, "column": 10}
-    takes_time = {"method": "test", "id": "It takes its time", "at": {**arrives, "line": 6}}
+    takes_time = {"method": "test", "id": "It takes its time", "at": {**arrives, "line": 6}, **UNKNOWN}
     assert {each["id"]: each["verified_by"] for each in document["requirements"]} == {
-        "quick": [{"method": "test", "id": "It arrives", "at": arrives}, takes_time],
+        "quick": [{"method": "test", "id": "It arrives", "at": arrives, **UNKNOWN}, takes_time],
         "tested": [takes_time],
         "named": [
             {"method": "review", "id": "R-3", "at": None},
-            {"method": "test", "id": "It arrives", "at": arrives},
+            {"method": "test", "id": "It arrives", "at": arrives, **UNKNOWN},
         ],
         "calm": [takes_time],
         "bare": [{"method": "test", "id": None, "at": None}],
@@ -149,7 +150,7 @@ def test_json(folder: Path) -> None:
         {
             **{"key": "x1", "id": "PLANT_1", "title": "It comes back", "status": "", "url": "", "requirements": []},
             "at": {"path": "plant.csv", "line": 2, "column": 1},
-            "scenarios": [{"id": "It arrives", "at": arrives}],
+            "scenarios": [{"id": "It arrives", "at": arrives, **UNKNOWN}],
         }
     ]
 
@@ -242,6 +243,109 @@ def test_verdicts_name_scenarios_as_tests(folder: Path, mission: tuple[str, ...]
         for case in ElementTree.fromstring(out).iter("testcase")
     }
     assert properties == {name: [",".join(ways or ())] for name, ways in verified_by.items()}
+
+
+# ---- what came of them ------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def tested(folder: Path) -> Path:
+    """With the results of the scenarios, of which `It arrives` fails, one that changed since, and one that is new."""
+    text = (folder / "tests/arrival.btq").read_text(encoding="utf-8")
+    text = text.replace("expect mission succeeds", "expect mission fails", 1)
+    text += '\nscenario "It is slow" verifies quick\n    given Move takes 40 s\n    expect quick violated\n'
+    (folder / "tests/arrival.btq").write_text(text, encoding="utf-8")
+    assert run_btq("test", ".", "-o", "t.json", cwd=folder)[0] == 1
+    text = text.replace("    expect mission fails", "        expect   mission  fails")
+    text = text.replace("given Move takes 40 s", "given Move takes 50 s")
+    text += '\nscenario "It is late" verifies quick\n    given Move takes 20 s\n    expect quick\n'
+    (folder / "tests/arrival.btq").write_text(text, encoding="utf-8")
+    return folder
+
+
+def test_results_beside_the_scenarios(tested: Path) -> None:
+    document = as_json(tested, "mission.btq", "--evidence", "t.json")
+    (quick,) = (each for each in document["requirements"] if each["id"] == "quick")
+    assert [(way["id"], way["outcome"], way["changed"], way["expects"]) for way in quick["verified_by"]] == [
+        ("It arrives", "failed", False, None),
+        ("It takes its time", "passed", False, None),
+        ("It is slow", "passed", True, "violated"),
+        ("It is late", "not run", False, None),
+    ]
+    assert quick["evidence"] is None
+    names = {each["key"]: each["id"] for each in (*document["requirements"], *document["external"])}
+    gaps = document["gaps"]["scenarios_not_passed"]
+    assert [(names[each["requirement"]], each["scenario"], each["outcome"]) for each in gaps] == [
+        ("quick", "It arrives", "failed"),
+        ("quick", "It is late", "not run"),
+        ("named", "It arrives", "failed"),
+        ("PLANT_1", "It arrives", "failed"),
+    ]
+    assert document["external"][0]["scenarios"][0]["outcome"] == "failed"
+
+
+def test_results_in_every_format(tested: Path) -> None:
+    slow = 'scenario "It is slow" (passed, changed since, expects it violated)'
+    arrives = 'scenario "It arrives" (failed)'
+    came = "4 scenarios verify 4 requirements; 1 failed, 1 not run, 2 passed."
+    texts = {
+        form: trace(tested, "mission.btq", "--evidence", "t.json", "--format", form)
+        for form in ("table", "markdown", "html", "needs-json", "csv")
+    }
+    table = texts["table"]
+    assert f"\nScenarios that have not passed\n  quick, mission.btq:2: {arrives}\n" in table
+    assert came in " ".join(table.split())
+    markdown = texts["markdown"]
+    assert f"* Scenarios that have not passed: quick (mission.btq:2): {arrives}, " in markdown
+    assert slow in markdown
+    assert came in markdown
+    page = unescape(texts["html"])
+    assert slow in page
+    assert "Scenarios that have not passed (4)" in page
+    assert came in page
+    assert slow in json.loads(texts["needs-json"])["versions"][""]["needs"]["quick"]["content"]
+    rows = [*csv.DictReader(io.StringIO(texts["csv"]))]
+    columns = ("scenario", "result", "suspect", "verdict")
+    of_quick = [row for row in rows if row["kind"] == "scenario" and row["requirement"] == "quick"]
+    assert [tuple(row[name] for name in columns) for row in of_quick] == [
+        ("It arrives", "failed", "", ""),
+        ("It takes its time", "passed", "", ""),
+        ("It is slow", "passed", "yes", "violated"),
+        ("It is late", "not run", "", ""),
+    ]
+    lacking = [(row["requirement"], row["external"]) for row in rows if row["kind"] == "scenario not passed"]
+    assert lacking == [("quick", ""), ("quick", ""), ("named", ""), ("", "PLANT_1")]
+
+
+def test_what_failed_or_expects_a_violation_is_no_evidence(tested: Path) -> None:
+    violated = 'include "mission.btq"\nscenario "It hurries" verifies bare\n    expect bare violated\n'
+    (tested / "more.btq").write_text(violated, encoding="utf-8")
+    text = (tested / "mission.btq").read_text(encoding="utf-8")
+    (tested / "mission.btq").write_text(text.replace(', review "R-3"', ""), encoding="utf-8")
+    (tested / "run.btlog").write_bytes(btlog(MOVE_XML, rows("0 1R 20 1S")))
+    arguments = ("mission.btq", "--evidence", "run.btlog")
+    for more, lacking in (((), ["bare"]), (("--evidence", "t.json"), ["named", "bare"])):
+        document = as_json(tested, *arguments, *more, "--state", "without verdict")
+        assert [each["id"] for each in document["requirements"]] == lacking
+
+
+def test_results_of_another_version_are_not_read(tested: Path) -> None:
+    (tested / "t.json").write_text('{"format": "btq-scenarios", "version": 7}', encoding="utf-8")
+    code, _, err = run_btq("trace", "mission.btq", "--evidence", "t.json", cwd=tested)
+    assert (code, err.startswith("btq trace: t.json: expected btq-verdicts")) == (2, True)
+
+
+def test_a_test_that_is_not_the_title_of_a_scenario_is_named(folder: Path) -> None:
+    why = 'no scenario has the title "It arives"'
+    assert why not in trace(folder, "mission.btq")
+    text = (folder / "mission.btq").read_text(encoding="utf-8")
+    text = text.replace('"It  arrives"', '"It arives"').replace("verified by test\nA", 'verified by test "TC-1"\nA')
+    (folder / "mission.btq").write_text(text, encoding="utf-8")
+    assert why in " ".join(trace(folder, "mission.btq").split())
+    assert why in trace(folder, "mission.btq", "--format", "markdown")
+    assert why in unescape(trace(folder, "mission.btq", "--format", "html"))
+    assert "TC-1" in trace(folder, "mission.btq")
+    assert 'title "TC-1"' not in trace(folder, "mission.btq")  # which no scenario verifies
 
 
 # ---- which scenarios count --------------------------------------------------------------------------------------

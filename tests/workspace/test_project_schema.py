@@ -22,6 +22,7 @@ from btq_lang.commands.init import FILES
 from btq_lang.workspace.config import KEYS, parse_project
 from btq_lang.workspace.external_requirements import KEYS as REQUIREMENT_KEYS
 from btq_lang.workspace.overrides import KEYS as OVERRIDE_KEYS
+from btq_lang.workspace.project_driver import FUNCTIONS
 from btq_lang.workspace.project_evidence import KEYS as EVIDENCE_KEYS
 from btq_lang.workspace.project_evidence import SOURCE_KEYS
 from btq_lang.workspace.project_schema import project_schema
@@ -76,6 +77,7 @@ METASCHEMA: dict[str, Any] = {
 
 INEXPRESSIBLE = re.compile(
     "unknown unit|^duplicate factory|a `p95` above|the shorter duration|above 0 s|to a year|to the next|script of"
+    "|whole milliseconds"
 )
 
 
@@ -102,6 +104,7 @@ def test_it_has_every_key_of_the_reader_with_a_line() -> None:
         (definitions["requirements"], REQUIREMENT_KEYS),
         (definitions["overrides"]["items"], OVERRIDE_KEYS),
         (definitions["simulate"], SIMULATION_KEYS),
+        (definitions["simulate"]["properties"]["driver"]["allOf"][0], FUNCTIONS),
         (definitions["simulate"]["properties"]["skills"]["allOf"][0]["additionalProperties"], SKILL_KEYS),
         (definitions["simulate"]["properties"]["world"]["allOf"][0]["additionalProperties"], WORLD_KEYS),
     ]

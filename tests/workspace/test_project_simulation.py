@@ -7,9 +7,12 @@ from test_config import problems
 
 from btq_lang.catalog.units import parse_unit
 from btq_lang.workspace.config import parse_project
+from btq_lang.workspace.project_driver import Driver
 from btq_lang.workspace.project_simulation import SaidValue, SkillSetting, Spread, WorldSetting
 
 WHOLE = """\
+[simulate]
+driver = { tick_once = "0.1 s" }
 [simulate.skills]
 MoveBase = { takes = { median = "18 s", p95 = "27 s" }, succeeds = "99 %" }
 "BatteryCheck/MoveBase" = { takes = ["12 s", "20 s"] }
@@ -32,6 +35,7 @@ def test_every_key() -> None:
     project, wrong = parse_project(WHOLE)
     assert wrong == ()
     assert project.simulation is not None
+    assert project.simulation.driver == Driver("tick_once", 100)
     assert project.simulation.skills == (
         SkillSetting("MoveBase", Spread("lognormal", 18.0, 27.0), 0.99),
         SkillSetting("BatteryCheck/MoveBase", Spread("uniform", 12.0, 20.0)),
@@ -67,6 +71,7 @@ def test_what_is_right_is_kept() -> None:
 
 SKILLS = "[simulate.skills]\n"
 WORLD = "[simulate.world]\n"
+TABLE = 'a table with one function such as { tick_once = "10 ms" }'
 TAKES = (
     '`simulate.skills.Pick.takes` must be a duration such as "6 s", two that it lies between such as ["12 s", "20 s"], '
     'or a table such as { median = "18 s", p95 = "27 s" }'
@@ -79,6 +84,25 @@ TAKES = (
         ("simulate = 1", "1:1: `simulate` must be a table"),
         ("[simulate]\nskill = {}", "2:1: unknown key `simulate.skill`; did you mean `skills`?"),
         ("[simulate]\nskills = 1", "2:1: `simulate.skills` must be a table of skills"),
+        *[
+            (f"[simulate]\ndriver = {value}", f"2:1: `simulate.driver` must be {TABLE}")
+            for value in ('"tick_once"', "{}", '{ tick_once = "1 s", tick_exactly_once = "1 s" }')
+        ],
+        (
+            '[simulate]\ndriver = { tick_onc = "10 ms" }',
+            "2:12: `simulate.driver` has an unknown function `tick_onc`; did you mean `tick_once`?",
+        ),
+        *[
+            (
+                f"[simulate]\ndriver = {{ tick_once = {time} }}",
+                f'2:12: `simulate.driver` must give `tick_once` {what} such as "10 ms"',
+            )
+            for times, what in (
+                (("10", '"10"'), "a duration"),
+                (('"10 m"', '"0 ms"', '"1.5 ms"'), "whole milliseconds"),
+            )
+            for time in times
+        ],
         ("[simulate]\nworld = []", "2:1: `simulate.world` must be a table of signals"),
         (
             f'{SKILLS}Pick = "6 s"',

@@ -5,7 +5,7 @@ One invariant: it holds what the C++ code of each branch does; distributions are
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.util.record import Record
@@ -75,7 +75,7 @@ OF_BRINGUP: Final = tuple(f"{prefix}_error_{part}" for prefix in ("route", "smoo
 def outside_entries(
     distribution: str, codes: tuple[str, ...] | None = None, renamed: Mapping[str, str] | None = None
 ) -> tuple[OutsideEntry, ...]:
-    """The entries of the root blackboard that bt_navigator sets (`output`), reads (`input`), or both.
+    """The entries of the root blackboard that bt_navigator sets (`output`), reads (`input`), or both; error codes last.
 
     Args:
         codes: the names or prefixes of error codes; None for those that it collects if none are named.
@@ -93,6 +93,18 @@ def outside_entries(
     if letter in "kl":
         codes = tuple(f"{prefix}_error_{part}" for prefix in codes for part in ("code", "msg"))
     return (*entries.items(), *((code, "inout") for code in codes))
+
+
+def preset_entries(distribution: str, outside: Sequence[OutsideEntry] = ()) -> Iterator[str]:
+    """The entries that have a value before the first tick of the first goal: an error code gets one after a goal.
+
+    Args:
+        outside: what `outside_entries` returns for the parameters; empty: for none.
+    """
+    letter = distribution[0]
+    count = sum(letter in letters or name in READ for name, letters in ENTRIES.items())
+    entries = outside or outside_entries(distribution)
+    return (name for name, direction in entries[:count] if direction != "input")
 
 
 class NavigatorParameter(Record):
@@ -199,4 +211,5 @@ NAVIGATORS: Final[Mapping[str, tuple[str, str, str]]] = {
 }
 # The servers that send goals to it, and the parameter of each that names the tree for them.
 SENDERS: Final = {"docking_server": "navigator_bt_xml"}
+NAME: Final = "bt_navigator"
 OWN_PACKAGE: Final = "nav2_bt_navigator"  # with its trees in the folder `behavior_trees`

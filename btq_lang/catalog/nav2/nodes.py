@@ -190,6 +190,10 @@ _SYNCHRONOUS: Final = tuple(
     action(tag, "", "It ends within the tick.", execution="synchronous", flow="answers") for tag in _WITHIN_A_TICK
 )
 
+# The decorators that read goals, the path, the robot or a topic, so that scenarios may say what they find.
+ASKING: Final = frozenset(
+    ("DistanceController", "GoalUpdatedController", "GoalUpdater", "PathLongerOnApproach", "SpeedController")
+)
 NODES: Final[Mapping[str, NodeKind]] = {
     kind.tag: kind for kind in (*_CONTROL, _ROUND_ROBIN, *_DECORATORS, *_LEAVES, *_SYNCHRONOUS)
 }

@@ -217,6 +217,7 @@ _TABLE: tuple[str | Rule, ...] = (  # a string is the subject of the rules below
     ),
     Rule("ambiguous-given", _E, "two givens for one node, and neither is more specific"),
     Rule("expects-nothing", _W, "a scenario that does not say what is expected"),
+    Rule("undecidable-expectation", _W, "a scenario that expects of its one run what only many runs can show"),
     "Traps of the engine",
     Rule("reactive-multiple-async", _W, "a reactive node with more than one asynchronous child"),
     Rule("explicit-in-reactive", _E, "an explicit form in XML where the engine requires the node's own tag"),
