@@ -35,7 +35,8 @@ FILES_OF_THE_EXTENSION = {
     "walkthrough/project.md",
     "walkthrough/python.md",
 }
-ENDINGS = {"", ".btq", ".css", ".html", ".j2", ".js", ".json", ".md", ".py", ".pyi", ".txt", ".typed"}
+# Those of C++ are the program that runs scenarios in an installed engine.
+ENDINGS = {"", ".btq", ".cpp", ".css", ".hpp", ".html", ".j2", ".js", ".json", ".md", ".py", ".pyi", ".txt", ".typed"}
 
 
 @pytest.fixture(scope="session")
