@@ -13,6 +13,7 @@ from btq_lang.commands.suggesting_parser import SuggestingParser
 from btq_lang.commands.testing_options import add_scenario_options
 from btq_lang.commands.verify_options import VerifyOptions, add_verify_options
 from btq_lang.evidence.compare import FORMATS as COMPARISON_FORMATS
+from btq_lang.exploration import FORMATS as EXPLORE_FORMATS
 from btq_lang.graph import DIRECTIONS
 from btq_lang.graph import FORMATS as GRAPH_FORMATS
 from btq_lang.projects.options import CheckOptions, add_server_options
@@ -364,6 +365,7 @@ def _add_graph(parser: SuggestingParser) -> None:
     "examples:\n  btq explore mission.btq --can 'Grasp starts before DetectCup succeeds'\n"
     "  btq explore mission.btq --never 'mission fails'\n"
     "  btq explore mission.btq --never 'Grasp halts' -o case.btq\n"
+    "  btq explore mission.btq -o answers.html   a page with the runs\n"
     "  btq explore                        what never runs, never ends, is read unset\n",
 )
 def _add_explore(parser: SuggestingParser) -> None:
@@ -375,7 +377,7 @@ def _add_explore(parser: SuggestingParser) -> None:
     parser.add("--seconds", type=float, metavar="S", help="how much processor time to use; default: any")
     parser.flag("--strict", "exit 1 where a search was cut off")
     parser.flag("--show", "draw the runs that were found")
-    parser.add("--format", choices=("text", "json"), default="text", help="default: text")
+    parser.add("--format", choices=EXPLORE_FORMATS, help="default: as the file of -o ends, else text")
     help_text = (
         "where to write; default: standard output; FILE.btq: the runs as scenarios; FILE.btlog: the run as a log"
     )

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from btq_lang.commands.explored_scenarios import RUN_SUFFIXES, drawn_runs, write_runs
-from btq_lang.commands.output import write_output
+from btq_lang.commands.output import form_of, write_output
+from btq_lang.exploration import FORMATS
 from btq_lang.exploration.answers import Answer, answered
 from btq_lang.exploration.clauses import clause_answers, unasked_clauses
 from btq_lang.exploration.missions import ExploredMission, NotExplored, explorable
@@ -30,7 +31,8 @@ class ExploreOptions(Record):
         states: how many states are searched for each question.
         seconds: how much processor time, likewise; None: any.
         strict: what was not found in a search that was cut off may happen.
-        show: draw the runs.
+        show: draw the runs; a page always does.
+        format: of FORMATS; None: as the output's name ends.
     """
 
     paths: Sequence[str]
@@ -42,14 +44,15 @@ class ExploreOptions(Record):
     seconds: float | None
     strict: bool
     show: bool
-    format: str
+    format: str | None
     output: str | None
 
 
 def run(options: ExploreOptions, messages: CommandOutput) -> int:
     """Answer the questions for each mission, or the standard ones."""
     refuse(usage_problem(options.paths))
-    if options.show and options.format == "json":
+    form = form_of(options.format, options.output, FORMATS)
+    if options.show and form == "json":
         raise Refused("--show draws runs as text, and --format json has none")
     questions = [(_question(text), is_wanted) for is_wanted, text in _texts(options)]
     groups, problems = Files().groups(options.paths, options.stdin_filename, with_xml=True)
@@ -88,14 +91,22 @@ def run(options: ExploreOptions, messages: CommandOutput) -> int:
     if not explored and not code:
         raise Refused("no mission has a main tree; choose one with --tree")
     if explored:
-        text = as_json(explored) if options.format == "json" else as_text(explored)
-        text += drawn_runs(explored, messages) if options.show else ""
+        text = _written(explored, form)
+        text += drawn_runs(explored, messages) if options.show and form == "text" else ""
         if options.output is not None and options.output.endswith(RUN_SUFFIXES):
             write_output(messages, None, text)
             write_runs(explored, options.output, messages)
         else:
             write_output(messages, options.output, text)
     return code
+
+
+def _written(explored: Sequence[Explored], form: str) -> str:
+    if form == "html":
+        from btq_lang.scenarios.explored_page import render
+
+        return render(explored)
+    return as_json(explored) if form == "json" else as_text(explored)
 
 
 def _texts(options: ExploreOptions) -> Sequence[tuple[bool, str]]:

@@ -21,5 +21,11 @@ determines: what leaves return and write, when timers go off, and how values com
     clauses.py     clauses of requirements that can be violated
     reasons.py     which nodes are why a tree cannot succeed or fail
     surveys.py     answers to the standard questions
-    report.py      both as text and as JSON
+    report.py      both in words, as text and as JSON
 """
+
+from __future__ import annotations
+
+from typing import Final
+
+FORMATS: Final = ("text", "json", "html")

@@ -13,6 +13,7 @@ scenario, and a value that is needed and not given makes it unknown; actions tha
     recording.py   a run of a log as a scenario
     witnessed.py   a run of `btq explore` as a scenario
     explored.py    those of a mission as a file
+    explored_page.py   what was asked of missions, with these runs, as a page
     asked.py       what was asked there as expectations
     btlog.py       a run as a log
     recorded_nodes.py   the words that name one node of it
