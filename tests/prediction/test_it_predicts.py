@@ -98,7 +98,8 @@ def write_halves(log: Path, folder: Path) -> None:
     (folder / "second.btlog").write_bytes(data[:begin] + data[middle:])
 
 
-@pytest.mark.parametrize("log", LOGS)
+# A thousand runs of `nav` take half a minute: its conditions are asked every 10 ms.
+@pytest.mark.parametrize("log", ["lab", pytest.param("nav", marks=pytest.mark.scheduled), "nav_noidle"])
 def test_half_of_the_runs_predicts_the_other(shared: Path, tmp_path: Path, log: str) -> None:
     """Success and times of the second half, of the laboratory's runs those that need not charge: of so many
     shares none is off by more than 3 standard deviations, as the intervals of both halves have them.
