@@ -51,7 +51,7 @@ def written_instead(cursor: Cursor, span: Span, clauses: tuple[str, ...], note: 
     written = " or ".join(f"`{shown(clause, most=120)}`" for clause in clauses)
     notes = (note,) if note else ()
     meant = Diagnostic("syntax-error", span, f"this clause is written {written}", (), notes, tuple(fixes))
-    signs = [found for found in cursor.lexer.problems[cursor.known :] if span.start <= found.span.start < span.end]
+    signs = [each for each in cursor.lexer.problems[cursor.known :] if span.start <= each.span.start < span.end]
     if signs:  # characters that are no token: `±`
         cursor.complain_instead(signs, meant)
     else:

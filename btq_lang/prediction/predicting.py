@@ -314,8 +314,8 @@ class _Sum:
             clauses = []
             for clause in verdict.clauses:
                 shares = [other[place] for other in self._others]
-                known = predicted_clause(clause, self._odds(verdict), unknown, Uncertainty(number, shares))
-                clauses.append((clause, known))
+                prediction = predicted_clause(clause, self._odds(verdict), unknown, Uncertainty(number, shares))
+                clauses.append((clause, prediction))
                 place += 1
             with_cause = with_causes(predictor.mission, predictor.again, clauses, self._numbers)
             words: list[Word] = [each.word for each in with_cause]

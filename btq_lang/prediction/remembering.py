@@ -165,7 +165,7 @@ class RememberedTree:
             answer = place.question()
             answers.append(answer)
             place = place.answers.get(answer)
-        effect: Effect = place if place is not None else self._made(state, number, answers)  # type: ignore[assignment]
+        effect: Effect = place if place is not None else self._made(state, number, answers)  # type: ignore[assignment]  # mypy does not narrow by `__class__`
         if effect.halted:
             self._robot.close(effect.halted)
         if effect.timers:
@@ -246,15 +246,15 @@ class RememberedTree:
 
     def _state(self) -> KnownState:
         key = self._states.key()
-        known = self._known.get(key)
-        if known is None:
+        state = self._known.get(key)
+        if state is None:
             running = {node.uid for node in self.machine.nodes if node.status == RUNNING}
             rates = tuple([course.settings.rate_with(running) for course in self._robot.courses])
             read = tuple([self._entry(name) for name in self.read])
-            known = KnownState(key, self._shared.setdefault(rates, rates), self._shared.setdefault(read, read))
+            state = KnownState(key, self._shared.setdefault(rates, rates), self._shared.setdefault(read, read))
             if self._size < _MOST:
-                self._known[key] = known
-        return known
+                self._known[key] = state
+        return state
 
     def _entry(self, name: str) -> Value | None:
         """The value of an entry on the root blackboard or, if only one other has it, there."""

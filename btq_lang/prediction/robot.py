@@ -130,7 +130,8 @@ class Robot:
             holds = condition.holds(node)
             write_outputs(node, outputs, only_empty=True)
             return SUCCESS if holds else FAILURE
-        outcome: Outcome = self.asker.ask(action.go_on if node.status == RUNNING else action.begin)  # type: ignore[assignment]
+        question = action.go_on if node.status == RUNNING else action.begin
+        outcome: Outcome = self.asker.ask(question)  # type: ignore[assignment]  # the answer to such a question
         if outcome == RUNNING:
             write_outputs(node, outputs, only_empty=True)
             return RUNNING

@@ -338,12 +338,12 @@ def _outputs(
     of_world = {course.settings.entry for course in robot.courses}
     skills = robot.skills
     for node in machine.nodes:
-        said = skills[node.uid].keys if node.uid in skills else ()
+        own_keys = skills[node.uid].keys if node.uid in skills else ()
         own: list[str] = []
         for port in declared.get(node.id, ()):
             key = key_of(node.ports.get(port, ""), port) or port
             board, name = node.board.home(key)
-            if not (port in said or key in said or (board is root and name in of_world)):
+            if not (port in own_keys or key in own_keys or (board is root and name in of_world)):
                 own.append(port)
         if not node.children:
             outputs[node.uid] = {node.id: tuple(own)} if node.id in declared else {}

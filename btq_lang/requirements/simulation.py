@@ -110,8 +110,8 @@ class SettingsReader:
         start = self._value(setting.start, signal, (*keys, "start"))
         rate = self._rate(setting.rate, signal, (*keys, "rate")) if setting.rate is not None else 0.0
         rates = [
-            (self._targets(name, (*keys, "while", name)), self._rate(said, signal, (*keys, "while", name)))
-            for name, said in setting.rates
+            (self._targets(name, (*keys, "while", name)), self._rate(text, signal, (*keys, "while", name)))
+            for name, text in setting.rates
         ]
         low, high = [self._value(each, signal, (*keys, "between")) for each in setting.between] or [None, None]
         if len(self.problems) > before or start is None:
