@@ -9,7 +9,7 @@ from math import exp, log
 from statistics import NormalDist
 from typing import Final
 
-from btq_lang.prediction.skill import AT_ONCE, DrawnActivation, Probability, Skill, SkillOutcome
+from btq_lang.prediction.skill import AT_ONCE, P95, DrawnActivation, Probability, Skill, SkillOutcome
 from btq_lang.prediction.streams import Stream
 from btq_lang.requirements.model import Condition
 from btq_lang.requirements.simulation import (
@@ -66,18 +66,6 @@ class DeclaredSkill(Skill):
             base = self._base.draw(random)
         return DrawnActivation(base.result, takes, base.writes)
 
-    def success(self) -> float:
-        """As declared, else as of the other skill."""
-        if self._succeeds is not None:
-            return self._succeeds
-        return self._base.success() if self._base is not None else 1.0
-
-    def average(self) -> float:
-        """As declared, else as of the other skill."""
-        if self._takes is not None:
-            return mean(self._takes) * 1000
-        return self._base.average() if self._base is not None else 0.0
-
     def outcomes(self) -> Sequence[SkillOutcome]:
         """As `draw`: the declared duration and result, each independent of all else."""
         base = self._base.outcomes() if self._base is not None else (SkillOutcome(SUCCESS, Fraction(1), AT_ONCE),)
@@ -115,23 +103,16 @@ def share_within(spread: Spread, seconds: float) -> float:
             return 0.0
         if spread.high == spread.low:
             return float(seconds >= spread.low)
-        return _NORMAL.cdf(log(seconds / spread.low) * _P95 / log(spread.high / spread.low))
+        return _NORMAL.cdf(log(seconds / spread.low) * P95 / log(spread.high / spread.low))
     return 1.0 if seconds >= spread.high else (seconds - spread.low) / (spread.high - spread.low)
 
 
 def quantile(spread: Spread, probability: float) -> float:
     """The duration, in seconds, that is not exceeded with a probability between 0 and 1."""
     if spread.kind == "lognormal":
-        deviations = _NORMAL.inv_cdf(probability) / _P95
+        deviations = _NORMAL.inv_cdf(probability) / P95
         return exp(log(spread.low) + log(spread.high / spread.low) * deviations)
     return spread.low + (spread.high - spread.low) * probability
-
-
-def mean(spread: Spread) -> float:
-    """The mean duration, in seconds."""
-    if spread.kind == "lognormal":
-        return spread.low * exp((log(spread.high / spread.low) / _P95) ** 2 / 2)
-    return (spread.low + spread.high) / 2
 
 
 class Outages:
@@ -253,4 +234,3 @@ _AT_ONCE: Final = DrawnActivation(SUCCESS, 0, ())
 _MOST_DRAWS: Final = 100
 _FINEST: Final = 10**9  # no one writes a share with more digits
 _NORMAL: Final = NormalDist()
-_P95: Final = _NORMAL.inv_cdf(0.95)

@@ -87,17 +87,6 @@ class MeasuredSkill(Skill):
         """Draw one of the activations that ended, or one that is longer than all of them."""
         return self._drawn[min(bisect_right(self._steps, random.next()), len(self._drawn) - 1)]
 
-    def success(self) -> float:
-        """The probability of a success, if it ends as some of those that were measured."""
-        ends = 1 - self.beyond
-        return self.probability(SUCCESS) / ends if self.ended and ends > 0 else 1.0
-
-    def average(self) -> float:
-        """The mean duration, if it ends as some of those that were measured."""
-        masses = (after - before for before, after in zip((0.0, *self._steps), self._steps, strict=False))
-        ends = 1 - self.beyond
-        return sum(mass * each.takes for mass, each in zip(masses, self._drawn, strict=False)) / ends if ends > 0 else 0
-
     def outcomes(self) -> Sequence[SkillOutcome]:
         """The results, each with the durations that it had."""
         outcomes: list[SkillOutcome] = []

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from math import exp, log
+from statistics import NormalDist
 from typing import Final, Literal, TypeAlias
 
 from btq_lang.prediction.streams import Stream
@@ -67,12 +69,16 @@ class Skill:
         raise NotImplementedError
 
     def success(self) -> float:
-        """The probability that an activation succeeds, of those that end."""
-        raise NotImplementedError
+        """The probability that an activation succeeds, of those that end; 1 if none does."""
+        successes = sum(float(each.probability) for each in self.outcomes() if each.result == SUCCESS)
+        ends = sum(float(each.probability) for each in self.outcomes() if each.takes is not None)
+        return successes / ends if ends > 0 else 1.0
 
     def average(self) -> float:
-        """How long an activation takes that ends, on average; in milliseconds."""
-        raise NotImplementedError
+        """How long an activation takes that ends, on average; in milliseconds, 0 if none does."""
+        ending = [(float(each.probability), each.takes) for each in self.outcomes() if each.takes is not None]
+        ends = sum(probability for probability, _ in ending)
+        return sum(probability * _mean(takes) for probability, takes in ending) / ends if ends > 0 else 0.0
 
     def outcomes(self) -> Sequence[SkillOutcome]:
         """All that is drawn, with probabilities that add up to 1."""
@@ -103,18 +109,20 @@ class AssumedSkill(Skill):
         """Draw what it always does."""
         return _ASSUMED
 
-    def success(self) -> float:
-        """It always succeeds."""
-        return 1.0
-
-    def average(self) -> float:
-        """It takes no time."""
-        return 0.0
-
     def outcomes(self) -> Sequence[SkillOutcome]:
         """What it always does."""
         return (SkillOutcome(SUCCESS, Fraction(1), AT_ONCE),)
 
 
+def _mean(takes: Spread | Mapping[int, float]) -> float:
+    """The mean duration, in milliseconds."""
+    if isinstance(takes, Mapping):
+        return sum(time * probability for time, probability in takes.items())
+    if takes.kind == "lognormal":
+        return 1000 * takes.low * exp((log(takes.high / takes.low) / P95) ** 2 / 2)
+    return 1000 * (takes.low + takes.high) / 2
+
+
+P95: Final = NormalDist().inv_cdf(0.95)  # where the 95 % quantile is, in standard deviations
 AT_ONCE: Final[Mapping[int, float]] = {0: 1.0}
 _ASSUMED: Final = DrawnActivation(SUCCESS, 0, ())
