@@ -122,9 +122,9 @@ def test_runs_without_an_end_count_as_misses(project: Path) -> None:
     settings = SETTINGS.replace(ANSWER, f'Wait = {{ takes = "360 d" }}\n{ANSWER}')
     (project / "btq.toml").write_text(settings, encoding="utf-8")
     document = prediction(project, "--runs", "200")
-    ends = {each["end"]: each["runs"] for each in document["ends"]}  # type: ignore[attr-defined]
+    ends = {each["end"]: each["runs"] for each in document["ends"]}  # type: ignore[attr-defined]  # the form is in the schema
     assert ends == {"does not end": 160, "fails": 40}
-    clause = document["requirements"][0]["clauses"][0]  # type: ignore[index]
+    clause = document["requirements"][0]["clauses"][0]  # type: ignore[index]  # as above
     assert (clause["held"], clause["counted"], clause["cause"]["text"]) == (0, 200, "it does not end")
 
 

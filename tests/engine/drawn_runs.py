@@ -140,7 +140,7 @@ def shrunk(drawn: DrawnRun, engine: InstalledEngine, folder: Path) -> DrawnRun:
         for smaller in _smaller(drawn):
             try:
                 differs = compared(smaller, engine, folder)
-            except Exception:  # it is no tree any more
+            except Exception:  # whatever a tree raises from which too much was taken: it is not a smaller run
                 continue
             if differs and "Error at line" not in differs:
                 drawn = smaller

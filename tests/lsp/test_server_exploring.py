@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from forked_server import serve
 from lsp_editor import Editor, Message
+from server_children import children, needs_proc
 
 DEMANDS = """\
 QualityReq most : reliability "It looks three times"
@@ -191,15 +192,6 @@ def begin_long_search(editor: Editor) -> int:
     while not children(editor):
         assert editor.request("textDocument/documentSymbol", **editor.document("mission.btq"))  # is answered meanwhile
     return number
-
-
-def children(editor: Editor) -> list[str]:
-    """The processes that the server has started, and that have not ended."""
-    lists = Path(f"/proc/{editor.process.pid}/task").glob("*/children")
-    return [child for each in lists for child in each.read_text().split()]
-
-
-needs_proc = pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="it looks for processes in /proc")
 
 
 @needs_proc
